@@ -3,3 +3,4 @@
 pub mod pipeline;
 pub mod scene;
 pub mod state;
+pub mod study;
