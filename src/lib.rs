@@ -4,3 +4,4 @@ pub mod pipeline;
 pub mod scene;
 pub mod state;
 pub mod study;
+mod units;

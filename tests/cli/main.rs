@@ -1,0 +1,4 @@
+//! What a user sees, pinned by snapshots.
+
+mod summary;
+mod synthetic;
