@@ -6,3 +6,4 @@ pub mod scene;
 pub mod state;
 pub mod study;
 mod units;
+pub mod view;
