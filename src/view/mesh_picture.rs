@@ -211,8 +211,12 @@ fn draw_axes(svg: &mut String, camera: &Camera, [x, y]: [f64; 2]) {
             svg,
             r##"<path fill="none" stroke="#1a1a1a" stroke-width="1.2" d="M{x:.1} {y:.1}L{end_x:.1} {end_y:.1}"/>"##
         );
-        let beyond = 1.0 + 10.0 / (LENGTH * right.hypot(down)).max(10.0);
-        let place = [x + LENGTH * right * beyond, y + LENGTH * down * beyond + 4.0];
+        let shown = right.hypot(down);
+        // An axis that points at the eye has its name beside its foot.
+        let place = match shown {
+            0.2.. => [x + (LENGTH + 10.0 / shown) * right, y + (LENGTH + 10.0 / shown) * down + 4.0],
+            _ => [x - 10.0, y + 14.0],
+        };
         text(svg, place, "middle", 13, name);
     }
 }

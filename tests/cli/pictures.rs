@@ -1,8 +1,9 @@
 //! Pictures of made-up runs and surfaces. `FOLDLINE_PICTURES=DIR` keeps them, to be looked at.
 
-use foldline::view::{Picture, ViewDirection, mesh_picture, vtu};
+use foldline::view::{Picture, PlotError, ViewDirection, mesh_picture, moment_rotation_plot, vtu};
 
 use crate::folded;
+use crate::synthetic::{self, CURVE, Script};
 
 /// Writes a picture where somebody wants to look at it.
 fn keep(name: &str, text: &str) {
@@ -37,4 +38,29 @@ fn folded_mesh_for_paraview() {
     let xml = vtu(&folded::samples(40.0));
     keep("mesh.vtu", &xml);
     assert!(xml.contains("NumberOfCells=\"3870\""));
+}
+
+#[test]
+fn moment_over_rotation() {
+    let svg = moment_rotation_plot(&synthetic::scene(), &synthetic::records(), "baseline, adaptive").unwrap();
+    keep("curve.svg", &svg);
+    for words in ["end moment M (N·mm)", "rotation of each end θ (degrees)", "elements", "snap at 9.62°", "this run"]
+    {
+        assert!(svg.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn moment_over_rotation_of_a_run_that_has_just_begun() {
+    let mut script = Script::new();
+    script.step(CURVE[0]);
+    let svg = moment_rotation_plot(&synthetic::scene(), &script.records(), "baseline").unwrap();
+    keep("curve-begun.svg", &svg);
+    assert!(svg.contains("this run") && !svg.contains("snap"));
+}
+
+#[test]
+fn moment_over_rotation_of_nothing() {
+    let error = moment_rotation_plot(&synthetic::scene(), &[], "baseline").unwrap_err();
+    assert!(matches!(error, PlotError::NoEquilibrium));
 }
