@@ -162,7 +162,7 @@ fn thousandths(rotation_deg: f64) -> u64 {
 }
 
 fn live_bar(target_deg: f64, start_deg: f64) -> ProgressBar {
-    let template = "{prefix}  {bar:16}  {wide_msg}  {elapsed}, {eta} left";
+    let template = "{prefix}  {bar:10}  {wide_msg}  {elapsed}, {eta} left";
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::with_draw_target(Some(thousandths(target_deg)), ProgressDrawTarget::stderr())
         .with_style(style.progress_chars("━╸─"))
@@ -189,5 +189,40 @@ fn live_message(report: &Report) -> String {
             format!(" turned down at {:.3}°: no equilibrium", report.attempted_rotation_deg)
         }
     };
-    format!("{moment_n_mm:.2} N·mm  {n1} × {n2} elements  {stage}{outcome}")
+    format!("{moment_n_mm:.2} N·mm  {n1}×{n2}  {stage}{outcome}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Stage;
+
+    #[test]
+    fn live_line() {
+        let mut report = Report {
+            step: 7,
+            stage: Stage::Solve,
+            outcome: Outcome::Done,
+            rotation_deg: 9.6,
+            attempted_rotation_deg: 9.615,
+            moment_n_mm: 289.1247,
+            strain_energy_n_mm: 63.0,
+            elements: [16, 8],
+            unknowns: 615,
+            iterations: 5,
+            factorizations: 5,
+            negative_pivots: 0,
+            residual: 1e-9,
+            energy_released_n_mm: 0.0,
+            jumped: false,
+            marked: [0, 0],
+            largest_indicator: [0.0, 0.0],
+        };
+        assert_eq!(live_prefix(report.rotation_deg, 20.0), "9.600° of 20°");
+        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve, 5 iterations");
+        report.outcome = Outcome::RejectedJump;
+        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve turned down at 9.615°: jump");
+        report = Report { outcome: Outcome::Done, stage: Stage::RefineKnots, iterations: 0, ..report };
+        assert_eq!(live_message(&report), "289.12 N·mm  16×8  refine-knots");
+    }
 }

@@ -1,5 +1,6 @@
 //! What a user sees, pinned by snapshots.
 
+mod binary;
 mod folded;
 mod pictures;
 mod progress;
