@@ -1,6 +1,7 @@
 //! What a run says when it is held against theory: the closed-form laws of tape springs, and the summary of a run.
 
 mod path;
+mod section_shape;
 mod summary;
 mod summary_text;
 mod wuest;

@@ -15,13 +15,8 @@
 //!
 //! Fold moments: K. A. Seffen and S. Pellegrino, "Deployment dynamics of tape springs", Proc. R. Soc. A 455 (1999).
 
+use super::section_shape::SectionShape;
 use crate::scene::{Geometry, Material, Scene, Sense};
-
-/// Below this λ, G and F₂ come from their power series in λ⁴; above, closed forms lose at most two digits.
-const SERIES_BELOW_LAMBDA: f64 = 2.0;
-
-/// Terms of the series: at λ = 2 the first one left out is below 1e-17 of the sum.
-const SERIES_TERMS: usize = 8;
 
 /// Curvatures searched for the first maximum and the minimum after it, in units of 1/R. A spring that has no maximum
 /// before it is curved ten times more tightly than its own section has none.
@@ -126,7 +121,7 @@ impl TapeSpring {
             return 0.0;
         }
         let nu = self.poissons_ratio;
-        let Shape { g, f2 } = Shape::at(self.lambda(k));
+        let SectionShape { g, f2 } = SectionShape::at(self.lambda(k));
         let turned = self.section_curvature() + nu * k;
         self.width_stiffness() * ((1.0 - nu * nu) * k + nu * turned * g + turned * turned * f2 / k)
     }
@@ -135,7 +130,7 @@ impl TapeSpring {
     /// integral of the moment over the curvature.
     pub fn energy_at_curvature(&self, k: f64) -> f64 {
         let nu = self.poissons_ratio;
-        let Shape { g, .. } = Shape::at(self.lambda(k));
+        let SectionShape { g, .. } = SectionShape::at(self.lambda(k));
         let turned = self.section_curvature() + nu * k;
         0.5 * self.width_stiffness() * ((1.0 - nu * nu) * k * k + turned * turned * g)
     }
@@ -238,56 +233,6 @@ impl TapeSpring {
     }
 }
 
-/// G = 1 − F₁ and F₂ at one λ.
-struct Shape {
-    g: f64,
-    f2: f64,
-}
-
-impl Shape {
-    fn at(lambda: f64) -> Self {
-        if lambda < SERIES_BELOW_LAMBDA { Self::series(lambda) } else { Self::closed(lambda) }
-    }
-
-    /// The formulas of the head of this file, scaled by e^−λ so that nothing overflows.
-    fn closed(lambda: f64) -> Self {
-        let decay = (-lambda).exp();
-        let (sin, cos) = lambda.sin_cos();
-        let (sinh, cosh) = (0.5 * (1.0 - decay * decay), 0.5 * (1.0 + decay * decay));
-        let below = sinh + decay * sin;
-        let f1 = 2.0 / lambda * (cosh - decay * cos) / below;
-        Self { g: 1.0 - f1, f2: f1 / 4.0 - sinh * decay * sin / (below * below) }
-    }
-
-    /// Power series in x = λ⁴, from
-    /// cosh λ − cos λ = λ² Σ 2 xʲ/(4j+2)!, sinh λ + sin λ = 2 λ Σ xʲ/(4j+1)!, sinh λ sin λ = λ² Σ (−4)ʲ 2 xʲ/(4j+2)!.
-    /// With N, B, P the three sums: G = (B − N)/B and F₂ = (N B − P)/4 B², where the constant terms cancel exactly.
-    fn series(lambda: f64) -> Self {
-        let x = lambda.powi(4);
-        let (mut n, mut b, mut p) = ([0.0; SERIES_TERMS], [0.0; SERIES_TERMS], [0.0; SERIES_TERMS]);
-        let (mut factorial, mut sign) = (1.0, 1.0);
-        for j in 0..SERIES_TERMS {
-            let first = (4 * j + 1) as f64;
-            b[j] = 1.0 / factorial;
-            n[j] = 2.0 / (factorial * (first + 1.0));
-            p[j] = sign * n[j];
-            factorial *= (first + 1.0) * (first + 2.0) * (first + 3.0) * (first + 4.0);
-            sign *= -4.0;
-        }
-        let sum = |terms: &[f64]| terms.iter().rev().fold(0.0, |sum, term| sum * x + term);
-        let mut product = [0.0; SERIES_TERMS];
-        for (j, term) in product.iter_mut().enumerate() {
-            *term = (0..=j).map(|i| n[i] * b[j - i]).sum::<f64>() - p[j];
-        }
-        let mut difference = [0.0; SERIES_TERMS];
-        for (j, term) in difference.iter_mut().enumerate() {
-            *term = b[j] - n[j];
-        }
-        let below = sum(&b);
-        Self { g: x * sum(&difference[1..]) / below, f2: x * sum(&product[1..]) / (4.0 * below * below) }
-    }
-}
-
 /// Halvings that take any bracket to the last bit.
 const BISECTIONS: usize = 100;
 
@@ -353,15 +298,6 @@ mod tests {
                     (spring.energy_at_curvature(k + step) - spring.energy_at_curvature(k - step)) / (2.0 * step);
                 close(slope / spring.moment_at_curvature(k), 1.0, 1e-7);
             }
-        }
-    }
-
-    #[test]
-    fn series_and_closed_form_agree_where_they_meet() {
-        for lambda in [1.5, 2.0, 2.5] {
-            let (series, closed) = (Shape::series(lambda), Shape::closed(lambda));
-            close(series.g / closed.g, 1.0, 1e-12);
-            close(series.f2 / closed.f2, 1.0, 1e-11);
         }
     }
 
