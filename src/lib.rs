@@ -1,5 +1,11 @@
 //! Thin-shell structures that fold, simulated on a mesh that refines itself, as a pipeline of restartable steps.
 
+pub mod adapt;
+mod digest;
+pub mod equilibrium;
+pub mod model;
 pub mod pipeline;
+pub mod shell;
+pub mod spline;
 pub mod scene;
 pub mod state;

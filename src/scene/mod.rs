@@ -211,3 +211,10 @@ pub enum SyncPolicy {
     /// At the end only.
     AtEnd,
 }
+
+impl Scene {
+    /// TEMP
+    pub fn hash(&self) -> blake3::Hash {
+        blake3::hash(format!("{self:?}").as_bytes())
+    }
+}
