@@ -11,7 +11,30 @@ use rayon::prelude::*;
 
 use crate::equilibrium::kernel::{ElementBuffers, has_fma_kernel, integrate_element};
 pub use crate::equilibrium::kernel::Want;
-use crate::model::Discretization;
+use crate::model::{Discretization, Tables};
+use crate::spline::Mesh;
+
+/// Strain energy of the model at a displacement on `mesh`, N·mm; `tables` may have other elements than `mesh`
+/// ([`Tables::on_elements_of`]). Summed in the order of [`Assembled::assemble`].
+pub fn strain_energy(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]]) -> f64 {
+    let fma = has_fma_kernel();
+    let columns: Vec<f64> = (0..tables.elements[0])
+        .into_par_iter()
+        .map_init(
+            || ElementBuffers::new(tables.padded),
+            |buffers, column| {
+                let mut energy = 0.0;
+                for across in 0..tables.elements[1] {
+                    gather(mesh, tables, displacement, [column, across], buffers);
+                    integrate_element(tables, column * tables.elements[1] + across, Want::Energy, fma, buffers);
+                    energy += buffers.energy;
+                }
+                energy
+            },
+        )
+        .collect();
+    columns.iter().sum()
+}
 
 /// Offsets (d₁, d₂) of the stencil, in storage order.
 pub fn stencil(degree: [usize; 2]) -> Vec<[isize; 2]> {
@@ -44,7 +67,7 @@ impl Assembled {
         Self { energy: 0.0, residual: vec![[0.0; 3]; count], stiffness }
     }
 
-    /// Assembles at a displacement of the control points.
+    /// Assembles residual and energy, and the stiffness where `want` says so, at a displacement of the control points.
     pub fn assemble(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], want: Want) {
         let mesh = &discretization.mesh;
         let tables = &discretization.tables;
@@ -53,9 +76,7 @@ impl Assembled {
         let colours = degree[0] + 1;
         let row_stiffness = n2 * stencil_len(degree) * 9;
         let fma = has_fma_kernel();
-        if want >= Want::Residual {
-            self.residual.fill([0.0; 3]);
-        }
+        self.residual.fill([0.0; 3]);
         if want == Want::Stiffness {
             self.stiffness.par_chunks_mut(row_stiffness).for_each(|row| row.fill(0.0));
         }
@@ -155,28 +176,34 @@ fn assemble_column(
     let functions = (p1 + 1) * (p2 + 1);
     let mut energy = 0.0;
     for across in 0..tables.elements[1] {
-        let first = [tables.first[0][column], tables.first[1][across]];
-        for a in 0..functions {
-            let point = (first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1);
-            for c in 0..3 {
-                buffers.displacement[c * padded + a] = displacement[point][c];
-            }
-        }
+        let first = tables.first[1][across];
+        gather(&discretization.mesh, tables, displacement, [column, across], buffers);
         integrate_element(tables, column * tables.elements[1] + across, want, fma, buffers);
         energy += buffers.energy;
-        if want >= Want::Residual {
-            for a in 0..functions {
-                let row = &mut rows.residual[(a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1)];
-                for c in 0..3 {
-                    row[c] += buffers.residual[c * padded + a];
-                }
+        for a in 0..functions {
+            let row = &mut rows.residual[(a / (p2 + 1)) * n2 + first + a % (p2 + 1)];
+            for c in 0..3 {
+                row[c] += buffers.residual[c * padded + a];
             }
         }
         if want == Want::Stiffness {
-            scatter_stiffness([p1, p2], n2, first[1], padded, &buffers.stiffness, rows.stiffness);
+            scatter_stiffness([p1, p2], n2, first, padded, &buffers.stiffness, rows.stiffness);
         }
     }
     energy
+}
+
+/// Copies the displacement of an element's control points into its buffers.
+fn gather(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]], element: [usize; 2], buffers: &mut ElementBuffers) {
+    let [p1, p2] = mesh.degree;
+    let n2 = mesh.control_counts()[1];
+    let first = [tables.first[0][element[0]], tables.first[1][element[1]]];
+    for a in 0..(p1 + 1) * (p2 + 1) {
+        let point = (first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1);
+        for c in 0..3 {
+            buffers.displacement[c * tables.padded + a] = displacement[point][c];
+        }
+    }
 }
 
 /// Adds an element's blocks b ≥ a to the stencil of the column's rows.

@@ -10,7 +10,7 @@
 //! it. Backtracking at once follows the valley in many small steps: the snap of the baseline's quarter model took 64 iterations that
 //! way and 31 with one step of patience; two and four steps of patience took 33 and 37.
 
-use crate::equilibrium::assembly::{Assembled, Want};
+use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::newton::{Effort, Iterate, SolveError, Workspace};
 use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::sparse::SparseSolver;
@@ -29,7 +29,8 @@ const MAX_DOUBLINGS: usize = 6;
 /// A descent under way: residual and stiffness are assembled at the point in hand.
 pub(super) struct Descent<'a> {
     placement: Placement<'a>,
-    energy: Energy<'a>,
+    discretization: &'a Discretization,
+    assembled: &'a mut Assembled,
     pattern: &'a Pattern,
     solver: &'a mut SparseSolver,
     values: &'a mut [f64],
@@ -40,19 +41,6 @@ pub(super) struct Descent<'a> {
     /// Where a step started that has not lowered the energy yet.
     watched: Option<Start>,
     pub(super) effort: Effort,
-}
-
-/// The energy and its derivatives at points of one mesh.
-struct Energy<'a> {
-    discretization: &'a Discretization,
-    assembled: &'a mut Assembled,
-}
-
-impl Energy<'_> {
-    fn at(&mut self, displacement: &[[f64; 3]], want: Want) -> f64 {
-        self.assembled.assemble(self.discretization, displacement, want);
-        self.assembled.energy
-    }
 }
 
 /// A point with a descent direction.
@@ -82,11 +70,11 @@ impl<'a> Descent<'a> {
         let discretization = &*discretization;
         let placement = discretization.unknowns.at(theta);
         let displacement = placement.displacement(&unknowns);
-        let mut energy = Energy { discretization, assembled };
-        energy.at(&displacement, Want::Stiffness);
+        assembled.assemble(discretization, &displacement, Want::Stiffness);
         Self {
             placement,
-            energy,
+            discretization,
+            assembled,
             pattern,
             solver,
             values,
@@ -101,7 +89,7 @@ impl<'a> Descent<'a> {
 
     /// Factors the stiffness at the point in hand and says where the descent stands.
     pub(super) fn iterate(&mut self) -> Result<Iterate, SolveError> {
-        let assembled = &*self.energy.assembled;
+        let assembled = &*self.assembled;
         self.gradient = self.placement.restrict(&assembled.residual);
         let mut last = Iterate {
             iteration: self.effort.iterations,
@@ -114,7 +102,7 @@ impl<'a> Descent<'a> {
         if !(last.energy.is_finite() && last.residual.is_finite()) {
             return Err(SolveError::NotANumber { last, effort: self.effort });
         }
-        self.pattern.fill(self.energy.discretization, &self.placement, assembled, self.values);
+        self.pattern.fill(self.discretization, &self.placement, assembled, self.values);
         self.effort.factorizations += 1;
         last.negative_pivots = self
             .solver
@@ -155,7 +143,7 @@ impl<'a> Descent<'a> {
     /// Displacement, dΠ/dθ of the model at fixed unknowns, and what the descent cost.
     pub(super) fn finish(self) -> (Vec<[f64; 3]>, f64, Effort) {
         let rate = self.placement.rate(&self.unknowns);
-        let power = rate.iter().zip(&self.energy.assembled.residual).map(|(u, force)| dot(*u, *force)).sum();
+        let power = rate.iter().zip(&self.assembled.residual).map(|(u, force)| dot(*u, *force)).sum();
         (self.displacement, power, self.effort)
     }
 
@@ -172,7 +160,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Along negative curvature the model says nothing of the length: double while that pays.
-    fn along_negative_curvature(&mut self, here: &Start) -> Option<f64> {
+    fn along_negative_curvature(&self, here: &Start) -> Option<f64> {
         let mut best = (1.0, self.energy_at(here, 1.0));
         if !here.is_enough(best.0, best.1) {
             return self.backtrack(here, best.0, best.1);
@@ -189,7 +177,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Shorter steps, by the minimum of the parabola through energy, slope and the failed trial.
-    fn backtrack(&mut self, from: &Start, mut length: f64, mut energy: f64) -> Option<f64> {
+    fn backtrack(&self, from: &Start, mut length: f64, mut energy: f64) -> Option<f64> {
         for _ in 0..MAX_BACKTRACKS {
             let curvature = energy - from.iterate.energy - length * from.slope;
             let minimum = -0.5 * from.slope * length * length / curvature;
@@ -202,9 +190,9 @@ impl<'a> Descent<'a> {
         None
     }
 
-    fn energy_at(&mut self, from: &Start, length: f64) -> f64 {
+    fn energy_at(&self, from: &Start, length: f64) -> f64 {
         let displacement = self.placement.displacement(&from.moved(length));
-        self.energy.at(&displacement, Want::Energy)
+        strain_energy(&self.discretization.mesh, &self.discretization.tables, &displacement)
     }
 
     /// Moves to a point and assembles everything there; returns the energy.
@@ -212,6 +200,7 @@ impl<'a> Descent<'a> {
         self.unknowns = from.moved(length);
         self.displacement = self.placement.displacement(&self.unknowns);
         self.step_length = length;
-        self.energy.at(&self.displacement, Want::Stiffness)
+        self.assembled.assemble(self.discretization, &self.displacement, Want::Stiffness);
+        self.assembled.energy
     }
 }

@@ -7,6 +7,6 @@ mod newton;
 mod pattern;
 mod sparse;
 
-pub use assembly::{Assembled, Want};
+pub use assembly::{Assembled, Want, strain_energy};
 pub use newton::{Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
 pub use sparse::FactorError;

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use crate::equilibrium::assembly::{Assembled, Want};
+use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::descent::Descent;
 use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::sparse::{FactorError, SparseSolver};
@@ -157,9 +157,8 @@ impl Workspace {
     }
 
     /// Energy of the model at a displacement, N·mm.
-    pub fn energy(&mut self, displacement: &[[f64; 3]]) -> f64 {
-        self.assembled.assemble(&self.discretization, displacement, Want::Energy);
-        self.assembled.energy
+    pub fn energy(&self, displacement: &[[f64; 3]]) -> f64 {
+        strain_energy(&self.discretization.mesh, &self.discretization.tables, displacement)
     }
 }
 
@@ -234,11 +233,9 @@ impl<'a> Equilibrium<'a> {
         Ok(if moved <= kept { along } else { old })
     }
 
-    fn energy_at(&mut self, theta: f64, unknowns: &[f64]) -> f64 {
-        let Workspace { discretization, assembled, .. } = &mut *self.work;
-        let displacement = discretization.unknowns.at(theta).displacement(unknowns);
-        assembled.assemble(discretization, &displacement, Want::Energy);
-        assembled.energy
+    fn energy_at(&self, theta: f64, unknowns: &[f64]) -> f64 {
+        let displacement = self.work.discretization.unknowns.at(theta).displacement(unknowns);
+        self.work.energy(&displacement)
     }
 
     /// Stiffness and factor at a displacement, unless the last solve left them there; returns the negative pivots. Not

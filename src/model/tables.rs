@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::scene::{Quadrature, Scene};
 use crate::shell::{PointReference, gauss_legendre};
 use crate::spline::{
-    Mesh, Spans, basis_derivatives, basis_derivatives_len, quotient_derivatives, tensor_derivatives,
+    Mesh, Spans, basis_derivatives, basis_derivatives_len, find_span, quotient_derivatives, tensor_derivatives,
 };
 
 /// Basis functions are padded to a multiple of this, so that kernels work on whole vectors.
@@ -34,7 +34,19 @@ pub struct Tables {
 impl Tables {
     /// Tables for the scene's quadrature and material on a mesh.
     pub fn new(scene: &Scene, mesh: &Mesh) -> Self {
-        let spans = [0, 1].map(|k| Spans::of(&mesh.knots[k], mesh.degree[k]));
+        Self::on_elements_of(scene, mesh, mesh)
+    }
+
+    /// Tables of the functions of `mesh` at the quadrature points of the elements of `finer`, which is `mesh` with knots
+    /// inserted: what a displacement on `mesh` has for an energy where `finer` is integrated.
+    pub fn on_elements_of(scene: &Scene, mesh: &Mesh, finer: &Mesh) -> Self {
+        let spans = [0, 1].map(|k| {
+            let mut spans = Spans::of(&finer.knots[k], mesh.degree[k]);
+            for (index, [from, to]) in spans.index.iter_mut().zip(&spans.bounds) {
+                *index = find_span(&mesh.knots[k], mesh.degree[k], 0.5 * (from + to));
+            }
+            spans
+        });
         let rules = mesh.degree.map(|degree| {
             gauss_legendre(match scene.mesh.quadrature {
                 Quadrature::Full => degree + 1,

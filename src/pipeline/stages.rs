@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::adapt::{evaluate_indicators, project_displacements, refine_mesh};
-use crate::equilibrium::{Effort, Equilibrium, FactorError, Iterate, SolveError, Solved, Workspace};
-use crate::model::{ModelError, copies, starting_mesh};
+use crate::equilibrium::{Effort, Equilibrium, FactorError, Iterate, SolveError, Solved, Workspace, strain_energy};
+use crate::model::{ModelError, Tables, Unknowns, copies, starting_mesh};
 use crate::pipeline::step_control::{Attempt, is_jump, next_attempt};
 use crate::pipeline::{Outcome, Report};
 use crate::scene::{Scene, Stage};
@@ -220,10 +220,20 @@ impl Stages {
             return Err(out_of_order(state, Stage::RefineKnots, "no knot span is marked"));
         }
         let finer = refine_mesh(&state.mesh, &state.marked);
+        // Integrated where the finer mesh is: what the energy changes here is the error of the coarser quadrature, and
+        // projecting then changes nothing.
+        let tables = Tables::on_elements_of(&self.scene, &state.mesh, &finer);
+        let energy = copies(self.scene.symmetry) * strain_energy(&state.mesh, &tables, &state.displacement);
         let mut report = self.report(state, state.step);
         report.marked = [state.marked[0].len(), state.marked[1].len()];
         report.elements = finer.element_counts();
-        let next = State { refined: Some(Arc::new(finer)), marked: Default::default(), ..state.clone() };
+        report.strain_energy_n_mm = energy;
+        let next = State {
+            refined: Some(Arc::new(finer)),
+            marked: Default::default(),
+            strain_energy_n_mm: energy,
+            ..state.clone()
+        };
         Ok((next, report))
     }
 
@@ -278,7 +288,7 @@ impl Stages {
     fn report(&mut self, state: &State, step: u64) -> Report {
         let unknowns = match &self.work {
             Some(work) if work.discretization().mesh == state.mesh => work.discretization().unknowns.count(),
-            _ => crate::model::Unknowns::new(&self.scene, &state.mesh).count(),
+            _ => Unknowns::new(&self.scene, &state.mesh).count(),
         };
         Report {
             step,
