@@ -1,8 +1,14 @@
 //! Thin-shell structures that fold, simulated on a mesh that refines itself, as a pipeline of restartable steps.
 
+pub mod adapt;
 pub mod cli;
+mod digest;
+pub mod equilibrium;
+pub mod model;
 pub mod pipeline;
 pub mod scene;
+pub mod shell;
+pub mod spline;
 pub mod state;
 pub mod study;
 mod units;

@@ -2,61 +2,22 @@
 
 use std::sync::Arc;
 
+use crate::digest::Feed;
+pub use crate::digest::Hash;
 use crate::scene::Stage;
-
-/// A content hash (BLAKE3, 256 bits).
-pub type Hash = blake3::Hash;
-
-/// Tensor-product NURBS mid-surface. Control points are ordered with the second direction (arc) fastest:
-/// index = i₁ · n₂ + i₂.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mesh {
-    /// Polynomial degree each way.
-    pub degree: [usize; 2],
-    /// Open knot vectors each way; nᵢ = knots.len() − degree − 1 control points.
-    pub knots: [Vec<f64>; 2],
-    /// Homogeneous control points (w x, w y, w z, w), mm; length n₁ · n₂.
-    pub control_points: Vec<[f64; 4]>,
-}
-
-impl Mesh {
-    /// Control points each way.
-    pub fn control_counts(&self) -> [usize; 2] {
-        [0, 1].map(|k| self.knots[k].len() - self.degree[k] - 1)
-    }
-
-    /// Non-empty knot spans (elements) each way.
-    pub fn element_counts(&self) -> [usize; 2] {
-        [0, 1].map(|k| self.knots[k].windows(2).filter(|pair| pair[0] < pair[1]).count())
-    }
-
-    /// Content hash; independent of how a log encodes the mesh.
-    pub fn hash(&self) -> Hash {
-        let mut feed = Feed::new("foldline mesh");
-        for k in 0..2 {
-            feed.integer(self.degree[k] as u64);
-            feed.numbers(&self.knots[k]);
-        }
-        feed.integer(self.control_points.len() as u64);
-        for point in &self.control_points {
-            point.iter().for_each(|value| feed.number(*value));
-        }
-        feed.finish()
-    }
-}
+pub use crate::spline::Mesh;
 
 /// A run between two stages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Geometry and spline space. Shared: it changes only in refine-knots.
+    /// Geometry and spline space that the displacement belongs to.
     pub mesh: Arc<Mesh>,
-    /// Displacement of every control point, mm, in the order of the mesh. Between refine-knots and
-    /// project-displacements it still belongs to the mesh without the knots in `inserted`.
+    /// Displacement of every control point, mm, in the order of the mesh.
     pub displacement: Vec<[f64; 3]>,
     /// New knots each way that evaluate-indicators asks for; emptied by refine-knots.
     pub marked: [Vec<f64>; 2],
-    /// Knots each way that `mesh` has and `displacement` has not; emptied by project-displacements.
-    pub inserted: [Vec<f64>; 2],
+    /// The finer mesh that refine-knots made; project-displacements puts it in the place of `mesh`.
+    pub refined: Option<Arc<Mesh>>,
     /// Load step: 0 before the first solve.
     pub step: u64,
     /// The stage that made this state; `None` for the state that the scene starts from.
@@ -102,8 +63,10 @@ impl State {
         for vector in &self.displacement {
             vector.iter().for_each(|value| feed.number(*value));
         }
-        for knots in self.marked.iter().chain(&self.inserted) {
-            feed.numbers(knots);
+        self.marked.iter().for_each(|knots| feed.numbers(knots));
+        feed.integer(u64::from(self.refined.is_some()));
+        if let Some(mesh) = &self.refined {
+            feed.bytes(mesh.hash().as_bytes());
         }
         feed.integer(self.step);
         feed.integer(self.stage.map_or(0, |stage| 1 + stage as u64));
@@ -120,38 +83,5 @@ impl State {
             Some(Rejection::Jump) => 2,
         });
         feed.finish()
-    }
-}
-
-/// Feeds numbers into a hash by their bits, each sequence with its length in front.
-struct Feed(blake3::Hasher);
-
-impl Feed {
-    fn new(domain: &str) -> Self {
-        let mut feed = Self(blake3::Hasher::new());
-        feed.integer(domain.len() as u64);
-        feed.bytes(domain.as_bytes());
-        feed
-    }
-
-    fn bytes(&mut self, bytes: &[u8]) {
-        self.0.update(bytes);
-    }
-
-    fn integer(&mut self, value: u64) {
-        self.bytes(&value.to_le_bytes());
-    }
-
-    fn number(&mut self, value: f64) {
-        self.bytes(&value.to_bits().to_le_bytes());
-    }
-
-    fn numbers(&mut self, values: &[f64]) {
-        self.integer(values.len() as u64);
-        values.iter().for_each(|value| self.number(*value));
-    }
-
-    fn finish(self) -> Hash {
-        self.0.finalize()
     }
 }

@@ -79,7 +79,10 @@ fn note(report: &Report) -> String {
         Outcome::RejectedJump => format!("✗ jump at {attempted:.3}°"),
         Outcome::RejectedNoEquilibrium => format!("✗ no solution {attempted:.3}°"),
         Outcome::Done if report.jumped => format!("snap, −{:.2} N·mm", report.energy_released_n_mm),
-        Outcome::Done if report.marked != [0, 0] => format!("marked {} + {}", report.marked[0], report.marked[1]),
+        Outcome::Done if report.marked != [0, 0] => {
+            let verb = if report.stage == Stage::RefineKnots { "inserted" } else { "marked" };
+            format!("{verb} {} + {}", report.marked[0], report.marked[1])
+        }
         Outcome::Done => String::new(),
     }
 }
@@ -142,7 +145,7 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
     if report.stage == Stage::EvaluateIndicators {
         let ([marked1, marked2], [r1, r2]) = (report.marked, report.largest_indicator);
         lines.extend([
-            ("marked knot spans", format!("{marked1} along the length, {marked2} along the arc")),
+            ("knots asked for", format!("{marked1} along the length, {marked2} along the arc")),
             ("largest max|κ| h", format!("{r1} along the length, {r2} along the arc")),
         ]);
     }

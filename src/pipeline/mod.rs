@@ -1,7 +1,13 @@
 //! Stages, the loop that runs them, step control, and the sinks that see every stage.
 
 mod record;
+mod run;
 mod sink;
+mod stages;
+mod step_control;
 
 pub use record::{Commit, Outcome, Record, Report};
+pub use run::{Ending, Run, RunError};
 pub use sink::{MemorySink, Sink, SinkError};
+pub use stages::{StageError, Stages};
+pub use step_control::next_stage;

@@ -22,7 +22,8 @@ pub struct PathPoint {
     pub jumped: bool,
 }
 
-/// A jump from one stable equilibrium to another.
+/// A jump from one equilibrium to another, with all that followed in the same load step: on the finer meshes that the
+/// fold calls for it may fall further.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snap {
     /// Rotation of the last equilibrium before the jump, degrees.
@@ -31,9 +32,9 @@ pub struct Snap {
     pub after_deg: f64,
     /// Moment before the jump, N·mm.
     pub moment_before_n_mm: f64,
-    /// Moment after the jump, N·mm.
+    /// Moment at the end of the load step that jumped, N·mm.
     pub moment_after_n_mm: f64,
-    /// Energy that the jump released, N·mm.
+    /// Energy that the jump released, and any on finer meshes in the same load step, N·mm.
     pub energy_released_n_mm: f64,
 }
 
@@ -44,7 +45,7 @@ pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
     for report in equilibria(records).map(|record| &record.report) {
         let same_step = path.last().is_some_and(|last| last.step == report.step);
         let jumped_before = same_step && path.last().is_some_and(|last| last.jumped);
-        if same_step && !report.jumped {
+        if same_step && (jumped_before || !report.jumped) {
             path.pop();
         }
         path.push(PathPoint {
@@ -60,23 +61,32 @@ pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
     path
 }
 
-/// The jumps of a run, in order. One in the first solve of `records` counts from the unloaded shell.
+/// The jumps of a run, in order, at most one a load step. One in the first solve of `records` counts from the unloaded
+/// shell.
 pub fn snaps(records: &[Record]) -> Vec<Snap> {
     let mut before = (0.0, 0.0);
-    let mut snaps = Vec::new();
+    let mut snaps: Vec<(u64, Snap)> = Vec::new();
     for report in equilibria(records).map(|record| &record.report) {
-        if report.jumped {
-            snaps.push(Snap {
-                before_deg: before.0,
-                after_deg: report.rotation_deg,
-                moment_before_n_mm: before.1,
-                moment_after_n_mm: report.moment_n_mm,
-                energy_released_n_mm: report.energy_released_n_mm,
-            });
+        match snaps.last_mut().filter(|(step, _)| *step == report.step) {
+            Some((_, snap)) => {
+                snap.moment_after_n_mm = report.moment_n_mm;
+                snap.energy_released_n_mm += report.energy_released_n_mm;
+            }
+            None if report.jumped => {
+                let snap = Snap {
+                    before_deg: before.0,
+                    after_deg: report.rotation_deg,
+                    moment_before_n_mm: before.1,
+                    moment_after_n_mm: report.moment_n_mm,
+                    energy_released_n_mm: report.energy_released_n_mm,
+                };
+                snaps.push((report.step, snap));
+            }
+            None => {}
         }
         before = (report.rotation_deg, report.moment_n_mm);
     }
-    snaps
+    snaps.into_iter().map(|(_, snap)| snap).collect()
 }
 
 /// The stages that ended in an equilibrium.

@@ -95,3 +95,25 @@ fn numbers_of_the_whole_run() {
     assert_eq!(summary.load_steps, 14);
     assert_eq!(summary.rejections, 3);
 }
+
+#[test]
+fn a_fall_in_stages_is_one_jump() {
+    let mut script = Script::new();
+    CURVE[..9].iter().for_each(|point| script.step(*point));
+    script.solve((9.615, 51.98, 40.0), true);
+    script.evaluate([6, 0]);
+    script.refine([8, 2]);
+    script.step(CURVE[11]);
+    let mut records = script.records();
+    let last_in_step = records.len() - 3;
+    let report = &mut records[last_in_step].report;
+    (report.jumped, report.energy_released_n_mm, report.moment_n_mm) = (true, 7.5, 26.57);
+    let summary = Summary::new(&synthetic::scene(), &records);
+    let [snap] = summary.snaps[..] else { panic!("{:?}", summary.snaps) };
+    assert_eq!((snap.before_deg, snap.after_deg), (9.6, 9.615));
+    assert_eq!((snap.moment_before_n_mm, snap.moment_after_n_mm), (289.124724, 26.57));
+    assert!((snap.energy_released_n_mm - (63.055972 - 40.0 + 1.9 + 7.5)).abs() < 1e-9);
+    let path = foldline::study::equilibrium_path(&records);
+    assert_eq!(path.iter().filter(|point| point.jumped).count(), 1);
+    assert_eq!(path.len(), 11);
+}

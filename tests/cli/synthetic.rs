@@ -144,7 +144,8 @@ impl Script {
 
     /// The three stages of a refinement.
     pub fn refine(&mut self, elements: [usize; 2]) {
-        self.push(Report { stage: Stage::RefineKnots, elements, ..self.last.clone() }, 0.001);
+        let marked = [0, 1].map(|k| elements[k] - self.last.elements[k]);
+        self.push(Report { stage: Stage::RefineKnots, elements, marked, ..self.last.clone() }, 0.001);
         let unknowns = 3 * (elements[0] + 3) * (elements[1] + 3) - 12;
         self.push(Report { stage: Stage::ProjectDisplacements, unknowns, ..self.last.clone() }, 0.002);
         let report = Report {
@@ -208,7 +209,7 @@ pub fn state(record: &Record) -> State {
         }),
         displacement: vec![[0.0; 3]; 4],
         marked: [vec![], vec![]],
-        inserted: [vec![], vec![]],
+        refined: None,
         step: record.report.step,
         stage: Some(record.report.stage),
         rotation_deg: record.report.rotation_deg,

@@ -1,0 +1,88 @@
+//! Refinement indicators (Canales & Pellegrino): r_i = max|κ_i| h_i over an element, with κ_i the physical bending strain
+//! along local axis i and h_i the element's length along it. An axis is refined where r_i > r₀ and h_i / 2 exceeds the
+//! length limit, each axis on its own. The mesh is a tensor product, so a marked element marks its whole knot span.
+
+use rayon::prelude::*;
+
+use crate::model::{Discretization, Tables};
+use crate::scene::{Adapt, Geometry, LengthLimit, Material, Scene};
+use crate::spline::Spans;
+
+/// What the indicators say of a state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Indicators {
+    /// Largest r_i each way, dimensionless.
+    pub largest: [f64; 2],
+    /// Knots to insert each way: the middles of the marked spans.
+    pub marked: [Vec<f64>; 2],
+}
+
+/// Evaluates the indicators at the quadrature points of every element.
+pub fn evaluate_indicators(
+    scene: &Scene,
+    adapt: &Adapt,
+    discretization: &Discretization,
+    displacement: &[[f64; 3]],
+) -> Indicators {
+    let tables = &discretization.tables;
+    let mesh = &discretization.mesh;
+    let limit = length_limit(scene, adapt.length_limit);
+    let count = tables.elements[0] * tables.elements[1];
+    let values: Vec<[f64; 2]> =
+        (0..count).into_par_iter().map(|element| element_indicators(discretization, displacement, element)).collect();
+
+    let mut largest = [0.0_f64; 2];
+    let mut spans_marked = tables.elements.map(|n| vec![false; n]);
+    for (element, value) in values.iter().enumerate() {
+        let place = [element / tables.elements[1], element % tables.elements[1]];
+        for axis in 0..2 {
+            largest[axis] = largest[axis].max(value[axis]);
+            if value[axis] > adapt.threshold && tables.lengths[element][axis] / 2.0 > limit {
+                spans_marked[axis][place[axis]] = true;
+            }
+        }
+    }
+    let marked = [0, 1].map(|axis| {
+        let bounds = Spans::of(&mesh.knots[axis], mesh.degree[axis]).bounds;
+        let marks = bounds.iter().zip(&spans_marked[axis]);
+        marks.filter(|(_, marked)| **marked).map(|([from, to], _)| 0.5 * (from + to)).collect()
+    });
+    Indicators { largest, marked }
+}
+
+/// Elements are not halved below this, mm.
+fn length_limit(scene: &Scene, rule: LengthLimit) -> f64 {
+    let Geometry::TapeSpring { radius_mm, .. } = scene.geometry;
+    let Material::Isotropic { thickness_mm, .. } = scene.material;
+    match rule {
+        LengthLimit::SqrtRadiusThickness => (radius_mm * thickness_mm).sqrt(),
+        LengthLimit::Millimetres(length) => length,
+    }
+}
+
+/// max|κ_i| h_i over the quadrature points of an element.
+fn element_indicators(discretization: &Discretization, displacement: &[[f64; 3]], element: usize) -> [f64; 2] {
+    let tables: &Tables = &discretization.tables;
+    let [_, p2] = discretization.mesh.degree;
+    let n2 = discretization.mesh.control_counts()[1];
+    let count = (discretization.mesh.degree[0] + 1) * (p2 + 1);
+    let first = [tables.first[0][element / tables.elements[1]], tables.first[1][element % tables.elements[1]]];
+    let functions = tables.element_functions(element);
+    let mut largest = [0.0_f64; 2];
+    for (q, point) in tables.element_points(element).iter().enumerate() {
+        let mut u = [[0.0; 3]; 5];
+        for k in 0..5 {
+            let row = &functions[(q * 5 + k) * tables.padded..][..count];
+            for (a, function) in row.iter().enumerate() {
+                let control = displacement[(first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1)];
+                (0..3).for_each(|c| u[k][c] += function * control[c]);
+            }
+        }
+        let bending = point.strains(&u).bending;
+        let lengths = point.tangent_lengths();
+        for axis in 0..2 {
+            largest[axis] = largest[axis].max(bending[axis].abs() / (lengths[axis] * lengths[axis]));
+        }
+    }
+    [0, 1].map(|axis| largest[axis] * tables.lengths[element][axis])
+}

@@ -1,0 +1,7 @@
+//! Refinement: where bending concentrates, knots are inserted, and the displacement is carried over exactly.
+
+mod indicators;
+mod refinement;
+
+pub use indicators::{Indicators, evaluate_indicators};
+pub use refinement::{project_displacements, refine_mesh};

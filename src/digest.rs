@@ -1,0 +1,37 @@
+//! Content hashes of numbers, independent of how anything is encoded.
+
+/// A content hash (BLAKE3, 256 bits).
+pub type Hash = blake3::Hash;
+
+/// Feeds numbers into a hash by their bits, each sequence with its length in front.
+pub(crate) struct Feed(blake3::Hasher);
+
+impl Feed {
+    pub(crate) fn new(domain: &str) -> Self {
+        let mut feed = Self(blake3::Hasher::new());
+        feed.integer(domain.len() as u64);
+        feed.bytes(domain.as_bytes());
+        feed
+    }
+
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    pub(crate) fn integer(&mut self, value: u64) {
+        self.bytes(&value.to_le_bytes());
+    }
+
+    pub(crate) fn number(&mut self, value: f64) {
+        self.bytes(&value.to_bits().to_le_bytes());
+    }
+
+    pub(crate) fn numbers(&mut self, values: &[f64]) {
+        self.integer(values.len() as u64);
+        values.iter().for_each(|value| self.number(*value));
+    }
+
+    pub(crate) fn finish(self) -> Hash {
+        self.0.finalize()
+    }
+}

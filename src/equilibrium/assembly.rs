@@ -1,0 +1,229 @@
+//! Sums over elements: energy, residual and stiffness on control points.
+//!
+//! The stiffness on control points is stored as a stencil: control point i = i₁ n₂ + i₂ has a 3 × 3 block for each j = i + (d₁, d₂)
+//! with j ≥ i that it can share an element with: d₁ = 0, 0 ≤ d₂ ≤ p₂, or 0 < d₁ ≤ p₁, −p₂ ≤ d₂ ≤ p₂.
+//!
+//! Threads work on columns of elements (all elements with the same place along the length). A column touches p₁ + 1 rows of control
+//! points; columns p₁ + 1 apart share none, so they are one colour and run at once, each on its own slice. Colours follow each other.
+//! Every sum is therefore formed in one order, whatever the number of threads.
+
+use rayon::prelude::*;
+
+use crate::equilibrium::kernel::{ElementBuffers, has_fma_kernel, integrate_element};
+pub use crate::equilibrium::kernel::Want;
+use crate::model::{Discretization, Tables};
+use crate::spline::Mesh;
+
+/// Strain energy of the model at a displacement on `mesh`, N·mm; `tables` may have other elements than `mesh`
+/// ([`Tables::on_elements_of`]). Summed in the order of [`Assembled::assemble`].
+pub fn strain_energy(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]]) -> f64 {
+    let fma = has_fma_kernel();
+    let columns: Vec<f64> = (0..tables.elements[0])
+        .into_par_iter()
+        .map_init(
+            || ElementBuffers::new(tables.padded),
+            |buffers, column| {
+                let mut energy = 0.0;
+                for across in 0..tables.elements[1] {
+                    gather(mesh, tables, displacement, [column, across], buffers);
+                    integrate_element(tables, column * tables.elements[1] + across, Want::Energy, fma, buffers);
+                    energy += buffers.energy;
+                }
+                energy
+            },
+        )
+        .collect();
+    columns.iter().sum()
+}
+
+/// Offsets (d₁, d₂) of the stencil, in storage order.
+pub fn stencil(degree: [usize; 2]) -> Vec<[isize; 2]> {
+    let [p1, p2] = degree.map(|p| p as isize);
+    let same_row = (0..=p2).map(|d2| [0, d2]);
+    same_row.chain((1..=p1).flat_map(|d1| (-p2..=p2).map(move |d2| [d1, d2]))).collect()
+}
+
+/// Blocks of a control point.
+pub fn stencil_len(degree: [usize; 2]) -> usize {
+    degree[1] + 1 + degree[0] * (2 * degree[1] + 1)
+}
+
+/// Sums over all elements; buffers are kept between calls.
+#[derive(Debug)]
+pub struct Assembled {
+    /// Strain energy of the model, N·mm.
+    pub energy: f64,
+    /// Gradient of the energy with respect to the control points' displacements, N.
+    pub residual: Vec<[f64; 3]>,
+    /// `stiffness[(i · stencil_len + slot) · 9 + 3 c + d]`, N/mm.
+    pub stiffness: Vec<f64>,
+}
+
+impl Assembled {
+    /// Buffers for a mesh.
+    pub fn new(discretization: &Discretization) -> Self {
+        let count = discretization.mesh.control_points.len();
+        let stiffness = vec![0.0; count * stencil_len(discretization.mesh.degree) * 9];
+        Self { energy: 0.0, residual: vec![[0.0; 3]; count], stiffness }
+    }
+
+    /// Assembles residual and energy, and the stiffness where `want` says so, at a displacement of the control points.
+    pub fn assemble(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], want: Want) {
+        let mesh = &discretization.mesh;
+        let tables = &discretization.tables;
+        let degree = mesh.degree;
+        let n2 = mesh.control_counts()[1];
+        let colours = degree[0] + 1;
+        let row_stiffness = n2 * stencil_len(degree) * 9;
+        let fma = has_fma_kernel();
+        self.residual.fill([0.0; 3]);
+        if want == Want::Stiffness {
+            self.stiffness.par_chunks_mut(row_stiffness).for_each(|row| row.fill(0.0));
+        }
+        let first = &tables.first[0];
+        let mut energies = vec![0.0; first.len()];
+        for colour in 0..colours.min(first.len()) {
+            let columns: Vec<usize> = (colour..first.len()).step_by(colours).collect();
+            let residuals = take_rows(&mut self.residual, n2, colours, columns.iter().map(|e| first[*e]));
+            let stiffnesses = take_rows(&mut self.stiffness, row_stiffness, colours, columns.iter().map(|e| first[*e]));
+            let sums: Vec<f64> = columns
+                .par_iter()
+                .zip(residuals)
+                .zip(stiffnesses)
+                .map_init(
+                    || ElementBuffers::new(tables.padded),
+                    |buffers, ((column, residual), stiffness)| {
+                        let mut rows = Rows { residual, stiffness };
+                        assemble_column(discretization, displacement, *column, want, fma, buffers, &mut rows)
+                    },
+                )
+                .collect();
+            for (column, sum) in columns.iter().zip(sums) {
+                energies[*column] = sum;
+            }
+        }
+        self.energy = energies.iter().sum();
+    }
+
+    /// Stiffness times a field on the control points.
+    pub fn multiply(&self, discretization: &Discretization, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let n2 = discretization.mesh.control_counts()[1];
+        let offsets = stencil(discretization.mesh.degree);
+        let mut product = vec![[0.0; 3]; field.len()];
+        for i in 0..field.len() {
+            for (slot, offset) in offsets.iter().enumerate() {
+                let Some(j) = neighbour(i, *offset, n2, field.len()) else { continue };
+                let block = &self.stiffness[(i * offsets.len() + slot) * 9..][..9];
+                for c in 0..3 {
+                    for d in 0..3 {
+                        product[i][c] += block[3 * c + d] * field[j][d];
+                        if j != i {
+                            product[j][d] += block[3 * c + d] * field[i][c];
+                        }
+                    }
+                }
+            }
+        }
+        product
+    }
+}
+
+/// Control point at an offset of the stencil from `i`, where there is one.
+pub fn neighbour(i: usize, offset: [isize; 2], n2: usize, count: usize) -> Option<usize> {
+    let column = (i % n2) as isize + offset[1];
+    let j = i as isize + offset[0] * n2 as isize + offset[1];
+    (0 <= column && column < n2 as isize && j < count as isize).then_some(j as usize)
+}
+
+/// Disjoint slices of `height` rows from each of the ascending `starts`.
+fn take_rows<'a, T>(
+    mut data: &'a mut [T],
+    row: usize,
+    height: usize,
+    starts: impl Iterator<Item = usize>,
+) -> Vec<&'a mut [T]> {
+    let mut taken = 0;
+    let mut slices = Vec::new();
+    for start in starts {
+        let (_, rest) = data.split_at_mut((start - taken) * row);
+        let (slice, rest) = rest.split_at_mut(height * row);
+        slices.push(slice);
+        data = rest;
+        taken = start + height;
+    }
+    slices
+}
+
+/// The rows of control points that a column of elements adds to.
+struct Rows<'a> {
+    residual: &'a mut [[f64; 3]],
+    stiffness: &'a mut [f64],
+}
+
+fn assemble_column(
+    discretization: &Discretization,
+    displacement: &[[f64; 3]],
+    column: usize,
+    want: Want,
+    fma: bool,
+    buffers: &mut ElementBuffers,
+    rows: &mut Rows,
+) -> f64 {
+    let tables = &discretization.tables;
+    let [p1, p2] = discretization.mesh.degree;
+    let n2 = discretization.mesh.control_counts()[1];
+    let padded = tables.padded;
+    let functions = (p1 + 1) * (p2 + 1);
+    let mut energy = 0.0;
+    for across in 0..tables.elements[1] {
+        let first = tables.first[1][across];
+        gather(&discretization.mesh, tables, displacement, [column, across], buffers);
+        integrate_element(tables, column * tables.elements[1] + across, want, fma, buffers);
+        energy += buffers.energy;
+        for a in 0..functions {
+            let row = &mut rows.residual[(a / (p2 + 1)) * n2 + first + a % (p2 + 1)];
+            for c in 0..3 {
+                row[c] += buffers.residual[c * padded + a];
+            }
+        }
+        if want == Want::Stiffness {
+            scatter_stiffness([p1, p2], n2, first, padded, &buffers.stiffness, rows.stiffness);
+        }
+    }
+    energy
+}
+
+/// Copies the displacement of an element's control points into its buffers.
+fn gather(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]], element: [usize; 2], buffers: &mut ElementBuffers) {
+    let [p1, p2] = mesh.degree;
+    let n2 = mesh.control_counts()[1];
+    let first = [tables.first[0][element[0]], tables.first[1][element[1]]];
+    for a in 0..(p1 + 1) * (p2 + 1) {
+        let point = (first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1);
+        for c in 0..3 {
+            buffers.displacement[c * tables.padded + a] = displacement[point][c];
+        }
+    }
+}
+
+/// Adds an element's blocks b ≥ a to the stencil of the column's rows.
+fn scatter_stiffness(degree: [usize; 2], n2: usize, first: usize, padded: usize, local: &[f64], rows: &mut [f64]) {
+    let [p1, p2] = degree;
+    let slots = stencil_len(degree);
+    for a1 in 0..=p1 {
+        for a2 in 0..=p2 {
+            let a = a1 * (p2 + 1) + a2;
+            let point = &mut rows[(a1 * n2 + first + a2) * slots * 9..][..slots * 9];
+            for b1 in a1..=p1 {
+                let from = if b1 == a1 { a2 } else { 0 };
+                for b2 in from..=p2 {
+                    let b = b1 * (p2 + 1) + b2;
+                    let slot = if b1 == a1 { b2 - a2 } else { p2 + 1 + (b1 - a1 - 1) * (2 * p2 + 1) + p2 + b2 - a2 };
+                    for cd in 0..9 {
+                        point[slot * 9 + cd] += local[(a * 9 + cd) * padded + b];
+                    }
+                }
+            }
+        }
+    }
+}

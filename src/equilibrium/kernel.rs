@@ -1,0 +1,206 @@
+//! Energy, residual and stiffness of one element.
+//!
+//! With F_k(a) the k-th derivative of basis function a at a quadrature point, g the gradient (5 × 3) and H the Hessian (15 × 15) of
+//! the point's energy: r(a, c) = Σ_k F_k(a) g(k, c) and K(a c, b d) = Σ_kl F_k(a) H(k c, l d) F_l(b), formed as
+//! P(l, d) = Σ_k F_k(a) H(k c, l d) and then Σ_l P(l, d) F_l(b) with the basis function index b contiguous. Only blocks
+//! b ≥ a (rounded down to a whole vector) are formed.
+
+use crate::model::Tables;
+use crate::shell::PointReference;
+
+/// Doubles in a vector of the kernel; the tables are padded to a multiple.
+const LANES: usize = 4;
+type Lane = [f64; LANES];
+
+/// Local arrays of one element. `M` vectors of [`LANES`] basis functions.
+pub struct ElementBuffers {
+    /// `displacement[c · padded + a]`.
+    pub displacement: Vec<f64>,
+    /// `residual[c · padded + a]`.
+    pub residual: Vec<f64>,
+    /// `stiffness[((a · 3 + c) · 3 + d) · padded + b]`, valid for b ≥ a.
+    pub stiffness: Vec<f64>,
+    /// Strain energy.
+    pub energy: f64,
+}
+
+impl ElementBuffers {
+    /// Buffers for `padded` basis functions.
+    pub fn new(padded: usize) -> Self {
+        Self {
+            displacement: vec![0.0; 3 * padded],
+            residual: vec![0.0; 3 * padded],
+            stiffness: vec![0.0; 9 * padded * padded],
+            energy: 0.0,
+        }
+    }
+}
+
+/// How much of an element is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Want {
+    /// Energy only.
+    Energy,
+    /// Energy and residual.
+    Residual,
+    /// Energy, residual and stiffness.
+    Stiffness,
+}
+
+/// Whether this machine runs the AVX2 + FMA build of the kernel; the other build gives results that differ in rounding.
+pub fn has_fma_kernel() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma")
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        false
+    }
+}
+
+/// Integrates an element into its buffers. `fma` must come from [`has_fma_kernel`].
+pub fn integrate_element(tables: &Tables, element: usize, want: Want, fma: bool, buffers: &mut ElementBuffers) {
+    let functions = tables.element_functions(element);
+    let points = tables.element_points(element);
+    macro_rules! dispatch {
+        ($($vectors:literal),*) => {
+            match tables.padded / LANES {
+                $($vectors => run::<$vectors>(functions, points, want, fma, buffers),)*
+                other => unreachable!("degrees 2 to 5 have 3 to 9 vectors of basis functions, not {other}"),
+            }
+        };
+    }
+    dispatch!(3, 4, 5, 6, 7, 8, 9);
+}
+
+fn run<const M: usize>(
+    functions: &[f64],
+    points: &[PointReference],
+    want: Want,
+    fma: bool,
+    buffers: &mut ElementBuffers,
+) {
+    #[cfg(target_arch = "x86_64")]
+    if fma {
+        // SAFETY: `fma` says that the processor has AVX2 and FMA.
+        unsafe { integrate_fma::<M>(functions, points, want, buffers) };
+        return;
+    }
+    let _ = fma;
+    integrate::<M, false>(functions, points, want, buffers);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn integrate_fma<const M: usize>(
+    functions: &[f64],
+    points: &[PointReference],
+    want: Want,
+    buffers: &mut ElementBuffers,
+) {
+    integrate::<M, true>(functions, points, want, buffers);
+}
+
+/// a b + c, rounded once or twice.
+#[inline(always)]
+fn multiply_add<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FMA { a.mul_add(b, c) } else { a * b + c }
+}
+
+#[inline(always)]
+fn integrate<const M: usize, const FMA: bool>(
+    functions: &[f64],
+    points: &[PointReference],
+    want: Want,
+    buffers: &mut ElementBuffers,
+) {
+    buffers.energy = 0.0;
+    buffers.residual.fill(0.0);
+    if want == Want::Stiffness {
+        buffers.stiffness.fill(0.0);
+    }
+    let mut hessian = [[0.0; 15]; 15];
+    for (point, functions) in points.iter().zip(functions.chunks_exact(5 * LANES * M)) {
+        let lanes = functions.as_chunks::<LANES>().0;
+        let u = displacement_derivatives::<M, FMA>(lanes, &buffers.displacement);
+        let gradient = match want {
+            Want::Energy => {
+                buffers.energy += point.energy(&u);
+                continue;
+            }
+            Want::Residual => {
+                let (energy, gradient) = point.gradient(&u);
+                buffers.energy += energy;
+                gradient
+            }
+            Want::Stiffness => {
+                let (energy, gradient) = point.hessian(&u, &mut hessian);
+                buffers.energy += energy;
+                contract::<M, FMA>(lanes, &hessian, &mut buffers.stiffness);
+                gradient
+            }
+        };
+        let residual = buffers.residual.as_chunks_mut::<LANES>().0;
+        for c in 0..3 {
+            for m in 0..M {
+                let sum = &mut residual[c * M + m];
+                for k in 0..5 {
+                    for i in 0..LANES {
+                        sum[i] = multiply_add::<FMA>(gradient[k][c], lanes[k * M + m][i], sum[i]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂ at a point.
+#[inline(always)]
+fn displacement_derivatives<const M: usize, const FMA: bool>(lanes: &[Lane], displacement: &[f64]) -> [[f64; 3]; 5] {
+    let displacement = displacement.as_chunks::<LANES>().0;
+    let mut u = [[0.0; 3]; 5];
+    for k in 0..5 {
+        for c in 0..3 {
+            let mut sum = [0.0; LANES];
+            for m in 0..M {
+                for i in 0..LANES {
+                    sum[i] = multiply_add::<FMA>(lanes[k * M + m][i], displacement[c * M + m][i], sum[i]);
+                }
+            }
+            u[k][c] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+        }
+    }
+    u
+}
+
+/// Adds Fᵀ H F to the stiffness.
+#[inline(always)]
+fn contract<const M: usize, const FMA: bool>(lanes: &[Lane], hessian: &[[f64; 15]; 15], stiffness: &mut [f64]) {
+    let stiffness = stiffness.as_chunks_mut::<LANES>().0;
+    for a in 0..LANES * M {
+        let (vector, slot) = (a / LANES, a % LANES);
+        for c in 0..3 {
+            let mut p = [0.0; 15];
+            for k in 0..5 {
+                let f = lanes[k * M + vector][slot];
+                let row = &hessian[3 * k + c];
+                for q in 0..15 {
+                    p[q] = multiply_add::<FMA>(f, row[q], p[q]);
+                }
+            }
+            for d in 0..3 {
+                let row = &mut stiffness[((a * 3 + c) * 3 + d) * M..][..M];
+                for m in vector..M {
+                    let mut sum = row[m];
+                    for l in 0..5 {
+                        for i in 0..LANES {
+                            sum[i] = multiply_add::<FMA>(p[3 * l + d], lanes[l * M + m][i], sum[i]);
+                        }
+                    }
+                    row[m] = sum;
+                }
+            }
+        }
+    }
+}

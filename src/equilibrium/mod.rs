@@ -1,0 +1,12 @@
+//! Equilibrium: assembly, the sparse solver, Newton's method as a descent on the energy.
+
+mod assembly;
+mod descent;
+mod kernel;
+mod newton;
+mod pattern;
+mod sparse;
+
+pub use assembly::{Assembled, Want, strain_energy};
+pub use newton::{Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
+pub use sparse::FactorError;

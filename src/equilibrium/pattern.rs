@@ -1,0 +1,155 @@
+//! From the stencil on control points to the sparse matrix on free unknowns: K_q = Tᵀ K T, lower triangle by columns.
+//!
+//! Built once per mesh. Almost every block belongs to two control points whose components are unknowns of their own, and is
+//! copied; the others (supports, symmetry, joints) go through their directions.
+
+use crate::equilibrium::assembly::{Assembled, neighbour, stencil};
+use crate::model::{Discretization, Placement};
+
+/// Where every block of the stencil goes.
+#[derive(Debug)]
+pub struct Pattern {
+    /// Column starts of the lower triangle; length unknowns + 1.
+    pub column_starts: Vec<usize>,
+    /// Row of each entry, ascending in a column; the first of a column is its diagonal.
+    pub rows: Vec<usize>,
+    copied: Vec<CopiedBlock>,
+    projected: Vec<ProjectedBlock>,
+}
+
+/// Block of two regular control points: its nine (on the diagonal six) numbers are entries of the matrix.
+#[derive(Debug)]
+struct CopiedBlock {
+    /// Offset of the block in the stencil.
+    block: usize,
+    /// Entry of K(c, d) at `3 c + d`; `NOT_STORED` above the diagonal.
+    targets: [u32; 9],
+}
+
+const NOT_STORED: u32 = u32::MAX;
+
+/// Block of which a control point is constrained.
+#[derive(Debug)]
+struct ProjectedBlock {
+    block: usize,
+    points: [usize; 2],
+    /// Entry of the matrix for each pair of entries, row-major, `NOT_STORED` where the mirror image stands for it.
+    targets: Vec<u32>,
+}
+
+impl Pattern {
+    /// Structure of the matrix of a discretization.
+    pub fn new(discretization: &Discretization) -> Self {
+        let pairs = point_pairs(discretization);
+        let unknowns = &discretization.unknowns;
+        let mut columns: Vec<Vec<usize>> = (0..unknowns.count()).map(|unknown| vec![unknown]).collect();
+        for (_, [i, j]) in &pairs {
+            for a in unknowns.entries_of(*i) {
+                for b in unknowns.entries_of(*j) {
+                    columns[a.unknown.min(b.unknown)].push(a.unknown.max(b.unknown));
+                }
+            }
+        }
+        let mut column_starts = vec![0];
+        let mut rows = Vec::new();
+        for column in &mut columns {
+            column.sort_unstable();
+            column.dedup();
+            rows.extend_from_slice(column);
+            column_starts.push(rows.len());
+        }
+        let mut pattern = Self { column_starts, rows, copied: Vec::new(), projected: Vec::new() };
+        for (block, points) in pairs {
+            pattern.place(discretization, block, points);
+        }
+        pattern
+    }
+
+    /// Number of stored entries.
+    pub fn entry_count(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn target(&self, a: usize, b: usize) -> u32 {
+        let (column, row) = (a.min(b), a.max(b));
+        let start = self.column_starts[column];
+        let found = self.rows[start..self.column_starts[column + 1]].binary_search(&row);
+        // Every pair was put into the structure above.
+        found.map_or(NOT_STORED, |offset| (start + offset) as u32)
+    }
+
+    fn place(&mut self, discretization: &Discretization, block: usize, points: [usize; 2]) {
+        let unknowns = &discretization.unknowns;
+        let [i, j] = points;
+        let stored = |a: usize, b: usize| i != j || a >= b;
+        if unknowns.is_regular(i) && unknowns.is_regular(j) {
+            let (a, b) = (unknowns.entries_of(i)[0].unknown, unknowns.entries_of(j)[0].unknown);
+            let targets = std::array::from_fn(|k| {
+                if stored(k / 3, k % 3) { self.target(a + k / 3, b + k % 3) } else { NOT_STORED }
+            });
+            self.copied.push(CopiedBlock { block, targets });
+            return;
+        }
+        let targets = unknowns
+            .entries_of(i)
+            .iter()
+            .enumerate()
+            .flat_map(|(x, a)| unknowns.entries_of(j).iter().enumerate().map(move |(y, b)| (x, a, y, b)))
+            .map(|(x, a, y, b)| if stored(x, y) { self.target(a.unknown, b.unknown) } else { NOT_STORED })
+            .collect();
+        self.projected.push(ProjectedBlock { block, points, targets });
+    }
+
+    /// Fills the values of the matrix.
+    pub fn fill(&self, discretization: &Discretization, placement: &Placement, assembled: &Assembled, values: &mut [f64]) {
+        values.fill(0.0);
+        for copied in &self.copied {
+            let block = &assembled.stiffness[copied.block..][..9];
+            for (target, value) in copied.targets.iter().zip(block) {
+                if *target != NOT_STORED {
+                    values[*target as usize] += value;
+                }
+            }
+        }
+        let unknowns = &discretization.unknowns;
+        for projected in &self.projected {
+            let block = &assembled.stiffness[projected.block..][..9];
+            let [i, j] = projected.points;
+            let mut targets = projected.targets.iter();
+            for (a, left) in unknowns.entries_of(i).iter().zip(placement.directions_of(i)) {
+                for (b, right) in unknowns.entries_of(j).iter().zip(placement.directions_of(j)) {
+                    let Some(&target) = targets.next() else { continue };
+                    if target == NOT_STORED {
+                        continue;
+                    }
+                    let mut value = 0.0;
+                    for c in 0..3 {
+                        for d in 0..3 {
+                            value += left[c] * block[3 * c + d] * right[d];
+                        }
+                    }
+                    // An unknown that two points share meets itself in their block and in its mirror image.
+                    let twice = i != j && a.unknown == b.unknown;
+                    values[target as usize] += if twice { 2.0 * value } else { value };
+                }
+            }
+        }
+    }
+}
+
+/// All pairs of control points i ≤ j of the stencil, with the offset of their block.
+fn point_pairs(discretization: &Discretization) -> Vec<(usize, [usize; 2])> {
+    let mesh = &discretization.mesh;
+    let count = mesh.control_points.len();
+    let n2 = mesh.control_counts()[1];
+    let offsets = stencil(mesh.degree);
+    let mut pairs = Vec::new();
+    for i in 0..count {
+        for (slot, offset) in offsets.iter().enumerate() {
+            if let Some(j) = neighbour(i, *offset, n2, count) {
+                pairs.push(((i * offsets.len() + slot) * 9, [i, j]));
+            }
+        }
+    }
+    pairs
+}

@@ -1,0 +1,193 @@
+//! Sparse symmetric factorization: the only file that names faer.
+//!
+//! Supernodal L D Lᵀ without pivoting, in the natural order along the length (the mesh is long and narrow, so the matrix
+//! is nearly banded). The signs of D give the inertia (Sylvester). faer's `SymmetricOrdering::Identity` panics on a lower triangle, hence
+//! an explicit identity permutation. Factor and solve with `Par::Seq`: other settings may differ in bits between thread counts.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor::LdltError;
+use faer::perm::Perm;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side};
+
+/// Why a matrix has no usable factor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FactorError {
+    /// A pivot is exactly zero or not a number.
+    #[error("pivot {index} of {size} is zero or not a number")]
+    BadPivot {
+        /// Place in the order of elimination.
+        index: usize,
+        /// Size of the matrix.
+        size: usize,
+    },
+    /// The structure could not be analysed (out of memory, or more than 2⁶³ entries).
+    #[error("a matrix of {size} unknowns and {entries} entries is too large for this machine")]
+    TooLarge {
+        /// Size of the matrix.
+        size: usize,
+        /// Stored entries.
+        entries: usize,
+    },
+}
+
+/// Symbolic factor of one structure with room for the numeric one.
+pub struct SparseSolver {
+    symbolic: SymbolicCholesky<usize>,
+    column_starts: Vec<usize>,
+    rows: Vec<usize>,
+    factor: Vec<f64>,
+    scratch: MemBuffer,
+}
+
+impl std::fmt::Debug for SparseSolver {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "SparseSolver({} unknowns, {} numbers in the factor)", self.column_starts.len() - 1, self.factor.len())
+    }
+}
+
+impl SparseSolver {
+    /// Analyses the lower triangle given by columns.
+    ///
+    /// # Errors
+    /// Where the factor does not fit in memory.
+    pub fn new(column_starts: Vec<usize>, rows: Vec<usize>) -> Result<Self, FactorError> {
+        let size = column_starts.len() - 1;
+        let too_large = FactorError::TooLarge { size, entries: rows.len() };
+        let structure = SymbolicSparseColMatRef::new_checked(size, size, &column_starts, None, &rows);
+        let identity: Vec<usize> = (0..size).collect();
+        let natural = Perm::new_checked(identity.clone().into(), identity.into(), size);
+        let parameters = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let ordering = SymmetricOrdering::Custom(natural.as_ref());
+        let symbolic =
+            factorize_symbolic_cholesky(structure, Side::Lower, ordering, parameters).map_err(|_| too_large)?;
+        let scratch = symbolic
+            .factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default())
+            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let scratch = MemBuffer::try_new(scratch).map_err(|_| too_large)?;
+        let factor = vec![0.0; symbolic.len_val()];
+        Ok(Self { symbolic, column_starts, rows, factor, scratch })
+    }
+
+    /// Numeric L D Lᵀ; returns the number of negative pivots.
+    ///
+    /// # Errors
+    /// Where a pivot is zero or not a number; the factor is then of no use.
+    pub fn factorize(&mut self, values: &[f64]) -> Result<usize, FactorError> {
+        let size = self.column_starts.len() - 1;
+        let structure = SymbolicSparseColMatRef::new_checked(size, size, &self.column_starts, None, &self.rows);
+        let matrix = SparseColMatRef::new(structure, values);
+        self.symbolic
+            .factorize_numeric_ldlt(
+                &mut self.factor,
+                matrix,
+                Side::Lower,
+                Default::default(),
+                Par::Seq,
+                MemStack::new(&mut self.scratch),
+                Default::default(),
+            )
+            .map_err(|LdltError::ZeroPivot { index }| FactorError::BadPivot { index, size })?;
+        let mut negative = 0;
+        let mut bad = None;
+        self.for_each_pivot(|index, pivot| {
+            if !pivot.is_finite() || *pivot == 0.0 {
+                bad.get_or_insert(index);
+            } else if *pivot < 0.0 {
+                negative += 1;
+            }
+        });
+        match bad {
+            Some(index) => Err(FactorError::BadPivot { index, size }),
+            None => Ok(negative),
+        }
+    }
+
+    /// Replaces every pivot by its magnitude: the factor becomes that of a positive definite matrix, which differs from
+    /// the original by a matrix of the rank of its negative part.
+    pub fn make_positive(&mut self) {
+        self.for_each_pivot(|_, pivot| *pivot = pivot.abs());
+    }
+
+    /// Solves in place with the last factor.
+    pub fn solve(&mut self, right_hand_side: &mut [f64]) {
+        let size = right_hand_side.len();
+        LdltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(right_hand_side, size, 1),
+            Par::Seq,
+            MemStack::new(&mut self.scratch),
+        );
+    }
+
+    fn for_each_pivot(&mut self, mut visit: impl FnMut(usize, &mut f64)) {
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else { return };
+        for s in 0..symbolic.n_supernodes() {
+            let (begin, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
+            let start = symbolic.col_ptr_for_val()[s];
+            let height = (symbolic.col_ptr_for_val()[s + 1] - start) / (end - begin);
+            for column in 0..end - begin {
+                visit(begin + column, &mut self.factor[start + column * height + column]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tridiagonal matrix with a given diagonal and −1 beside it.
+    fn tridiagonal(diagonal: &[f64]) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
+        let size = diagonal.len();
+        let mut starts = vec![0];
+        let (mut rows, mut values) = (Vec::new(), Vec::new());
+        for column in 0..size {
+            rows.push(column);
+            values.push(diagonal[column]);
+            if column + 1 < size {
+                rows.push(column + 1);
+                values.push(-1.0);
+            }
+            starts.push(rows.len());
+        }
+        (starts, rows, values)
+    }
+
+    #[test]
+    fn counts_negative_eigenvalues_and_solves() {
+        // Eigenvalues of the tridiagonal matrix: d − 2 cos(k π / (n + 1)).
+        let size = 40;
+        for shift in [2.5, 1.0, 0.3, -0.7] {
+            let (starts, rows, values) = tridiagonal(&vec![shift; size]);
+            let negative = (1..=size)
+                .filter(|k| shift - 2.0 * (*k as f64 * std::f64::consts::PI / (size + 1) as f64).cos() < 0.0)
+                .count();
+            let mut solver = SparseSolver::new(starts, rows).unwrap();
+            assert_eq!(solver.factorize(&values), Ok(negative), "shift {shift}");
+            let mut x = vec![1.0; size];
+            solver.solve(&mut x);
+            for i in 0..size {
+                let left = if i > 0 { x[i - 1] } else { 0.0 };
+                let right = if i + 1 < size { x[i + 1] } else { 0.0 };
+                assert!((shift * x[i] - left - right - 1.0).abs() < 1e-9, "row {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_zero_matrix_is_refused() {
+        let (starts, rows, _) = tridiagonal(&[1.0; 5]);
+        let entries = rows.len();
+        let mut solver = SparseSolver::new(starts, rows).unwrap();
+        assert!(solver.factorize(&vec![0.0; entries]).is_err());
+    }
+}

@@ -1,0 +1,43 @@
+//! A scene made discrete: the patch that it starts from, and for a mesh its tables, supports and free unknowns.
+
+mod ends;
+mod patch;
+mod tables;
+mod unknowns;
+
+pub use ends::RigidEnd;
+pub use patch::{ModelError, starting_mesh};
+pub use tables::Tables;
+pub use unknowns::{Entry, Placement, Unknowns};
+
+use std::sync::Arc;
+
+use crate::scene::{Scene, Symmetry};
+use crate::spline::Mesh;
+
+/// Parts of the whole shell that one model stands for: energies of the model times this are those of the shell.
+pub fn copies(symmetry: Symmetry) -> f64 {
+    match symmetry {
+        Symmetry::None => 1.0,
+        Symmetry::HalfLength | Symmetry::HalfArc => 2.0,
+        Symmetry::Quarter => 4.0,
+    }
+}
+
+/// A scene on a mesh: everything that assembly and constraints need and that a state does not carry.
+#[derive(Debug)]
+pub struct Discretization {
+    /// The mesh that it was built for.
+    pub mesh: Arc<Mesh>,
+    /// Shape functions and undeformed shell at the quadrature points.
+    pub tables: Tables,
+    /// Free unknowns and how control points follow from them.
+    pub unknowns: Unknowns,
+}
+
+impl Discretization {
+    /// Builds tables and unknowns; a pure function of scene and mesh.
+    pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Self {
+        Self { mesh: mesh.clone(), tables: Tables::new(scene, mesh), unknowns: Unknowns::new(scene, mesh) }
+    }
+}

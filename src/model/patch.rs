@@ -1,0 +1,92 @@
+//! The mesh that a scene starts from: an exact NURBS surface with the scene's elements.
+
+use crate::scene::{Geometry, Scene, Symmetry};
+use crate::spline::{HomogeneousCurve, Mesh, circular_arc, insert_knots_into_net, segment_count, straight_line};
+
+/// A scene that cannot be made discrete.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// Two rows of control points at each end are taken by its support.
+    #[error(
+        "{elements} element(s) of degree {degree} along the length have {rows} rows of control points, but the supports \
+         at both ends take 2 each: write at least {least} elements along the length of the model (mesh.elements)"
+    )]
+    TooFewRows {
+        /// Elements along the length of the model.
+        elements: usize,
+        /// Degree along the length.
+        degree: usize,
+        /// Rows of control points.
+        rows: usize,
+        /// Elements along the length that suffice.
+        least: usize,
+    },
+}
+
+/// Builds the starting mesh. The whole shell spans x in [0, L] and the arc angle φ in [−α/2, α/2] from the apex; a
+/// half-length model spans x in [0, L/2], a half-arc model φ in [0, α/2]. Where the arc needs several segments, the
+/// elements along it are rounded up to a multiple of them.
+///
+/// # Errors
+/// Where the ends leave no free control points between them.
+pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
+    let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry;
+    let [degree, arc_degree] = scene.mesh.degree;
+    let [half_length, half_arc] = halves(scene.symmetry);
+    let length = if half_length { length_mm / 2.0 } else { length_mm };
+    let half = arc_deg.to_radians() / 2.0;
+    let from = if half_arc { 0.0 } else { -half };
+    let along = straight_line(length, degree);
+    let across = circular_arc(radius_mm, from, half, arc_degree);
+
+    let divide = |whole: usize, halved: bool| if halved { whole.div_ceil(2) } else { whole };
+    let elements = [divide(scene.mesh.elements[0], half_length), divide(scene.mesh.elements[1], half_arc)];
+    let rows = elements[0] + degree;
+    if rows < 4 {
+        return Err(ModelError::TooFewRows { elements: elements[0], degree, rows, least: 4 - degree });
+    }
+    let mesh = tensor_product(&along, &across);
+    Ok(subdivide(mesh, [1, segment_count(half - from)], elements))
+}
+
+/// Whether the model is cut at mid-length, and along the apex.
+pub fn halves(symmetry: Symmetry) -> [bool; 2] {
+    match symmetry {
+        Symmetry::None => [false, false],
+        Symmetry::HalfLength => [true, false],
+        Symmetry::HalfArc => [false, true],
+        Symmetry::Quarter => [true, true],
+    }
+}
+
+/// Cylinder over `across` (in the y–z plane) along `along` (x).
+fn tensor_product(along: &HomogeneousCurve, across: &HomogeneousCurve) -> Mesh {
+    let control_points = along
+        .points
+        .iter()
+        .flat_map(|[x, _, _]| across.points.iter().map(move |[y, z, w]| [x * w, *y, *z, *w]))
+        .collect();
+    Mesh { degree: [along.degree, across.degree], knots: [along.knots.clone(), across.knots.clone()], control_points }
+}
+
+/// Inserts uniform knots so that there are at least `elements` each way, the same number in each segment.
+fn subdivide(mut mesh: Mesh, segments: [usize; 2], elements: [usize; 2]) -> Mesh {
+    for direction in 0..2 {
+        let pieces = elements[direction].div_ceil(segments[direction]);
+        let total = pieces * segments[direction];
+        let new: Vec<f64> =
+            (1..total).filter(|k| k % pieces != 0).map(|k| k as f64 / total as f64).collect();
+        let counts = mesh.control_counts();
+        let (knots, net) = insert_knots_into_net(
+            &mesh.knots[direction],
+            mesh.degree[direction],
+            &mesh.control_points,
+            counts,
+            direction,
+            &new,
+        );
+        mesh.knots[direction] = knots;
+        mesh.control_points = net;
+    }
+    mesh
+}

@@ -1,0 +1,100 @@
+//! The loop: stage after stage until the target, with every finished stage handed to a sink.
+
+use std::time::Instant;
+
+use crate::digest::Hash;
+use crate::pipeline::step_control::next_stage;
+use crate::pipeline::{Commit, Record, Sink, SinkError, StageError, Stages};
+use crate::scene::Stage;
+use crate::state::State;
+
+/// Why a run stopped before its target. All stages that the sink took stand.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A stage failed.
+    #[error(transparent)]
+    Stage(#[from] StageError),
+    /// A stage was run but could not be kept.
+    #[error(transparent)]
+    Sink(#[from] SinkError),
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The scene's target rotation is reached.
+    Finished,
+    /// The rotation that the caller asked for is reached.
+    Until,
+    /// The caller asked to stop; the stage in hand was finished.
+    Interrupted,
+}
+
+/// A run between two stages.
+#[derive(Debug)]
+pub struct Run {
+    stages: Stages,
+    state: State,
+    state_hash: Hash,
+    scene_hash: Hash,
+    last: Option<Commit>,
+}
+
+impl Run {
+    /// A run that goes on from `state`, which the stage of `last` made (`None`: the scene's start).
+    pub fn new(stages: Stages, state: State, last: Option<Commit>) -> Self {
+        let scene_hash = stages.scene().hash();
+        Self { state_hash: state.hash(), scene_hash, stages, state, last }
+    }
+
+    /// The state in hand.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The stage that comes next; `None` at the target.
+    pub fn next_stage(&self) -> Option<Stage> {
+        next_stage(self.stages.scene(), &self.state)
+    }
+
+    /// Runs the next stage and hands it to the sink; `None` at the target.
+    ///
+    /// # Errors
+    /// Where the stage fails or the sink cannot keep it; the run is then where it was before.
+    pub fn advance(&mut self, sink: &mut dyn Sink) -> Result<Option<Record>, RunError> {
+        let Some(stage) = self.next_stage() else { return Ok(None) };
+        let begin = Instant::now();
+        let (state, report) = self.stages.run(stage, &self.state, &mut |_| {})?;
+        let wall_s = begin.elapsed().as_secs_f64();
+        let state_hash = state.hash();
+        let commit =
+            Commit::next(self.last.as_ref(), stage, report.step, self.scene_hash, self.state_hash, state_hash);
+        let record = Record { report, commit, wall_s };
+        sink.take(&state, &record)?;
+        (self.state, self.state_hash, self.last) = (state, state_hash, Some(commit));
+        Ok(Some(record))
+    }
+
+    /// Runs to the scene's target, to `until_deg` (the first completed step at or beyond it), or until `interrupted`.
+    ///
+    /// # Errors
+    /// As for [`Self::advance`].
+    pub fn to_end(
+        &mut self,
+        until_deg: Option<f64>,
+        interrupted: &dyn Fn() -> bool,
+        sink: &mut dyn Sink,
+    ) -> Result<Ending, RunError> {
+        loop {
+            let next = self.next_stage();
+            let Some(stage) = next else { return Ok(Ending::Finished) };
+            if stage == Stage::Solve && until_deg.is_some_and(|until| self.state.rotation_deg >= until) {
+                return Ok(Ending::Until);
+            }
+            if interrupted() {
+                return Ok(Ending::Interrupted);
+            }
+            self.advance(sink)?;
+        }
+    }
+}

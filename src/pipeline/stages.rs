@@ -1,0 +1,355 @@
+//! The five stages, each a pure function of scene and state: no clock, no files, no memory that decides a result.
+
+use std::sync::Arc;
+
+use crate::adapt::{evaluate_indicators, project_displacements, refine_mesh};
+use crate::equilibrium::{Effort, Equilibrium, FactorError, Iterate, SolveError, Solved, Workspace, strain_energy};
+use crate::model::{ModelError, Tables, Unknowns, copies, starting_mesh};
+use crate::pipeline::step_control::{Attempt, is_jump, next_attempt};
+use crate::pipeline::{Outcome, Report};
+use crate::scene::{Scene, Stage};
+use crate::spline::Mesh;
+use crate::state::{Rejection, State, StepControl};
+
+/// Why a stage could not be run to its end. The state before it stands.
+#[derive(Debug, thiserror::Error)]
+pub enum StageError {
+    /// The increment was cut down to the least one and still no equilibrium was found.
+    #[error(
+        "step {step}, solve: no equilibrium at {attempted_deg}° from {rotation_deg}°, and an increment below \
+         solver.least_increment_deg = {least_deg}° would be needed; the last attempt: {cause}"
+    )]
+    NoEquilibrium {
+        /// Load step.
+        step: u64,
+        /// Rotation of the last good state, degrees.
+        rotation_deg: f64,
+        /// Rotation of the last attempt, degrees.
+        attempted_deg: f64,
+        /// The scene's least increment, degrees.
+        least_deg: f64,
+        /// Why the last attempt failed.
+        cause: SolveError,
+    },
+    /// The refined mesh has no equilibrium at the load.
+    #[error("step {step}, re-equilibrate at {rotation_deg}° on {elements:?} elements: {cause}")]
+    NotReEquilibrated {
+        /// Load step.
+        step: u64,
+        /// Rotation, degrees.
+        rotation_deg: f64,
+        /// Elements each way.
+        elements: [usize; 2],
+        /// Why the solve failed.
+        cause: SolveError,
+    },
+    /// The equations do not fit in memory.
+    #[error("step {step}, {stage} on {elements:?} elements: {cause}")]
+    TooLarge {
+        /// Load step.
+        step: u64,
+        /// The stage.
+        stage: Stage,
+        /// Elements each way.
+        elements: [usize; 2],
+        /// What the solver said.
+        cause: FactorError,
+    },
+    /// The stage needs what the stage before it makes.
+    #[error("step {step}: {stage} cannot follow {after}: {missing}")]
+    OutOfOrder {
+        /// Load step.
+        step: u64,
+        /// The stage.
+        stage: Stage,
+        /// The stage that made the state.
+        after: &'static str,
+        /// What is missing, in words.
+        missing: &'static str,
+    },
+}
+
+/// Runs the stages of one scene; keeps buffers of the mesh in hand, which a new one would fill with the same bits.
+#[derive(Debug)]
+pub struct Stages {
+    scene: Scene,
+    work: Option<Workspace>,
+}
+
+impl Stages {
+    /// Stages of a scene.
+    pub fn new(scene: Scene) -> Self {
+        Self { scene, work: None }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The state that the scene starts from: undeformed, before the first step.
+    ///
+    /// # Errors
+    /// Where the scene cannot be made discrete.
+    pub fn start(&self) -> Result<State, ModelError> {
+        let mesh = starting_mesh(&self.scene)?;
+        Ok(State {
+            displacement: vec![[0.0; 3]; mesh.control_points.len()],
+            mesh: Arc::new(mesh),
+            marked: Default::default(),
+            refined: None,
+            step: 0,
+            stage: None,
+            rotation_deg: 0.0,
+            moment_n_mm: 0.0,
+            strain_energy_n_mm: 0.0,
+            negative_pivots: 0,
+            control: StepControl::default(),
+        })
+    }
+
+    /// Runs a stage. `observer` sees every Newton iterate.
+    ///
+    /// # Errors
+    /// Where the stage cannot be run to its end; see [`StageError`].
+    pub fn run(
+        &mut self,
+        stage: Stage,
+        state: &State,
+        observer: &mut dyn FnMut(&Iterate),
+    ) -> Result<(State, Report), StageError> {
+        let result = match stage {
+            Stage::Solve => self.solve(state, observer),
+            Stage::EvaluateIndicators => self.evaluate(state),
+            Stage::RefineKnots => self.refine(state),
+            Stage::ProjectDisplacements => self.project(state),
+            Stage::ReEquilibrate => self.re_equilibrate(state, observer),
+        };
+        result.map(|(mut state, mut report)| {
+            state.stage = Some(stage);
+            report.stage = stage;
+            (state, report)
+        })
+    }
+
+    fn workspace(&mut self, mesh: &Arc<Mesh>, step: u64, stage: Stage) -> Result<(&Scene, &mut Workspace), StageError> {
+        let kept = self.work.take().filter(|work| {
+            let known = &work.discretization().mesh;
+            Arc::ptr_eq(known, mesh) || known == mesh
+        });
+        let work = match kept {
+            Some(work) => work,
+            None => Workspace::new(&self.scene, mesh).map_err(|cause| StageError::TooLarge {
+                step,
+                stage,
+                elements: mesh.element_counts(),
+                cause,
+            })?,
+        };
+        Ok((&self.scene, self.work.insert(work)))
+    }
+
+    /// Moves the load on by one increment. Where that fails or jumps too coarsely, the state stays and only its step control changes.
+    fn solve(&mut self, state: &State, observer: &mut dyn FnMut(&Iterate)) -> Result<(State, Report), StageError> {
+        let step = state.step + 1;
+        let attempt = next_attempt(&self.scene, state);
+        let (scene, work) = self.workspace(&state.mesh, step, Stage::Solve)?;
+        let mut watch = |iterate: &Iterate| {
+            observer(iterate);
+            !attempt.may_jump && iterate.negative_pivots > 0
+        };
+        let solved = Equilibrium::new(scene, work).advance(
+            &state.displacement,
+            state.rotation_deg,
+            attempt.target_deg,
+            &mut watch,
+        );
+        let mut report = self.report(state, step);
+        report.attempted_rotation_deg = attempt.target_deg;
+        match solved {
+            Ok(solved) => {
+                let released = attempt.energy_released(state, &solved);
+                let jumped = is_jump(released, state.strain_energy_n_mm, solved.energy);
+                if jumped && !attempt.may_jump {
+                    report.record_effort(solved.effort);
+                    return Ok(reject(state, report, attempt, Rejection::Jump));
+                }
+                let mut next = settle(state, &solved);
+                next.step = step;
+                next.rotation_deg = attempt.target_deg;
+                next.control = attempt.control_after_success(&state.control);
+                report.record(&next, &solved);
+                report.jumped = jumped;
+                report.energy_released_n_mm = if jumped { released } else { 0.0 };
+                Ok((next, report))
+            }
+            Err(cause) => {
+                report.record_effort(cause.effort());
+                report.residual = cause.last().map_or(f64::NAN, |last| last.residual / last.reactions);
+                if matches!(cause, SolveError::Stopped { .. }) {
+                    return Ok(reject(state, report, attempt, Rejection::Jump));
+                }
+                if attempt.increment_deg(state) / 2.0 < self.scene.solver.least_increment_deg {
+                    return Err(StageError::NoEquilibrium {
+                        step,
+                        rotation_deg: state.rotation_deg,
+                        attempted_deg: attempt.target_deg,
+                        least_deg: self.scene.solver.least_increment_deg,
+                        cause,
+                    });
+                }
+                Ok(reject(state, report, attempt, Rejection::NoEquilibrium))
+            }
+        }
+    }
+
+    fn evaluate(&mut self, state: &State) -> Result<(State, Report), StageError> {
+        let mut report = self.report(state, state.step);
+        let Some(adapt) = self.scene.adapt.clone() else {
+            return Err(out_of_order(state, Stage::EvaluateIndicators, "the scene has no [adapt]"));
+        };
+        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators)?;
+        let indicators = evaluate_indicators(scene, &adapt, work.discretization(), &state.displacement);
+        report.marked = [indicators.marked[0].len(), indicators.marked[1].len()];
+        report.largest_indicator = indicators.largest;
+        Ok((State { marked: indicators.marked, ..state.clone() }, report))
+    }
+
+    fn refine(&mut self, state: &State) -> Result<(State, Report), StageError> {
+        if state.marked.iter().all(Vec::is_empty) {
+            return Err(out_of_order(state, Stage::RefineKnots, "no knot span is marked"));
+        }
+        let finer = refine_mesh(&state.mesh, &state.marked);
+        // Integrated where the finer mesh is: what the energy changes here is the error of the coarser quadrature, and
+        // projecting then changes nothing.
+        let tables = Tables::on_elements_of(&self.scene, &state.mesh, &finer);
+        let energy = copies(self.scene.symmetry) * strain_energy(&state.mesh, &tables, &state.displacement);
+        let mut report = self.report(state, state.step);
+        report.marked = [state.marked[0].len(), state.marked[1].len()];
+        report.elements = finer.element_counts();
+        report.strain_energy_n_mm = energy;
+        let next = State {
+            refined: Some(Arc::new(finer)),
+            marked: Default::default(),
+            strain_energy_n_mm: energy,
+            ..state.clone()
+        };
+        Ok((next, report))
+    }
+
+    fn project(&mut self, state: &State) -> Result<(State, Report), StageError> {
+        let Some(finer) = &state.refined else {
+            return Err(out_of_order(state, Stage::ProjectDisplacements, "there is no refined mesh"));
+        };
+        let displacement = project_displacements(&state.mesh, finer, &state.displacement);
+        let parts = copies(self.scene.symmetry);
+        let (_, work) = self.workspace(finer, state.step, Stage::ProjectDisplacements)?;
+        let strain_energy_n_mm = parts * work.energy(&displacement);
+        let next = State { mesh: finer.clone(), refined: None, displacement, strain_energy_n_mm, ..state.clone() };
+        let report = self.report(&next, next.step);
+        Ok((next, report))
+    }
+
+    fn re_equilibrate(
+        &mut self,
+        state: &State,
+        observer: &mut dyn FnMut(&Iterate),
+    ) -> Result<(State, Report), StageError> {
+        let step = state.step;
+        let mut unstable_on_the_way = false;
+        let mut watch = |iterate: &Iterate| {
+            observer(iterate);
+            unstable_on_the_way |= iterate.negative_pivots > 0;
+            false
+        };
+        let (scene, work) = self.workspace(&state.mesh, step, Stage::ReEquilibrate)?;
+        let solved = Equilibrium::new(scene, work)
+            .relax(&state.displacement, state.rotation_deg, &mut watch)
+            .map_err(|cause| StageError::NotReEquilibrated {
+                step,
+                rotation_deg: state.rotation_deg,
+                elements: state.mesh.element_counts(),
+                cause,
+            })?;
+        let released = state.strain_energy_n_mm - solved.energy;
+        let mut next = settle(state, &solved);
+        let mut report = self.report(&next, step);
+        report.record(&next, &solved);
+        // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
+        report.jumped = unstable_on_the_way && is_jump(released, state.strain_energy_n_mm, solved.energy);
+        if report.jumped {
+            report.energy_released_n_mm = released;
+            next.control.jump_seen_at_deg = None;
+        }
+        Ok((next, report))
+    }
+
+    /// A report of the state as it stands; the stage fills in what it did. `stage` is set by [`Self::run`].
+    fn report(&mut self, state: &State, step: u64) -> Report {
+        let unknowns = match &self.work {
+            Some(work) if work.discretization().mesh == state.mesh => work.discretization().unknowns.count(),
+            _ => Unknowns::new(&self.scene, &state.mesh).count(),
+        };
+        Report {
+            step,
+            stage: Stage::Solve,
+            outcome: Outcome::Done,
+            rotation_deg: state.rotation_deg,
+            attempted_rotation_deg: state.rotation_deg,
+            moment_n_mm: state.moment_n_mm,
+            strain_energy_n_mm: state.strain_energy_n_mm,
+            elements: state.mesh.element_counts(),
+            unknowns,
+            iterations: 0,
+            factorizations: 0,
+            negative_pivots: state.negative_pivots,
+            residual: 0.0,
+            energy_released_n_mm: 0.0,
+            jumped: false,
+            marked: [0, 0],
+            largest_indicator: [0.0; 2],
+        }
+    }
+}
+
+impl Report {
+    fn record_effort(&mut self, effort: Effort) {
+        self.iterations = effort.iterations;
+        self.factorizations = effort.factorizations;
+    }
+
+    fn record(&mut self, state: &State, solved: &Solved) {
+        self.record_effort(solved.effort);
+        self.rotation_deg = state.rotation_deg;
+        self.moment_n_mm = state.moment_n_mm;
+        self.strain_energy_n_mm = state.strain_energy_n_mm;
+        self.negative_pivots = state.negative_pivots;
+        self.residual = solved.residual;
+    }
+}
+
+/// The state at a new equilibrium.
+fn settle(state: &State, solved: &Solved) -> State {
+    State {
+        displacement: solved.displacement.clone(),
+        marked: Default::default(),
+        moment_n_mm: solved.moment,
+        strain_energy_n_mm: solved.energy,
+        negative_pivots: solved.negative_pivots as u64,
+        ..state.clone()
+    }
+}
+
+/// The state where it was, with a smaller increment to try.
+fn reject(state: &State, mut report: Report, attempt: Attempt, rejection: Rejection) -> (State, Report) {
+    report.outcome = match rejection {
+        Rejection::Jump => Outcome::RejectedJump,
+        Rejection::NoEquilibrium => Outcome::RejectedNoEquilibrium,
+    };
+    let control = attempt.control_after_rejection(&state.control, rejection);
+    (State { control, marked: Default::default(), ..state.clone() }, report)
+}
+
+fn out_of_order(state: &State, stage: Stage, missing: &'static str) -> StageError {
+    StageError::OutOfOrder { step: state.step, stage, after: state.stage.map_or("the start", Stage::name), missing }
+}

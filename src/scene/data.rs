@@ -1,0 +1,222 @@
+//! What a scene holds: plain data, every default filled in.
+
+use serde::{Deserialize, Serialize};
+
+/// Everything a run is a function of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// Undeformed mid-surface.
+    pub geometry: Geometry,
+    /// Constitutive law and thickness.
+    pub material: Material,
+    /// Spline space and quadrature that the run starts with.
+    pub mesh: MeshSpec,
+    /// Which part of the shell is modelled.
+    pub symmetry: Symmetry,
+    /// What moves the shell.
+    pub load: EndRotation,
+    /// When and how far the mesh is refined; `None` where no stage of the pipeline refines.
+    pub adapt: Option<Adapt>,
+    /// Tolerances and limits of the equilibrium solver.
+    pub solver: Solver,
+    /// The stages of one load step, in order.
+    pub pipeline: Vec<Stage>,
+    /// What is written beside the states; never changes a state.
+    pub output: Output,
+}
+
+/// Undeformed mid-surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Geometry {
+    /// Open circular cylinder: axis along x, apex of the arc up (+z), edges down.
+    TapeSpring {
+        /// Length along the axis.
+        length_mm: f64,
+        /// Radius of the mid-surface of the cross-section.
+        radius_mm: f64,
+        /// Angle subtended by the whole cross-section.
+        arc_deg: f64,
+    },
+}
+
+/// Constitutive law and thickness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Material {
+    /// St. Venant–Kirchhoff, isotropic.
+    Isotropic {
+        /// Young's modulus E.
+        youngs_modulus_mpa: f64,
+        /// Poisson's ratio ν, in (−1, ½).
+        poissons_ratio: f64,
+        /// Shell thickness t.
+        thickness_mm: f64,
+    },
+}
+
+/// Spline space and quadrature that the run starts with. Pairs are (along the length, along the arc).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeshSpec {
+    /// Polynomial degree each way, 2 to 5.
+    pub degree: [usize; 2],
+    /// Elements each way **over the whole shell**, whatever the symmetry: a quarter model of an 8 × 4
+    /// mesh has 4 × 2 elements.
+    pub elements: [usize; 2],
+    /// Integration rule.
+    pub quadrature: Quadrature,
+}
+
+/// Integration rule on an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quadrature {
+    /// Gauss–Legendre with degree + 1 points each way.
+    Full,
+    /// Gauss–Legendre with degree points each way.
+    Reduced,
+}
+
+/// Which part of the shell is modelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Symmetry {
+    /// The whole shell.
+    None,
+    /// One half, cut at mid-length.
+    HalfLength,
+    /// One half, cut along the apex line.
+    HalfArc,
+    /// One quarter, cut both ways.
+    Quarter,
+}
+
+impl Symmetry {
+    /// Whether the model is cut (across the length, along the arc).
+    pub fn cuts(self) -> [bool; 2] {
+        match self {
+            Symmetry::None => [false, false],
+            Symmetry::HalfLength => [true, false],
+            Symmetry::HalfArc => [false, true],
+            Symmetry::Quarter => [true, true],
+        }
+    }
+}
+
+/// Sense of the bending relative to the curvature of the cross-section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sense {
+    /// Longitudinal curvature of the other sign: free edges in tension.
+    Opposite,
+    /// Longitudinal curvature of the same sign: free edges in compression.
+    Equal,
+}
+
+/// The end sections turn by +θ and −θ about the transverse axis through their centroids.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EndRotation {
+    /// Sense of the bending.
+    pub sense: Sense,
+    /// Rotation of each end at which the run stops, θ > 0 (degrees).
+    pub rotation_deg: f64,
+    /// Rotation increment of one load step (degrees).
+    pub increment_deg: f64,
+}
+
+/// When and how far the mesh is refined.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Adapt {
+    /// r₀: a knot span is marked where max|κ| h exceeds it (dimensionless).
+    pub threshold: f64,
+    /// Elements are not halved below this length.
+    pub length_limit: LengthLimit,
+}
+
+/// Least element length.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LengthLimit {
+    /// √(R t), the decay length of bending in the cross-section.
+    SqrtRadiusThickness,
+    /// A length in mm.
+    Millimetres(f64),
+}
+
+/// Tolerances and limits of the equilibrium solver.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Solver {
+    /// A state is in equilibrium when |residual| ≤ tolerance · |reactions|.
+    pub tolerance: f64,
+    /// Newton iterations after which a solve has failed.
+    pub max_iterations: usize,
+    /// Increments are not cut below this; then the run stops with all good steps kept (degrees).
+    pub least_increment_deg: f64,
+    /// A jump is located to this rotation before the run goes on beyond it (degrees).
+    pub snap_tolerance_deg: f64,
+}
+
+/// A stage of the pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stage {
+    /// Move the load on by one increment and find equilibrium.
+    Solve,
+    /// Measure bending per knot span and mark what is too coarse.
+    EvaluateIndicators,
+    /// Insert knots into the geometry where spans are marked.
+    RefineKnots,
+    /// Carry the displacements over to the refined space, exactly.
+    ProjectDisplacements,
+    /// Find equilibrium at the same load on the refined mesh.
+    ReEquilibrate,
+}
+
+impl Stage {
+    /// All stages, in the order in which a load step runs them.
+    pub const ALL: [Stage; 5] = [
+        Stage::Solve,
+        Stage::EvaluateIndicators,
+        Stage::RefineKnots,
+        Stage::ProjectDisplacements,
+        Stage::ReEquilibrate,
+    ];
+
+    /// The name in scenes, logs and on the terminal.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Solve => "solve",
+            Stage::EvaluateIndicators => "evaluate-indicators",
+            Stage::RefineKnots => "refine-knots",
+            Stage::ProjectDisplacements => "project-displacements",
+            Stage::ReEquilibrate => "re-equilibrate",
+        }
+    }
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// What is written beside the states; never changes a state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Output {
+    /// When the log is forced to disk.
+    pub sync: SyncPolicy,
+    /// Whether the deformed mesh is written for viewers after every stage that changes it.
+    pub mesh_history: bool,
+}
+
+/// When the log is forced to disk (a process kill loses nothing that was flushed; this is for power loss).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SyncPolicy {
+    /// After every stage.
+    EachStage,
+    /// At most once a second, and at the end.
+    EachSecond,
+    /// At the end only.
+    AtEnd,
+}

@@ -1,0 +1,182 @@
+//! TOML text and settings as one list of entries that know their place in the text. Nothing is judged here but syntax.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::{Checked, Fault, Place, Problem};
+use super::keys::Key;
+use super::{names, syntax};
+
+/// What stands in a scene file, with settings applied.
+pub(super) struct Document<'t> {
+    /// The tables, in the order of the text.
+    pub headers: Vec<Header>,
+    /// Keys and values in tables.
+    pub entries: Vec<Entry<'t>>,
+    /// Keys and values in front of all tables, and tables of the wrong form.
+    pub strays: Vec<Entry<'t>>,
+    /// Behind the last text of the file.
+    pub end: Place,
+    /// The file.
+    text: &'t str,
+}
+
+/// A table.
+pub(super) struct Header {
+    pub name: String,
+    pub place: Place,
+    /// Whether it is written `[name]` on a line of its own, so that lines may be added below.
+    own_line: bool,
+}
+
+/// A key with its value.
+pub(super) struct Entry<'t> {
+    pub section: String,
+    pub name: String,
+    pub place: Place,
+    pub value: Spanned<DeValue<'t>>,
+    /// Where the text begins that the spans in `value` count from.
+    base: Place,
+}
+
+impl Entry<'static> {
+    /// The entry that a key's default stands for.
+    ///
+    /// # Errors
+    /// Where the default is not TOML.
+    pub fn of_default(key: &Key, text: &'static str) -> Result<Self, toml::de::Error> {
+        let place = Place { source: 0, span: 0..0 };
+        let value = DeValue::parse(text)?;
+        Ok(Self { section: key.section.into(), name: key.name.into(), base: place.clone(), place, value })
+    }
+}
+
+impl Entry<'_> {
+    /// A word as the value would be written: a setting needs no quotes, and a shell would take them away.
+    pub fn written(&self, word: &str) -> String {
+        if self.base.source == 0 { format!("\"{word}\"") } else { word.into() }
+    }
+
+    /// Where the value stands.
+    pub fn value_place(&self) -> Place {
+        self.place_of(self.value.span())
+    }
+
+    /// Where a part of the value stands.
+    pub fn place_of(&self, span: Range<usize>) -> Place {
+        let start = self.base.span.start;
+        Place { source: self.base.source, span: start + span.start..start + span.end }
+    }
+}
+
+impl<'t> Document<'t> {
+    /// Reads the file (source 0) and then each setting (sources 1, 2, …) over it.
+    pub fn read<S: AsRef<str>>(text: &'t str, settings: &'t [S]) -> Checked<Self> {
+        let root =
+            DeTable::parse(text).map_err(|error| syntax::fault(&error, text, &Place { source: 0, span: 0..0 }))?;
+        let last = text.trim_end().len();
+        let end = Place { source: 0, span: last..last };
+        let mut document = Self { headers: vec![], entries: vec![], strays: vec![], end, text };
+        for (name, value) in in_order_of_text(root.into_inner()) {
+            document.take_root(name, value);
+        }
+        for (index, setting) in settings.iter().enumerate() {
+            document.set(index + 1, setting.as_ref())?;
+        }
+        Ok(document)
+    }
+
+    /// The table of this name.
+    pub fn header(&self, name: &str) -> Option<&Header> {
+        self.headers.iter().find(|header| header.name == name)
+    }
+
+    /// The value of a key.
+    pub fn entry(&self, section: &str, name: &str) -> Option<&Entry<'t>> {
+        self.entries.iter().find(|entry| entry.section == section && entry.name == name)
+    }
+
+    /// Where a line can be added to a table: the end of the line of its last entry, or of its header.
+    pub fn line_end(&self, header: &Header) -> Option<Place> {
+        if !header.own_line {
+            return None;
+        }
+        let in_file = self.entries.iter().filter(|entry| entry.section == header.name && entry.place.source == 0);
+        let last = in_file.map(|entry| entry.value_place().span.end).max().unwrap_or(header.place.span.end);
+        let rest = self.text.get(last..)?;
+        let line = rest.find('\n').map_or(rest, |length| &rest[..length]);
+        let at = last + line.trim_end_matches('\r').len();
+        Some(Place { source: 0, span: at..at })
+    }
+
+    fn take_root(&mut self, name: Spanned<Cow<'t, str>>, value: Spanned<DeValue<'t>>) {
+        let place = Place { source: 0, span: name.span() };
+        let base = Place { source: 0, span: 0..0 };
+        let section = name.into_inner().into_owned();
+        let span = value.span();
+        match value.into_inner() {
+            DeValue::Table(table) => {
+                for (key, value) in in_order_of_text(table) {
+                    let place = Place { source: 0, span: key.span() };
+                    let name = key.into_inner().into_owned();
+                    let section = section.clone();
+                    self.entries.push(Entry { section, name, place, value, base: base.clone() });
+                }
+                let before = self.text[..place.span.start].trim_end_matches([' ', '\t']);
+                self.headers.push(Header { name: section, place, own_line: before.ends_with('[') });
+            }
+            other => {
+                let value = Spanned::new(span, other);
+                self.strays.push(Entry { section: String::new(), name: section, place, value, base });
+            }
+        }
+    }
+
+    /// Applies one setting, `section.key=value`.
+    fn set(&mut self, source: usize, setting: &'t str) -> Checked<()> {
+        let whole = Place { source, span: 0..setting.len() };
+        let Some((path, value_text)) = setting.split_once('=') else {
+            let key = names::key(setting.trim());
+            return Err(Fault::new(Problem::SettingWithoutValue { key }, &whole));
+        };
+        let start = path.len() - path.trim_start().len();
+        let place = Place { source, span: start..start + path.trim().len() };
+        let Some((section, name)) = path.trim().split_once('.') else {
+            return Err(names::setting_without_section(path.trim(), &place));
+        };
+        let section_place = Place { source, span: start..start + section.len() };
+        let name_place = Place { source, span: start + section.len() + 1..place.span.end };
+
+        let value_start = setting.len() - value_text.trim_start().len();
+        let base = Place { source, span: value_start..setting.len() };
+        let value =
+            setting_value(value_text.trim()).map_err(|error| syntax::fault(&error, value_text.trim(), &base))?;
+
+        let displaced = names::stands_in_for(section, name);
+        self.entries
+            .retain(|entry| entry.section != section || !(entry.name == name || displaced.contains(&&*entry.name)));
+        if self.header(section).is_none() {
+            self.headers.push(Header { name: section.into(), place: section_place, own_line: false });
+        }
+        self.entries.push(Entry { section: section.into(), name: name.into(), place: name_place, value, base });
+        Ok(())
+    }
+}
+
+/// The value of a setting: TOML, or a bare word, which needs no quotes (a shell would take them away).
+fn setting_value(text: &str) -> Result<Spanned<DeValue<'_>>, toml::de::Error> {
+    DeValue::parse(text).or_else(|error| {
+        let bare = text.starts_with(|c: char| c.is_ascii_alphabetic())
+            && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
+        if bare { Ok(Spanned::new(0..text.len(), DeValue::String(Cow::Borrowed(text)))) } else { Err(error) }
+    })
+}
+
+fn in_order_of_text<'t>(table: DeTable<'t>) -> Vec<(Spanned<Cow<'t, str>>, Spanned<DeValue<'t>>)> {
+    let mut items: Vec<_> = table.into_iter().collect();
+    items.sort_by_key(|(key, _)| key.span().start);
+    items
+}

@@ -1,0 +1,384 @@
+//! What can be wrong with a scene, with the numbers, and where it stands in the text.
+
+use std::fmt;
+use std::ops::Range;
+
+use super::data::Stage;
+use super::keys::Key;
+use super::{explain, render};
+
+/// Why a text is no scene. Its `Display` shows the file, the line, the offending text underlined, what is allowed and
+/// the nearest right spelling.
+#[derive(Clone, PartialEq)]
+pub struct SceneError {
+    fault: Box<Fault>,
+    sources: Vec<Source>,
+}
+
+impl SceneError {
+    pub(super) fn new(fault: Box<Fault>, sources: Vec<Source>) -> Self {
+        Self { fault, sources }
+    }
+
+    /// What is wrong.
+    pub fn problem(&self) -> &Problem {
+        &self.fault.problem
+    }
+
+    /// What is wrong, in one line.
+    pub fn summary(&self) -> String {
+        explain::explain(&self.fault.problem).title
+    }
+
+    /// Where it stands: the file name given to the parser, or `--set`.
+    pub fn source_name(&self) -> &str {
+        &self.sources[self.fault.place.source].name
+    }
+
+    /// The line in that source, from 1.
+    pub fn line(&self) -> usize {
+        let text = self.sources[self.fault.place.source].text.as_bytes();
+        let end = self.fault.place.span.start.min(text.len());
+        1 + text[..end].iter().filter(|byte| **byte == b'\n').count()
+    }
+
+    /// The annotated snippet in plain ASCII lines, for pipes, logs and tests.
+    pub fn plain(&self) -> String {
+        render::plain(&self.fault, &self.sources)
+    }
+
+    /// The annotated snippet in colour, for terminals.
+    pub fn coloured(&self) -> String {
+        render::coloured(&self.fault, &self.sources)
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.plain())
+    }
+}
+
+impl fmt::Debug for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.plain())
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+/// A problem, where it stands, and the edits that would mend it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Fault {
+    pub problem: Problem,
+    pub place: Place,
+    /// A second place that the problem hangs on.
+    pub also: Option<Place>,
+    /// Replacements that mend it.
+    pub edits: Vec<(Place, String)>,
+}
+
+impl Fault {
+    pub fn new(problem: Problem, place: &Place) -> Box<Self> {
+        Box::new(Self { problem, place: place.clone(), also: None, edits: Vec::new() })
+    }
+
+    pub fn also(mut self: Box<Self>, place: Option<&Place>) -> Box<Self> {
+        self.also = place.cloned();
+        self
+    }
+
+    /// Without the edits.
+    pub fn unmended(mut self: Box<Self>) -> Box<Self> {
+        self.edits.clear();
+        self
+    }
+
+    pub fn edit(mut self: Box<Self>, place: &Place, text: impl Into<String>) -> Box<Self> {
+        self.edits.push((place.clone(), text.into()));
+        self
+    }
+}
+
+pub(super) type Checked<T> = Result<T, Box<Fault>>;
+
+/// A text that a scene is read from: the file, or a setting.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Source {
+    pub name: String,
+    pub text: String,
+}
+
+/// Bytes of one of the sources.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Place {
+    /// Index of the source: 0 is the file, then one for each setting.
+    pub source: usize,
+    pub span: Range<usize>,
+}
+
+/// Type of a TOML value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ValueType {
+    /// `"text"`
+    Text,
+    /// `3`
+    Integer,
+    /// `3.0`
+    Float,
+    /// `true`
+    Boolean,
+    /// `1979-05-27`
+    Date,
+    /// `[…]`
+    Array,
+    /// `{…}`
+    Table,
+}
+
+/// One of the two directions of the shell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Along the axis.
+    Length,
+    /// Along the arc.
+    Arc,
+}
+
+impl Direction {
+    /// In the order of pairs.
+    pub const BOTH: [Direction; 2] = [Direction::Length, Direction::Arc];
+}
+
+/// A common way of not writing TOML.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SyntaxSlip {
+    /// A key or a table stands twice.
+    Twice,
+    /// A word without quotes.
+    BareWord,
+    /// A unit, or something else, behind a number.
+    MoreThanANumber,
+    /// `300,0` for `300.0`.
+    DecimalComma,
+    /// Nothing behind the equals sign.
+    NoValue,
+    /// `True` for `true`.
+    Capitals,
+    /// Text whose quotes are not closed.
+    OpenText,
+    /// A list that is not closed, or lacks a comma.
+    OpenList,
+}
+
+/// What is wrong with a scene. Values are in the units of their keys.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Problem {
+    /// The text is not TOML.
+    Syntax {
+        /// What the TOML reader says.
+        message: String,
+        /// What it most likely is.
+        slip: Option<SyntaxSlip>,
+    },
+    /// A setting is not of the form section.key=value.
+    SettingWithoutValue {
+        /// The key that it names.
+        key: Option<&'static Key>,
+    },
+    /// A setting's key is not of the form section.key.
+    SettingWithoutSection {
+        /// What stands there.
+        found: String,
+        /// What was most likely meant.
+        meant: Option<&'static Key>,
+    },
+    /// No table of a scene has this name.
+    UnknownSection {
+        /// What stands there.
+        found: String,
+        /// The nearest right spelling.
+        meant: Option<&'static str>,
+    },
+    /// A table of a scene is given as a value or as an array of tables.
+    NotATable {
+        /// The table.
+        section: &'static str,
+        /// What stands there.
+        found: ValueType,
+    },
+    /// A key stands in front of all tables.
+    KeyOutsideTables {
+        /// What stands there.
+        found: String,
+        /// What was most likely meant.
+        meant: Option<&'static Key>,
+    },
+    /// The table has no key of this name.
+    UnknownKey {
+        /// The table.
+        section: &'static str,
+        /// What stands there.
+        found: String,
+        /// What was most likely meant; may be a key of another table.
+        meant: Option<&'static Key>,
+    },
+    /// A key's name ends in another unit.
+    OtherUnit {
+        /// What stands there.
+        found: String,
+        /// The key that is meant.
+        key: &'static Key,
+        /// The unit that stands there.
+        unit: &'static str,
+        /// The value, and the same in the unit of the key, where it is a number.
+        values: Option<(f64, f64)>,
+    },
+    /// A table that every scene must have is missing.
+    MissingSection {
+        /// The table.
+        section: &'static str,
+    },
+    /// A key that has no default is missing.
+    MissingKey {
+        /// The key.
+        key: &'static Key,
+    },
+    /// Two keys stand for the same thing.
+    BothGiven {
+        /// The key that is given in place of the other.
+        key: &'static Key,
+        /// The other.
+        other: &'static Key,
+    },
+    /// The value has another type than the key takes.
+    WrongType {
+        /// The key.
+        key: &'static Key,
+        /// What stands there.
+        found: ValueType,
+    },
+    /// A number with a fraction where whole numbers count.
+    NotWhole {
+        /// The key.
+        key: &'static Key,
+        /// What stands there.
+        value: f64,
+    },
+    /// A list of one, three or more numbers where a pair is wanted.
+    NotAPair {
+        /// The key.
+        key: &'static Key,
+        /// How many stand there.
+        found: usize,
+    },
+    /// The key does not take this word.
+    UnknownWord {
+        /// The key.
+        key: &'static Key,
+        /// What stands there.
+        found: String,
+        /// The nearest right spelling.
+        meant: Option<&'static str>,
+    },
+    /// NaN or infinity.
+    NotFinite {
+        /// The key.
+        key: &'static Key,
+        /// What stands there.
+        value: f64,
+    },
+    /// A number past the limits of its key.
+    OutOfRange {
+        /// The key.
+        key: &'static Key,
+        /// What stands there.
+        value: f64,
+    },
+    /// The symmetry cuts through an element.
+    OddElements {
+        /// The direction that is cut.
+        direction: Direction,
+        /// Elements that way over the whole shell.
+        elements: usize,
+        /// The part that is modelled, as it stands in the scene.
+        part: &'static str,
+    },
+    /// The shell is not thin: thickness ≥ radius.
+    NotThin {
+        /// Thickness, mm.
+        thickness_mm: f64,
+        /// Radius, mm.
+        radius_mm: f64,
+    },
+    /// The first increment would go past the target.
+    IncrementPastTarget {
+        /// Increment, degrees.
+        increment_deg: f64,
+        /// Target, degrees.
+        rotation_deg: f64,
+    },
+    /// The least increment is larger than the increment that is to be cut.
+    LeastIncrementTooLarge {
+        /// Least increment, degrees.
+        least_increment_deg: f64,
+        /// Increment, degrees.
+        increment_deg: f64,
+    },
+    /// Jumps are to be located more finely than increments are cut.
+    SnapToleranceTooSmall {
+        /// Snap tolerance, degrees.
+        snap_tolerance_deg: f64,
+        /// Least increment, degrees.
+        least_increment_deg: f64,
+    },
+    /// `[adapt]` is given, and no stage reads it.
+    AdaptUnused,
+    /// The stages cannot run as they stand.
+    Stages(StageOrderProblem),
+}
+
+/// Why a list of stages cannot run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StageOrderProblem {
+    /// There is none.
+    Empty,
+    /// No stage has this name.
+    Unknown {
+        /// What stands there.
+        found: String,
+        /// The nearest right spelling.
+        meant: Option<Stage>,
+    },
+    /// An item of the list is not a name.
+    NotAName {
+        /// What stands there.
+        found: ValueType,
+    },
+    /// A stage stands twice.
+    Twice {
+        /// The stage.
+        stage: Stage,
+    },
+    /// A stage stands in front of one whose work it needs.
+    TooEarly {
+        /// The stage.
+        stage: Stage,
+        /// The stage that it needs, which comes later.
+        needs: Stage,
+    },
+    /// A stage is not there whose work another needs.
+    WithoutSource {
+        /// The stage.
+        stage: Stage,
+        /// The stage that it needs.
+        needs: Stage,
+    },
+    /// A stage leaves the state in a form that nobody carries on from.
+    WithoutSequel {
+        /// The stage.
+        stage: Stage,
+        /// The stage that would carry on.
+        sequel: Stage,
+    },
+}

@@ -1,0 +1,41 @@
+//! Text that is not TOML, in words.
+
+use super::Explanation;
+use crate::scene::error::SyntaxSlip;
+use crate::scene::keys::Key;
+
+pub(super) fn not_toml(message: &str, slip: Option<SyntaxSlip>) -> Explanation {
+    const TITLE: &str = "this is not TOML";
+    match slip {
+        None => Explanation::new(TITLE, message),
+        Some(SyntaxSlip::Twice) => {
+            Explanation::new("a key or table is given twice", "again").also("first here").help("keep one of the two")
+        }
+        Some(SyntaxSlip::BareWord) => Explanation::new("a word stands without quotes", "")
+            .example("words stand in double quotes")
+            .fix("with quotes"),
+        Some(SyntaxSlip::MoreThanANumber) => Explanation::new(TITLE, "more than a number")
+            .help("a number stands alone: its unit is in the name of the key"),
+        Some(SyntaxSlip::DecimalComma) => {
+            Explanation::new(TITLE, "a decimal comma").help("decimals stand behind a point, as in 0.5")
+        }
+        Some(SyntaxSlip::OpenText) => {
+            Explanation::new(TITLE, message).help("close the text with the quotes that open it")
+        }
+        Some(SyntaxSlip::NoValue) => Explanation::new("a key has no value", "here"),
+        Some(SyntaxSlip::Capitals) => {
+            Explanation::new("true and false are written in small letters", "").fix("in small letters")
+        }
+        Some(SyntaxSlip::OpenList) => {
+            Explanation::new(TITLE, message).help("close the list with `]`, and put commas between its items")
+        }
+    }
+}
+
+pub(super) fn setting_without_value(key: Option<&Key>) -> Explanation {
+    let explanation = Explanation::new("a setting is written section.key=value", "no `=` here");
+    match key {
+        Some(key) => explanation.help(format!("for example `--set {}={}`", key.path(), key.example.trim_matches('"'))),
+        None => explanation.help("for example `--set solver.max_iterations=200`"),
+    }
+}

@@ -1,0 +1,126 @@
+//! Wrong values, in words.
+
+use super::{Explanation, lower, shorten, type_words};
+use crate::scene::error::{Direction, ValueType};
+use crate::scene::key_table::KEYS;
+use crate::scene::keys::{Key, Kind, Presence, Unit, number};
+
+fn must_be(key: &Key, label: impl Into<String>) -> Explanation {
+    Explanation::new(format!("`{}` must be {}", key.path(), key.allowed()), label)
+}
+
+pub(super) fn wrong_type(key: &Key, found: ValueType) -> Explanation {
+    let explanation = must_be(key, format!("this is {}", type_words(found)));
+    let instead = KEYS.iter().find(|other| {
+        other.section == key.section && other.presence == Presence::InsteadOf(key.name) && found != ValueType::Text
+    });
+    let explanation = match instead {
+        Some(other) => explanation.example(format!("for a value of your own: `{} = {}`", other.name, other.example)),
+        None => explanation.example(format!("for example `{} = {}`", key.name, key.example)),
+    };
+    match (&key.kind, found) {
+        (Kind::Stages, ValueType::Text) => explanation.fix("one stage is a list, too"),
+        (Kind::Number(_), ValueType::Text) if key.unit != Unit::None => {
+            explanation.fix(format!("a plain number of {}: the unit is in the name of the key", key.unit.words()))
+        }
+        (Kind::Number(_) | Kind::Count(_) | Kind::Pair(_), ValueType::Text) => explanation.fix("without quotes"),
+        _ => explanation.fix("did you mean this?"),
+    }
+}
+
+pub(super) fn not_whole(key: &Key, value: f64) -> Explanation {
+    if value.fract() == 0.0 {
+        return must_be(key, "written as a number with decimals").fix("as a whole number");
+    }
+    must_be(key, "this is not a whole number")
+}
+
+pub(super) fn not_a_pair(key: &Key, found: usize) -> Explanation {
+    let label = match found {
+        0 => "an empty list".into(),
+        1 => "a list of one".into(),
+        _ => format!("a list of {found}"),
+    };
+    must_be(key, label)
+        .help(format!("the first is along the length, the second along the arc: `{} = {}`", key.name, key.example))
+}
+
+pub(super) fn unknown_word(key: &Key, found: &str, meant: Option<&str>) -> Explanation {
+    let Kind::Word(choices) = &key.kind else { return Explanation::default() };
+    let explanation = Explanation::new(format!("`{}` cannot be \"{}\"", key.path(), shorten(found)), "");
+    let explanation = match choices {
+        [only] => explanation.note(format!("the only one so far is \"{}\": {}", only.word, lower(only.meaning))),
+        _ => choices.iter().fold(explanation, |explanation, choice| {
+            explanation.note(format!("\"{}\" is {}", choice.word, choice.meaning))
+        }),
+    };
+    match meant {
+        Some(meant) => explanation.fix(format!("did you mean \"{meant}\"?")),
+        None => explanation,
+    }
+}
+
+pub(super) fn not_finite(key: &Key, value: f64) -> Explanation {
+    must_be(key, if value.is_nan() { "not a number" } else { "not finite" })
+}
+
+pub(super) fn out_of_range(key: &Key, value: f64) -> Explanation {
+    let (Kind::Number(limits) | Kind::Count(limits) | Kind::Pair(limits)) = &key.kind else {
+        return Explanation::default();
+    };
+    let reason = limits.broken_by(value).map_or("", |limit| limit.reason);
+    let in_pascal = value * 1e-6;
+    if key.unit == Unit::Megapascal && limits.broken_by(in_pascal).is_none() {
+        return must_be(key, reason).help(format!("if this is in Pa, it is {} MPa", number(in_pascal)));
+    }
+    must_be(key, reason)
+}
+
+pub(super) fn odd_elements(direction: Direction, elements: usize, part: &str) -> Explanation {
+    let way = match direction {
+        Direction::Length => "length",
+        Direction::Arc => "arc",
+    };
+    Explanation::new(format!("{elements} elements along the {way} cannot be cut in two"), "must be even")
+        .also(format!("\"{part}\" cuts the {way} in the middle"))
+        .note("`mesh.elements` counts over the whole shell, whatever the symmetry")
+        .fix("the next finer mesh")
+}
+
+pub(super) fn not_thin(thickness_mm: f64, radius_mm: f64) -> Explanation {
+    let (thickness, radius) = (number(thickness_mm), number(radius_mm));
+    Explanation::new(
+        format!("a thickness of {thickness} mm is not thin for a radius of {radius} mm"),
+        "must be less than the radius",
+    )
+    .also("the radius")
+    .note("shell theory holds for a thickness far below the radius; a tape spring's is about 1/100 of it")
+}
+
+pub(super) fn increment_past_target(increment_deg: f64, rotation_deg: f64) -> Explanation {
+    let (increment, rotation) = (number(increment_deg), number(rotation_deg));
+    Explanation::new(
+        format!("the first increment of {increment} degrees would go past the rotation of {rotation} degrees"),
+        "must be at most the rotation",
+    )
+    .also("the run stops here")
+}
+
+pub(super) fn least_increment_too_large(least_increment_deg: f64, increment_deg: f64) -> Explanation {
+    let (least, increment) = (number(least_increment_deg), number(increment_deg));
+    Explanation::new(
+        format!("the least increment ({least} degrees) is larger than the increment ({increment} degrees)"),
+        "must be at most the increment",
+    )
+    .also("the increment that is cut when a step fails")
+}
+
+pub(super) fn snap_tolerance_too_small(snap_tolerance_deg: f64, least_increment_deg: f64) -> Explanation {
+    let (snap, least) = (number(snap_tolerance_deg), number(least_increment_deg));
+    Explanation::new(
+        format!("a jump cannot be located to {snap} degrees with increments of {least} degrees or more"),
+        "",
+    )
+    .alone("the value that is not shown is the default")
+    .note("increments are not cut below `least_increment_deg`, so `snap_tolerance_deg` must not be less")
+}

@@ -1,0 +1,109 @@
+//! Units that people write where a key wants another: `length_m` for `length_mm`, `"0.3 m"` for `300.0`.
+
+use super::keys::Unit;
+
+/// A unit that no key of a scene ends in.
+#[derive(Debug)]
+pub(super) struct ForeignUnit {
+    /// Spellings, in lower case.
+    spellings: &'static [&'static str],
+    /// The unit in a sentence.
+    pub words: &'static str,
+    /// The unit that scenes use.
+    unit: Unit,
+    /// How many of the scene's unit it is.
+    factor: f64,
+}
+
+const fn foreign(spellings: &'static [&'static str], words: &'static str, unit: Unit, factor: f64) -> ForeignUnit {
+    ForeignUnit { spellings, words, unit, factor }
+}
+
+static FOREIGN_UNITS: [ForeignUnit; 21] = [
+    foreign(&["mm", "millimetre", "millimetres", "millimeter", "millimeters"], "mm", Unit::Millimetre, 1.0),
+    foreign(&["cm", "centimetre", "centimetres", "centimeter", "centimeters"], "cm", Unit::Millimetre, 10.0),
+    foreign(&["m", "metre", "metres", "meter", "meters"], "m", Unit::Millimetre, 1000.0),
+    foreign(
+        &["um", "µm", "μm", "micron", "microns", "micrometre", "micrometer"],
+        "micrometres",
+        Unit::Millimetre,
+        1e-3,
+    ),
+    foreign(&["nm", "nanometre", "nanometer"], "nm", Unit::Millimetre, 1e-6),
+    foreign(&["in", "inch", "inches"], "inches", Unit::Millimetre, 25.4),
+    foreign(&["mil", "mils", "thou"], "mils", Unit::Millimetre, 0.0254),
+    foreign(&["ft", "foot", "feet"], "feet", Unit::Millimetre, 304.8),
+    foreign(&["deg", "degree", "degrees", "°"], "degrees", Unit::Degree, 1.0),
+    foreign(&["rad", "radian", "radians"], "radians", Unit::Degree, 180.0 / std::f64::consts::PI),
+    foreign(&["mrad", "milliradian", "milliradians"], "mrad", Unit::Degree, 0.18 / std::f64::consts::PI),
+    foreign(&["turn", "turns", "rev", "revolutions"], "turns", Unit::Degree, 360.0),
+    foreign(&["gon", "grad", "grads"], "gon", Unit::Degree, 0.9),
+    foreign(&["mpa", "n_mm2", "n_per_mm2", "n/mm2", "n/mm²", "megapascal"], "MPa", Unit::Megapascal, 1.0),
+    foreign(&["pa", "pascal", "pascals", "n_m2", "n/m2", "n/m²"], "Pa", Unit::Megapascal, 1e-6),
+    foreign(&["kpa", "kilopascal"], "kPa", Unit::Megapascal, 1e-3),
+    foreign(&["gpa", "gigapascal", "kn_mm2", "kn/mm2", "kn/mm²"], "GPa", Unit::Megapascal, 1e3),
+    foreign(&["tpa", "terapascal"], "TPa", Unit::Megapascal, 1e6),
+    foreign(&["bar"], "bar", Unit::Megapascal, 0.1),
+    foreign(&["psi"], "psi", Unit::Megapascal, 0.006_894_757_293_168_361),
+    foreign(&["ksi"], "ksi", Unit::Megapascal, 6.894_757_293_168_361),
+];
+
+/// Significant digits that a converted value keeps, so that 0.007 m is 7 mm and not 7.000000000000001.
+const CONVERTED_DIGITS: usize = 12;
+
+/// Bytes beyond which a text is not looked at as a number with a unit.
+const LONGEST_QUANTITY: usize = 64;
+
+impl ForeignUnit {
+    /// The unit of this spelling that measures what `unit` measures.
+    pub fn find(spelling: &str, unit: Unit) -> Option<&'static ForeignUnit> {
+        let spelling = spelling.to_lowercase();
+        FOREIGN_UNITS.iter().find(|foreign| foreign.unit == unit && foreign.spellings.contains(&&*spelling))
+    }
+
+    /// A value in this unit, in the unit of the scene.
+    pub fn convert(&self, value: f64) -> f64 {
+        let digits = CONVERTED_DIGITS - 1;
+        format!("{:.digits$e}", value * self.factor).parse().unwrap_or(value * self.factor)
+    }
+}
+
+/// Reads `"0.3 m"` as a number with a unit (or without one) where a key of `unit` wants a number.
+pub(super) fn quantity(text: &str, unit: Unit) -> Option<f64> {
+    let text = text.trim();
+    if text.len() > LONGEST_QUANTITY {
+        return None;
+    }
+    if let Ok(value) = text.parse::<f64>() {
+        return Some(value);
+    }
+    // The unit is what remains after the longest front that is a number.
+    let ends = text.char_indices().map(|(at, _)| at).rev();
+    let (value, rest) = ends.filter_map(|at| Some((text[..at].trim_end().parse::<f64>().ok()?, &text[at..]))).next()?;
+    Some(ForeignUnit::find(rest.trim(), unit)?.convert(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conversions_are_exact_to_the_digits_that_a_user_sees() {
+        let convert = |spelling, unit, value| ForeignUnit::find(spelling, unit).map(|foreign| foreign.convert(value));
+        assert_eq!(convert("m", Unit::Millimetre, 0.007), Some(7.0));
+        assert_eq!(convert("GPa", Unit::Megapascal, 131.0), Some(131_000.0));
+        assert_eq!(convert("rad", Unit::Degree, std::f64::consts::FRAC_PI_4), Some(45.0));
+        assert_eq!(convert("um", Unit::Millimetre, 100.0), Some(0.1));
+        assert_eq!(convert("m", Unit::Degree, 1.0), None);
+    }
+
+    #[test]
+    fn quantities_are_read_with_and_without_a_unit() {
+        assert_eq!(quantity("300", Unit::Millimetre), Some(300.0));
+        assert_eq!(quantity(" 30 cm ", Unit::Millimetre), Some(300.0));
+        assert_eq!(quantity("1e-4m", Unit::Millimetre), Some(0.1));
+        assert_eq!(quantity("110°", Unit::Degree), Some(110.0));
+        assert_eq!(quantity("long", Unit::Millimetre), None);
+        assert_eq!(quantity("", Unit::Millimetre), None);
+    }
+}

@@ -1,0 +1,117 @@
+//! What makes two scenes the same run: hash and differences, field by field.
+//!
+//! Both work on the leaves of the scene as JSON, so that no field can be forgotten: one that the table of keys does
+//! not know reaches everything.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde_json::Value;
+
+use super::data::Scene;
+use super::key_table::KEYS;
+
+/// How far a change of a key reaches into a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// No state changes: what is written beside the states, and where the run stops.
+    Free,
+    /// The steps taken change, not the problem solved: a state of one run can start the other.
+    Steps,
+    /// The problem changes: no state of one run means anything in the other.
+    Everything,
+}
+
+/// A key on which two scenes differ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// The key as it stands in a scene file: `solver.tolerance`.
+    pub path: String,
+    /// Its value in the first scene; `None` where that has no use for it.
+    pub a: Option<Value>,
+    /// Its value in the second.
+    pub b: Option<Value>,
+    /// How far the change reaches.
+    pub reach: Reach,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let show = |value: &Option<Value>| value.as_ref().map_or("not used".into(), Value::to_string);
+        write!(f, "{}: {} -> {}", self.path, show(&self.a), show(&self.b))
+    }
+}
+
+/// Where the path of a value in [`Scene`] is not the key of the scene file.
+const RENAMED: [(&str, &str); 3] = [
+    ("symmetry", "symmetry.part"),
+    ("pipeline", "pipeline.stages"),
+    ("adapt.length_limit.millimetres", "adapt.length_limit_mm"),
+];
+
+/// What the hash of a scene begins with; changes when the meaning of a scene does.
+const DOMAIN: &str = "foldline scene 1";
+
+impl Scene {
+    /// Hash over everything that decides states: all keys but `output.*` and `load.rotation_deg`. Those two are free, so
+    /// that a run can be extended, or written with more beside it, and every stage done so far is found again.
+    ///
+    /// Fed are the domain string and then, in the order of their paths, each key and its value as JSON, each with its
+    /// length in front: independent of the order of fields, of formatting and of comments in the scene file.
+    pub fn hash(&self) -> blake3::Hash {
+        let mut hasher = blake3::Hasher::new();
+        let mut feed = |text: &str| {
+            hasher.update(&(text.len() as u64).to_le_bytes());
+            hasher.update(text.as_bytes());
+        };
+        feed(DOMAIN);
+        for (path, value) in self.leaves() {
+            if reach(&path) != Reach::Free {
+                feed(&path);
+                feed(&value.to_string());
+            }
+        }
+        hasher.finalize()
+    }
+
+    /// Every key on which the scenes differ, in alphabetical order.
+    pub fn differences(&self, other: &Scene) -> Vec<Difference> {
+        let (a, b) = (self.leaves(), other.leaves());
+        let mut paths: Vec<_> = a.keys().chain(b.keys()).cloned().collect();
+        paths.sort();
+        paths.dedup();
+        paths.retain(|path| a.get(path) != b.get(path));
+        paths
+            .into_iter()
+            .map(|path| Difference { a: a.get(&path).cloned(), b: b.get(&path).cloned(), reach: reach(&path), path })
+            .collect()
+    }
+
+    /// Every value of the scene by its key in a scene file. Lists are values; keys without use are left out.
+    pub(super) fn leaves(&self) -> BTreeMap<String, Value> {
+        let mut leaves = BTreeMap::new();
+        // A scene is structs of numbers, words and lists, which always have a JSON form.
+        collect("", serde_json::to_value(self).unwrap_or_default(), &mut leaves);
+        leaves
+    }
+}
+
+fn collect(path: &str, value: Value, leaves: &mut BTreeMap<String, Value>) {
+    match value {
+        Value::Null => {}
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                let path = if path.is_empty() { name } else { format!("{path}.{name}") };
+                collect(&path, value, leaves);
+            }
+        }
+        value => {
+            let renamed = RENAMED.iter().find(|(inside, _)| *inside == path);
+            leaves.insert(renamed.map_or(path, |(_, key)| key).to_owned(), value);
+        }
+    }
+}
+
+fn reach(path: &str) -> Reach {
+    KEYS.iter().find(|key| key.path() == path).map_or(Reach::Everything, |key| key.reach)
+}

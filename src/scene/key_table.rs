@@ -1,0 +1,436 @@
+//! Every key of a scene file. Nothing about a key is written down anywhere else.
+
+use super::identity::Reach::{Everything, Free, Steps};
+use super::keys::Presence::{Default, Follows, InsteadOf, Required};
+use super::keys::Unit::{Degree, Megapascal, Millimetre, None};
+use super::keys::{Choice, Key, Kind, Limit, Limits, Section};
+
+/// The tables of a scene file, in the order in which one would write them.
+pub static SECTIONS: [Section; 9] = [
+    section("geometry", true, "The undeformed mid-surface."),
+    section("material", true, "Constitutive law and thickness."),
+    section("mesh", true, "Spline space and quadrature that the run starts with."),
+    section("symmetry", false, "Which part of the shell is modelled."),
+    section("load", true, "What moves the shell."),
+    section("adapt", false, "When and how far the mesh is refined."),
+    section("solver", false, "Tolerances and limits of the equilibrium solver."),
+    section("pipeline", false, "The stages of one load step."),
+    section("output", false, "What is written beside the states; never changes a state."),
+];
+
+/// The keys of a scene file, table by table.
+pub static KEYS: [&Key; 26] = [
+    &GEOMETRY_KIND,
+    &LENGTH,
+    &RADIUS,
+    &ARC,
+    &MATERIAL_KIND,
+    &YOUNGS_MODULUS,
+    &POISSONS_RATIO,
+    &THICKNESS,
+    &DEGREE,
+    &ELEMENTS,
+    &QUADRATURE,
+    &PART,
+    &LOAD_KIND,
+    &SENSE,
+    &ROTATION,
+    &INCREMENT,
+    &THRESHOLD,
+    &LENGTH_LIMIT,
+    &LENGTH_LIMIT_MM,
+    &TOLERANCE,
+    &MAX_ITERATIONS,
+    &LEAST_INCREMENT,
+    &SNAP_TOLERANCE,
+    &STAGES,
+    &SYNC,
+    &MESH_HISTORY,
+];
+
+const fn section(name: &'static str, required: bool, meaning: &'static str) -> Section {
+    Section { name, required, meaning }
+}
+
+const fn choice(word: &'static str, meaning: &'static str) -> Choice {
+    Choice { word, meaning }
+}
+
+/// A length of the shell: positive, and no more than a kilometre.
+const SHELL_LENGTH: Limits = Limits {
+    low: Limit::excluded(0.0, "a shell without extent has nothing to fold"),
+    high: Limit::included(1e6, "more than a kilometre; the value is in mm"),
+};
+
+pub(super) static GEOMETRY_KIND: Key = Key {
+    section: "geometry",
+    name: "kind",
+    unit: None,
+    kind: Kind::Word(&[choice("tape-spring", "open circular cylinder")]),
+    presence: Required,
+    reach: Everything,
+    meaning: "Shape of the shell.",
+    example: "\"tape-spring\"",
+    aliases: &["type", "shape"],
+};
+
+pub(super) static LENGTH: Key = Key {
+    section: "geometry",
+    name: "length_mm",
+    unit: Millimetre,
+    kind: Kind::Number(SHELL_LENGTH),
+    presence: Required,
+    reach: Everything,
+    meaning: "Length along the axis.",
+    example: "300.0",
+    aliases: &["l"],
+};
+
+pub(super) static RADIUS: Key = Key {
+    section: "geometry",
+    name: "radius_mm",
+    unit: Millimetre,
+    kind: Kind::Number(SHELL_LENGTH),
+    presence: Required,
+    reach: Everything,
+    meaning: "Radius of the mid-surface of the cross-section.",
+    example: "10.0",
+    aliases: &["r"],
+};
+
+pub(super) static ARC: Key = Key {
+    section: "geometry",
+    name: "arc_deg",
+    unit: Degree,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "without an arc there is no cross-section"),
+        high: Limit::excluded(360.0, "at 360 degrees the cross-section closes, and the shell is open no more"),
+    }),
+    presence: Required,
+    reach: Everything,
+    meaning: "Angle that the whole cross-section subtends.",
+    example: "110.0",
+    aliases: &["alpha", "α", "angle", "angle_deg", "arc_angle", "arc_angle_deg", "subtended_angle_deg"],
+};
+
+pub(super) static MATERIAL_KIND: Key = Key {
+    section: "material",
+    name: "kind",
+    unit: None,
+    kind: Kind::Word(&[choice("isotropic", "St. Venant-Kirchhoff, isotropic")]),
+    presence: Required,
+    reach: Everything,
+    meaning: "Constitutive law.",
+    example: "\"isotropic\"",
+    aliases: &["type", "law", "model"],
+};
+
+pub(super) static YOUNGS_MODULUS: Key = Key {
+    section: "material",
+    name: "youngs_modulus_mpa",
+    unit: Megapascal,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "without stiffness there is no equilibrium to find"),
+        high: Limit::included(1e7, "far stiffer than diamond (1.2e6 MPa)"),
+    }),
+    presence: Required,
+    reach: Everything,
+    meaning: "Young's modulus E.",
+    example: "131000.0",
+    aliases: &["e", "young", "youngs", "elastic_modulus", "modulus", "young_modulus", "elasticity"],
+};
+
+pub(super) static POISSONS_RATIO: Key = Key {
+    section: "material",
+    name: "poissons_ratio",
+    unit: None,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(-1.0, "at -1 and below the shear modulus E/(2(1+nu)) is not finite and positive"),
+        high: Limit::excluded(0.5, "at 1/2 and beyond the bulk modulus E/(3(1-2nu)) is not finite and positive"),
+    }),
+    presence: Required,
+    reach: Everything,
+    meaning: "Poisson's ratio nu.",
+    example: "0.3",
+    aliases: &["nu", "ν", "poisson", "poissons", "poisson_ratio", "v"],
+};
+
+pub(super) static THICKNESS: Key = Key {
+    section: "material",
+    name: "thickness_mm",
+    unit: Millimetre,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "a shell without thickness has no stiffness"),
+        high: SHELL_LENGTH.high,
+    }),
+    presence: Required,
+    reach: Everything,
+    meaning: "Shell thickness t; less than the radius.",
+    example: "0.1",
+    aliases: &["t", "h"],
+};
+
+pub(super) static DEGREE: Key = Key {
+    section: "mesh",
+    name: "degree",
+    unit: None,
+    kind: Kind::Pair(Limits {
+        low: Limit::included(
+            2.0,
+            "bending needs second derivatives, and a slope without jumps between elements: degree 1 has neither",
+        ),
+        high: Limit::included(5.0, "an element of degree p costs about (p+1)^6; degrees above 5 are not offered"),
+    }),
+    presence: Default("3"),
+    reach: Everything,
+    meaning: "Polynomial degree along the length and along the arc.",
+    example: "[3, 3]",
+    aliases: &["p", "order", "degrees"],
+};
+
+pub(super) static ELEMENTS: Key = Key {
+    section: "mesh",
+    name: "elements",
+    unit: None,
+    kind: Kind::Pair(Limits {
+        low: Limit::included(1.0, "a mesh has at least one element each way"),
+        high: Limit::included(
+            4096.0,
+            "so fine a mesh would not fit into memory; [adapt] puts small elements where they count",
+        ),
+    }),
+    presence: Required,
+    reach: Everything,
+    meaning: "Elements along the length and along the arc, counted over the whole shell whatever the symmetry; \
+              even in a direction that the symmetry cuts.",
+    example: "[4, 4]",
+    aliases: &["n", "element_count", "number_of_elements", "spans"],
+};
+
+pub(super) static QUADRATURE: Key = Key {
+    section: "mesh",
+    name: "quadrature",
+    unit: None,
+    kind: Kind::Word(&[
+        choice("full", "Gauss-Legendre with degree + 1 points each way"),
+        choice("reduced", "Gauss-Legendre with degree points each way"),
+    ]),
+    presence: Default("\"full\""),
+    reach: Everything,
+    meaning: "Integration rule on an element.",
+    example: "\"full\"",
+    aliases: &["integration", "rule"],
+};
+
+pub(super) static PART: Key = Key {
+    section: "symmetry",
+    name: "part",
+    unit: None,
+    kind: Kind::Word(&[
+        choice("none", "the whole shell"),
+        choice("half-length", "one half, cut at mid-length"),
+        choice("half-arc", "one half, cut along the apex line"),
+        choice("quarter", "one quarter, cut both ways"),
+    ]),
+    presence: Default("\"none\""),
+    reach: Everything,
+    meaning: "The part that is modelled.",
+    example: "\"quarter\"",
+    aliases: &["symmetry", "model", "kind"],
+};
+
+pub(super) static LOAD_KIND: Key = Key {
+    section: "load",
+    name: "kind",
+    unit: None,
+    kind: Kind::Word(&[choice("end-rotation", "the end sections turn by +theta and -theta")]),
+    presence: Required,
+    reach: Everything,
+    meaning: "What moves the shell.",
+    example: "\"end-rotation\"",
+    aliases: &["type"],
+};
+
+pub(super) static SENSE: Key = Key {
+    section: "load",
+    name: "sense",
+    unit: None,
+    kind: Kind::Word(&[
+        choice("opposite", "against the curvature of the cross-section, free edges in tension"),
+        choice("equal", "with the curvature of the cross-section, free edges in compression"),
+    ]),
+    presence: Required,
+    reach: Everything,
+    meaning: "Sense of the bending.",
+    example: "\"opposite\"",
+    aliases: &["direction", "sign"],
+};
+
+pub(super) static ROTATION: Key = Key {
+    section: "load",
+    name: "rotation_deg",
+    unit: Degree,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "the sense of the bending is chosen with load.sense, not with a sign"),
+        high: Limit::excluded(
+            180.0,
+            "each end turns by this much: at 90 degrees the two halves already face each other",
+        ),
+    }),
+    presence: Required,
+    reach: Free,
+    meaning: "Rotation of each end at which the run stops.",
+    example: "60.0",
+    aliases: &["target", "target_deg", "theta", "θ", "angle_deg", "end_rotation_deg"],
+};
+
+pub(super) static INCREMENT: Key = Key {
+    section: "load",
+    name: "increment_deg",
+    unit: Degree,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "every load step goes forward; the sense of the bending is chosen with load.sense"),
+        high: Limit::excluded(180.0, "one increment would go past every rotation that a run can reach"),
+    }),
+    presence: Required,
+    reach: Steps,
+    meaning: "Rotation increment of one load step; at most the rotation.",
+    example: "0.4",
+    aliases: &["step", "step_deg", "increment_size", "rotation_step_deg", "rotation_increment_deg"],
+};
+
+pub(super) static THRESHOLD: Key = Key {
+    section: "adapt",
+    name: "threshold",
+    unit: None,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "every knot span would be marked in every step"),
+        high: Limit::NONE,
+    }),
+    presence: Default("0.019"),
+    reach: Steps,
+    meaning: "r0: a knot span is marked where max|kappa| h exceeds it (dimensionless).",
+    example: "0.019",
+    aliases: &["r0", "r_0"],
+};
+
+pub(super) static LENGTH_LIMIT: Key = Key {
+    section: "adapt",
+    name: "length_limit",
+    unit: None,
+    kind: Kind::Word(&[choice("sqrt-radius-thickness", "sqrt(R t), the decay length of bending in the cross-section")]),
+    presence: Default("\"sqrt-radius-thickness\""),
+    reach: Steps,
+    meaning: "Rule for the length below which elements are not halved.",
+    example: "\"sqrt-radius-thickness\"",
+    aliases: &["h_lim", "limit"],
+};
+
+pub(super) static LENGTH_LIMIT_MM: Key = Key {
+    section: "adapt",
+    name: "length_limit_mm",
+    unit: Millimetre,
+    kind: Kind::Number(Limits { low: Limit::excluded(0.0, "refinement would have no end"), high: SHELL_LENGTH.high }),
+    presence: InsteadOf("length_limit"),
+    reach: Steps,
+    meaning: "Length below which elements are not halved.",
+    example: "1.0",
+    aliases: &["h_lim_mm", "limit_mm", "least_length_mm", "min_length_mm"],
+};
+
+pub(super) static TOLERANCE: Key = Key {
+    section: "solver",
+    name: "tolerance",
+    unit: None,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "rounding keeps every residual above zero"),
+        high: Limit::included(1e-2, "a residual of more than 1 % of the reactions is no equilibrium"),
+    }),
+    presence: Default("1e-7"),
+    reach: Steps,
+    meaning: "A state is in equilibrium when |residual| <= tolerance |reactions|.",
+    example: "1e-7",
+    aliases: &["tol", "eps", "epsilon", "accuracy", "relative_tolerance"],
+};
+
+pub(super) static MAX_ITERATIONS: Key = Key {
+    section: "solver",
+    name: "max_iterations",
+    unit: None,
+    kind: Kind::Count(Limits {
+        low: Limit::included(1.0, "without an iteration nothing is solved"),
+        high: Limit::included(1e5, "a solve that has not converged by then will not"),
+    }),
+    presence: Default("100"),
+    reach: Steps,
+    meaning: "Newton iterations after which a solve has failed.",
+    example: "100",
+    aliases: &["iterations", "max_iter", "maxiter", "iteration_limit"],
+};
+
+pub(super) static LEAST_INCREMENT: Key = Key {
+    section: "solver",
+    name: "least_increment_deg",
+    unit: Degree,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "an increment that fails would be halved without end"),
+        high: Limit::NONE,
+    }),
+    presence: Default("1e-6"),
+    reach: Steps,
+    meaning: "Increments are not cut below this; then the run stops with all good steps kept.",
+    example: "1e-6",
+    aliases: &["min_increment_deg", "minimum_increment_deg", "smallest_increment_deg", "min_step_deg"],
+};
+
+pub(super) static SNAP_TOLERANCE: Key = Key {
+    section: "solver",
+    name: "snap_tolerance_deg",
+    unit: Degree,
+    kind: Kind::Number(Limits { low: Limit::excluded(0.0, "no jump can be located exactly"), high: Limit::NONE }),
+    presence: Default("0.01"),
+    reach: Steps,
+    meaning: "A jump is located to this rotation before the run goes on beyond it.",
+    example: "0.01",
+    aliases: &["jump_tolerance_deg"],
+};
+
+pub(super) static STAGES: Key = Key {
+    section: "pipeline",
+    name: "stages",
+    unit: None,
+    kind: Kind::Stages,
+    presence: Follows("all five stages where the scene has [adapt], else [\"solve\"]"),
+    reach: Steps,
+    meaning: "The stages of one load step: solve alone, with evaluate-indicators to watch, or all five to refine.",
+    example: "[\"solve\", \"evaluate-indicators\", \"refine-knots\", \"project-displacements\", \"re-equilibrate\"]",
+    aliases: &["steps", "stage"],
+};
+
+pub(super) static SYNC: Key = Key {
+    section: "output",
+    name: "sync",
+    unit: None,
+    kind: Kind::Word(&[
+        choice("each-stage", "after every stage"),
+        choice("each-second", "at most once a second, and at the end"),
+        choice("at-end", "at the end only"),
+    ]),
+    presence: Default("\"each-second\""),
+    reach: Free,
+    meaning: "When the log is forced to disk; a killed process loses nothing either way, a power cut may.",
+    example: "\"each-second\"",
+    aliases: &["fsync", "flush"],
+};
+
+pub(super) static MESH_HISTORY: Key = Key {
+    section: "output",
+    name: "mesh_history",
+    unit: None,
+    kind: Kind::Switch,
+    presence: Default("false"),
+    reach: Free,
+    meaning: "Whether the deformed mesh is written for viewers after every stage that changes it.",
+    example: "true",
+    aliases: &["history", "meshes"],
+};

@@ -1,0 +1,41 @@
+//! The spline space with its geometry: what knot insertion changes.
+
+use crate::digest::{Feed, Hash};
+
+/// Tensor-product NURBS mid-surface. Control points are ordered with the second direction (arc) fastest:
+/// index = i₁ · n₂ + i₂.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Polynomial degree each way.
+    pub degree: [usize; 2],
+    /// Open knot vectors each way; nᵢ = knots.len() − degree − 1 control points.
+    pub knots: [Vec<f64>; 2],
+    /// Homogeneous control points (w x, w y, w z, w), mm; length n₁ · n₂.
+    pub control_points: Vec<[f64; 4]>,
+}
+
+impl Mesh {
+    /// Control points each way.
+    pub fn control_counts(&self) -> [usize; 2] {
+        [0, 1].map(|k| self.knots[k].len() - self.degree[k] - 1)
+    }
+
+    /// Non-empty knot spans (elements) each way.
+    pub fn element_counts(&self) -> [usize; 2] {
+        [0, 1].map(|k| self.knots[k].windows(2).filter(|pair| pair[0] < pair[1]).count())
+    }
+
+    /// Content hash; independent of how a log encodes the mesh.
+    pub fn hash(&self) -> Hash {
+        let mut feed = Feed::new("foldline mesh");
+        for k in 0..2 {
+            feed.integer(self.degree[k] as u64);
+            feed.numbers(&self.knots[k]);
+        }
+        feed.integer(self.control_points.len() as u64);
+        for point in &self.control_points {
+            point.iter().for_each(|value| feed.number(*value));
+        }
+        feed.finish()
+    }
+}

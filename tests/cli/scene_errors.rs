@@ -1,0 +1,341 @@
+//! What a user sees of a wrong scene. Every case is one slip in a scene that is right; its error is pinned.
+
+use foldline::scene::{SceneError, help_text, parse, parse_with_settings};
+
+const RIGHT: &str = r#"# A tape spring.
+[geometry]
+kind = "tape-spring"
+length_mm = 300.0
+radius_mm = 10.0
+arc_deg = 110.0
+
+[material]
+kind = "isotropic"
+youngs_modulus_mpa = 131000.0
+poissons_ratio = 0.3
+thickness_mm = 0.1
+
+[mesh]
+degree = [3, 3]
+elements = [4, 4]
+quadrature = "full"
+
+[symmetry]
+part = "quarter"
+
+[load]
+kind = "end-rotation"
+sense = "opposite"
+rotation_deg = 60.0
+increment_deg = 0.4
+
+[adapt]
+threshold = 0.019
+length_limit = "sqrt-radius-thickness"
+
+[solver]
+tolerance = 1e-7
+max_iterations = 100
+least_increment_deg = 1e-6
+snap_tolerance_deg = 0.01
+
+[pipeline]
+stages = ["solve", "evaluate-indicators", "refine-knots", "project-displacements", "re-equilibrate"]
+
+[output]
+sync = "each-second"
+mesh_history = false
+"#;
+
+/// The errors that some slips lead to: each replaces a text that occurs once.
+fn errors(slips: &[(&str, &str)]) -> String {
+    let show = |(right, wrong): &(&str, &str)| {
+        assert_eq!(RIGHT.matches(right).count(), 1, "`{right}` does not name one place");
+        let text = RIGHT.replace(right, wrong);
+        match parse(&text, "scene.toml") {
+            Ok(_) => panic!("`{wrong}` is taken"),
+            Err(error) => report(&error),
+        }
+    };
+    slips.iter().map(show).collect::<Vec<_>>().join("\n")
+}
+
+/// The errors that some settings on the right scene lead to.
+fn setting_errors(settings: &[&str]) -> String {
+    let show = |setting: &&str| match parse_with_settings(RIGHT, "scene.toml", &[setting]) {
+        Ok(_) => panic!("`{setting}` is taken"),
+        Err(error) => report(&error),
+    };
+    settings.iter().map(show).collect::<Vec<_>>().join("\n")
+}
+
+fn report(error: &SceneError) -> String {
+    let plain = error.plain();
+    assert!(plain.contains(&format!("{}:{}:", error.source_name(), error.line())), "{plain}");
+    let without_colour = strip_colour(&error.coloured());
+    assert!(without_colour.contains(&error.summary()) && plain.contains(&error.summary()));
+    plain + "\n"
+}
+
+fn strip_colour(text: &str) -> String {
+    let mut parts = text.split('\x1b');
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |plain, part| plain + part.split_once('m').map_or("", |(_, rest)| rest))
+}
+
+/// Holds a text against the accepted one.
+fn pin(name: &str, text: &str) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_omit_expression(true);
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_snapshot_path("scene_errors");
+    settings.bind(|| insta::assert_snapshot!(name, text));
+}
+
+#[test]
+fn the_scene_is_right() {
+    parse(RIGHT, "scene.toml").unwrap();
+}
+
+#[test]
+fn names() {
+    pin(
+        "names",
+        &errors(&[
+            ("length_mm = 300.0", "lenght_mm = 300.0"),
+            ("length_mm = 300.0", "width_mm = 300.0\nlength_mm = 300.0"),
+            ("arc_deg = 110.0", "arc_deg = 110.0\nthickness_mm = 0.1"),
+            ("arc_deg = 110.0", "alpha = 110.0"),
+            ("youngs_modulus_mpa", "E"),
+            ("poissons_ratio", "nu"),
+            ("threshold = 0.019", "r0 = 0.019"),
+            ("mesh_history", "mesh-history"),
+            ("tolerance = 1e-7", "tolerance = 1e-7\nmax_iter = 50\nbanana = 1"),
+            ("[output]", "[output]\ncolour = true"),
+            ("part = \"quarter\"", "half = true"),
+            ("[material]", "[materail]"),
+            ("[solver]", "[newton]"),
+            ("[solver]", "[solver.newton]\nx = 1\n[solver]"),
+            ("# A tape spring.", "length_mm = 300.0"),
+            ("# A tape spring.", "banana = 1"),
+            ("[symmetry]\npart = \"quarter\"\n", "[mesh.symmetry]\n"),
+            ("length_mm = 300.0", "length_m = 0.3\nlength_mm = 300.0"),
+        ]),
+    );
+}
+
+#[test]
+fn units() {
+    pin(
+        "units",
+        &errors(&[
+            ("length_mm = 300.0", "length_m = 0.3"),
+            ("length_mm = 300.0", "length_cm = 30"),
+            ("length_mm = 300.0", "length = 300.0"),
+            ("length_mm = 300.0", "length_millimetres = 300.0"),
+            ("radius_mm = 10.0", "radius_inch = 0.4"),
+            ("thickness_mm = 0.1", "thikness_um = 100"),
+            ("arc_deg = 110.0", "arc_rad = 1.92"),
+            ("youngs_modulus_mpa = 131000.0", "youngs_modulus_gpa = 131"),
+            ("youngs_modulus_mpa = 131000.0", "E_GPa = 131"),
+            ("length_mm = 300.0", "length_mm = \"0.3 m\""),
+            ("length_mm = 300.0", "length_m = \"long\""),
+            ("youngs_modulus_mpa = 131000.0", "youngs_modulus_mpa = 131e9"),
+        ]),
+    );
+}
+
+#[test]
+fn missing() {
+    pin(
+        "missing",
+        &errors(&[
+            ("radius_mm = 10.0\n", ""),
+            ("increment_deg = 0.4\n\n", "\n"),
+            ("elements = [4, 4]\n", ""),
+            ("kind = \"isotropic\"\n", ""),
+            ("[load]\nkind = \"end-rotation\"\nsense = \"opposite\"\nrotation_deg = 60.0\nincrement_deg = 0.4\n\n", ""),
+            (
+                "[geometry]\nkind = \"tape-spring\"\nlength_mm = 300.0\nradius_mm = 10.0\narc_deg = 110.0\n",
+                "geometry = { kind = \"tape-spring\", length_mm = 300.0 }\n",
+            ),
+        ]),
+    );
+    let outside = RIGHT.replace("[symmetry]\npart = \"quarter\"\n", "");
+    let stray = parse(&format!("symmetry = \"quarter\"\n{outside}"), "scene.toml").unwrap_err();
+    pin("value_for_table", &report(&stray));
+    let empty = parse("", "empty.toml").unwrap_err();
+    pin("missing_everything", &report(&empty));
+}
+
+#[test]
+fn types() {
+    pin(
+        "types",
+        &errors(&[
+            ("length_mm = 300.0", "length_mm = \"300\""),
+            ("length_mm = 300.0", "length_mm = [300.0]"),
+            ("length_mm = 300.0", "length_mm = true"),
+            ("length_mm = 300.0", "length_mm = 1979-05-27"),
+            ("elements = [4, 4]", "elements = [4.0, 4]"),
+            ("elements = [4, 4]", "elements = [4, 4.5]"),
+            ("elements = [4, 4]", "elements = [4, 4, 4]"),
+            ("elements = [4, 4]", "elements = [4, \"4\"]"),
+            ("elements = [4, 4]", "elements = { length = 4, arc = 4 }"),
+            ("max_iterations = 100", "max_iterations = 1e2"),
+            ("mesh_history = false", "mesh_history = \"no\""),
+            ("mesh_history = false", "mesh_history = 1"),
+            ("sense = \"opposite\"", "sense = -1"),
+            ("length_limit = \"sqrt-radius-thickness\"", "length_limit = 1.0"),
+            ("[output]\nsync = \"each-second\"\nmesh_history = false", "[[output]]\nsync = \"each-second\""),
+        ]),
+    );
+}
+
+#[test]
+fn words() {
+    pin(
+        "words",
+        &errors(&[
+            ("sense = \"opposite\"", "sense = \"oposite\""),
+            ("sense = \"opposite\"", "sense = \"Equal\""),
+            ("sense = \"opposite\"", "sense = \"up\""),
+            ("kind = \"tape-spring\"", "kind = \"boom\""),
+            ("part = \"quarter\"", "part = \"half\""),
+            ("quadrature = \"full\"", "quadrature = \"gauss\""),
+            ("sync = \"each-second\"", "sync = \"each_stage\""),
+        ]),
+    );
+}
+
+#[test]
+fn numbers() {
+    pin(
+        "numbers",
+        &errors(&[
+            ("length_mm = 300.0", "length_mm = -300.0"),
+            ("length_mm = 300.0", "length_mm = nan"),
+            ("length_mm = 300.0", "length_mm = 1e400"),
+            ("length_mm = 300.0", "length_mm = 3e6"),
+            ("radius_mm = 10.0", "radius_mm = -inf"),
+            ("thickness_mm = 0.1", "thickness_mm = 0"),
+            ("thickness_mm = 0.1", "thickness_mm = 10.0"),
+            ("poissons_ratio = 0.3", "poissons_ratio = 0.5"),
+            ("poissons_ratio = 0.3", "poissons_ratio = -1"),
+            ("arc_deg = 110.0", "arc_deg = 360"),
+            ("arc_deg = 110.0", "arc_deg = 0.0"),
+            ("degree = [3, 3]", "degree = 1"),
+            ("degree = [3, 3]", "degree = [3, 6]"),
+            ("elements = [4, 4]", "elements = [4, 0]"),
+            ("elements = [4, 4]", "elements = 99999999999999999999999999999999999999999999"),
+            ("elements = [4, 4]", "elements = [4, 5]"),
+            ("elements = [4, 4]", "elements = 7"),
+            ("rotation_deg = 60.0", "rotation_deg = -60.0"),
+            ("rotation_deg = 60.0", "rotation_deg = 180"),
+            ("increment_deg = 0.4\n", "increment_deg = 0\n"),
+            ("increment_deg = 0.4\n", "increment_deg = -0.4\n"),
+            ("increment_deg = 0.4\n", "increment_deg = 61\n"),
+            ("threshold = 0.019", "threshold = 0.0"),
+            ("tolerance = 1e-7", "tolerance = 0"),
+            ("tolerance = 1e-7", "tolerance = 0.1"),
+            ("max_iterations = 100", "max_iterations = 0"),
+            ("least_increment_deg = 1e-6", "least_increment_deg = 0.5"),
+            ("least_increment_deg = 1e-6", "least_increment_deg = 0.05"),
+            ("least_increment_deg = 1e-6\nsnap_tolerance_deg = 0.01", "least_increment_deg = 0.05"),
+        ]),
+    );
+}
+
+const STAGES: &str =
+    "stages = [\"solve\", \"evaluate-indicators\", \"refine-knots\", \"project-displacements\", \"re-equilibrate\"]";
+
+#[test]
+fn stages() {
+    pin(
+        "stages",
+        &errors(&[
+            (STAGES, "stages = []"),
+            (STAGES, "stages = \"solve\""),
+            (STAGES, "stages = true"),
+            (STAGES, "stages = [\"solve\", 2]"),
+            (STAGES, "stages = [\"solve\", \"evaluate\"]"),
+            (STAGES, "stages = [\"solve\", \"remesh\"]"),
+            (STAGES, "stages = [\"solve\", \"solve\"]"),
+            (STAGES, "stages = [\"evaluate-indicators\", \"solve\"]"),
+            (STAGES, "stages = [\"evaluate-indicators\"]"),
+            (STAGES, "stages = [\"solve\", \"refine-knots\", \"project-displacements\", \"re-equilibrate\"]"),
+            (STAGES, "stages = [\"solve\", \"evaluate-indicators\", \"refine-knots\"]"),
+            (STAGES, "stages = [\"solve\", \"evaluate-indicators\", \"refine-knots\", \"project-displacements\"]"),
+            (
+                STAGES,
+                "stages = [\n  \"solve\",\n  \"evaluate-indicators\",\n  \"project-displacements\",\n  \"re-equilibrate\",\n]",
+            ),
+            (
+                STAGES,
+                "stages = [\n  \"solve\",\n  \"evaluate-indicators\",\n  \"project-displacements\",\n  \"refine-knots\",\n  \"re-equilibrate\",\n]",
+            ),
+            (STAGES, "stages = [\"solve\"]"),
+        ]),
+    );
+}
+
+#[test]
+fn exclusive_keys() {
+    pin("exclusive_keys", &errors(&[("threshold = 0.019", "threshold = 0.019\nlength_limit_mm = 1.0")]));
+}
+
+#[test]
+fn syntax() {
+    pin(
+        "syntax",
+        &errors(&[
+            ("length_mm = 300.0", "length_mm = 300.0 mm"),
+            ("length_mm = 300.0", "length_mm = 300,0"),
+            ("length_mm = 300.0", "length_mm 300.0"),
+            ("length_mm = 300.0", "length_mm ="),
+            ("length_mm = 300.0", "length_mm = 300.0\nlength_mm = 400.0"),
+            ("sense = \"opposite\"", "sense = opposite"),
+            ("sense = \"opposite\"", "sense = \"opposite"),
+            ("elements = [4, 4]", "elements = [4, 4"),
+            ("[output]", "[output"),
+            ("[output]", "[geometry]"),
+            ("# A tape spring.", "symmetry = \"quarter\""),
+            ("arc_deg = 110.0", "arc_deg ="),
+            ("arc_deg = 110.0", "arc_deg = 110°"),
+            ("mesh_history = false\n", "mesh_history = False"),
+        ]),
+    );
+}
+
+#[test]
+fn settings() {
+    pin(
+        "settings",
+        &setting_errors(&[
+            "solver.max_iterations",
+            "nonsense",
+            "max_iterations=200",
+            "banana=1",
+            "solver.max_iteration=200",
+            "solvr.max_iterations=200",
+            "solver.max_iterations=many",
+            "solver.max_iterations=",
+            "solver.max_iterations=2 0",
+            "solver.max_iterations = 0",
+            "solver.tolerance=1",
+            "load.increment_deg=90",
+            "load.sense=eqal",
+            "geometry.length_m=0.3",
+            "geometry.arc=90",
+            "symmetry=quarter",
+            "a.b.c=1",
+            "pipeline.stages=[\"solve\"]",
+            "material.thickness_mm=12",
+        ]),
+    );
+}
+
+#[test]
+fn help() {
+    pin("help", &help_text());
+}

@@ -1,0 +1,80 @@
+//! The scenes in `pipelines/`: all parse, and say what their names say.
+
+use std::fs;
+use std::path::Path;
+
+use foldline::scene::{Geometry, LengthLimit, Material, Quadrature, Scene, Sense, Stage, Symmetry, parse};
+
+fn read(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines").join(name);
+    let text = fs::read_to_string(&path).unwrap();
+    parse(&text, name).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn sizes(scene: &Scene) -> [f64; 3] {
+    let Geometry::TapeSpring { length_mm, radius_mm, .. } = scene.geometry;
+    let Material::Isotropic { thickness_mm, .. } = scene.material;
+    [length_mm, radius_mm, thickness_mm]
+}
+
+#[test]
+fn every_scene_parses_and_opens_with_what_it_shows() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines");
+    let mut count = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        assert!(name.ends_with(".toml"), "{name} is no scene");
+        read(name);
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.lines().take(2).all(|line| line.starts_with("# ")), "{name} does not say what it shows");
+        count += 1;
+    }
+    assert!(count >= 9);
+}
+
+#[test]
+fn the_cases_of_the_paper_differ_from_the_baseline_in_their_sizes_alone() {
+    let baseline = read("baseline.toml");
+    assert_eq!(sizes(&baseline), [300.0, 10.0, 0.1]);
+    assert_eq!(baseline.load.sense, Sense::Opposite);
+    assert_eq!(baseline.mesh.elements, [4, 4]);
+    assert_eq!(baseline.mesh.quadrature, Quadrature::Full);
+    assert_eq!(baseline.pipeline, Stage::ALL);
+    assert_eq!(baseline.adapt.as_ref().unwrap().length_limit, LengthLimit::SqrtRadiusThickness);
+    let cases = [
+        ("length-150.toml", [150.0, 10.0, 0.1]),
+        ("length-600.toml", [600.0, 10.0, 0.1]),
+        ("radius-6-thickness-0.15.toml", [300.0, 6.0, 0.15]),
+        ("radius-15-thickness-0.06.toml", [300.0, 15.0, 0.06]),
+        ("radius-15.toml", [300.0, 15.0, 0.1]),
+        ("radius-20.toml", [300.0, 20.0, 0.1]),
+    ];
+    for (name, expected) in cases {
+        let scene = read(name);
+        assert_eq!(sizes(&scene), expected, "{name}");
+        for difference in baseline.differences(&scene) {
+            let path = difference.path.as_str();
+            assert!(
+                ["geometry.length_mm", "geometry.radius_mm", "material.thickness_mm"].contains(&path),
+                "{name}: {path}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_quarter_model_is_the_baseline_cut_twice() {
+    let differences = read("baseline.toml").differences(&read("baseline-quarter.toml"));
+    let paths: Vec<_> = differences.iter().map(|difference| difference.path.as_str()).collect();
+    assert_eq!(paths, ["symmetry.part"]);
+}
+
+#[test]
+fn the_uniform_scene_has_no_stage_that_refines() {
+    let uniform = read("baseline-uniform.toml");
+    assert_eq!(uniform.pipeline, [Stage::Solve]);
+    assert_eq!(uniform.adapt, None);
+    assert_eq!(uniform.symmetry, Symmetry::Quarter);
+    assert_eq!(uniform.mesh.elements, [128, 16]);
+}

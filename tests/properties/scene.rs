@@ -1,0 +1,215 @@
+//! Properties of scenes: no text brings the parser down, and the hash means what it says.
+
+use foldline::scene::{KEYS, Key, Kind, Presence, Reach, Scene, Stage, parse, parse_with_settings};
+use proptest::prelude::*;
+
+const RIGHT: &str = include_str!("../../pipelines/baseline-quarter.toml");
+
+fn right() -> Scene {
+    parse(RIGHT, "baseline-quarter.toml").unwrap()
+}
+
+/// Whatever comes of a text, it can be shown.
+fn is_handled(text: &str, settings: &[String]) {
+    if let Err(error) = parse_with_settings(text, "scene.toml", settings) {
+        assert!(error.plain().starts_with("error: "));
+        assert!(!error.summary().is_empty() && error.line() >= 1);
+        error.coloured();
+    }
+}
+
+/// A value that may or may not suit a key.
+fn any_value() -> impl Strategy<Value = String> {
+    prop_oneof![
+        any::<f64>().prop_map(|number| format!("{number:?}").replace("NaN", "nan")),
+        any::<i64>().prop_map(|number| number.to_string()),
+        "[-+0-9a-zµ°_,.\"'\\[\\]{}= ]{0,20}",
+        Just("[3, 3]".to_owned()),
+        Just("\"0.3 m\"".to_owned()),
+        Just("{}".to_owned()),
+        Just("1979-05-27T07:32:00Z".to_owned()),
+        Just("0xffffffffffffffffffffffffffffffffffffffff".to_owned()),
+    ]
+}
+
+fn any_key() -> impl Strategy<Value = &'static Key> {
+    (0..KEYS.len()).prop_map(|index| KEYS[index])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1000) })]
+
+    #[test]
+    fn any_text_is_handled(text in any::<String>()) {
+        is_handled(&text, &[]);
+    }
+
+    #[test]
+    fn text_that_looks_like_toml_is_handled(text in "([\\[\\]a-z_.=\"'# \\r\\n\\t0-9µ°,{}+-]|geometry|length_mm|mesh){0,60}") {
+        is_handled(&text, &[]);
+    }
+
+    #[test]
+    fn a_scene_with_a_piece_replaced_is_handled(at in 0..RIGHT.len(), length in 0usize..40, piece in "\\PC{0,6}|[\\x00-\\x7f]{0,6}") {
+        let end = (at + length).min(RIGHT.len());
+        prop_assume!(RIGHT.is_char_boundary(at) && RIGHT.is_char_boundary(end));
+        is_handled(&format!("{}{piece}{}", &RIGHT[..at], &RIGHT[end..]), &[]);
+    }
+
+    #[test]
+    fn a_scene_cut_anywhere_is_handled(at in 0..RIGHT.len()) {
+        prop_assume!(RIGHT.is_char_boundary(at));
+        is_handled(&RIGHT[..at], &[]);
+        is_handled(&RIGHT[at..].replace('\n', "\r\n"), &[]);
+    }
+
+    #[test]
+    fn any_setting_is_handled(key in any_key(), value in any_value(), rest in any::<String>()) {
+        is_handled(RIGHT, &[format!("{}={value}", key.path())]);
+        is_handled(RIGHT, &[format!("{}{value}", key.name), rest]);
+    }
+
+    #[test]
+    fn a_value_in_the_file_is_judged_as_the_same_value_in_a_setting(key in any_key(), value in any_value()) {
+        prop_assume!(value.starts_with(|c: char| !c.is_ascii_alphabetic()) && !value.contains('#'));
+        let setting = parse_with_settings(RIGHT, "scene.toml", &[format!("{}={value}", key.path())]);
+        let blank: String = RIGHT.lines().filter(|line| !is_line_of(line, key)).map(|line| format!("{line}\n")).collect();
+        let header = format!("[{}]\n", key.section);
+        let line = format!("{header}{} = {value}\n", key.name);
+        let text = if blank.contains(&header) { blank.replace(&header, &line) } else { format!("{blank}\n{line}") };
+        // `kind` stands in three tables: all its lines are gone, and the file lacks two of them.
+        prop_assume!(key.name != "kind");
+        let file = parse(&text, "scene.toml");
+        prop_assert_eq!(file.is_ok(), setting.is_ok(), "{}\n{:?}", text, setting.err());
+        if let (Ok(file), Ok(setting)) = (file, setting) {
+            prop_assert_eq!(file.hash(), setting.hash());
+            prop_assert_eq!(file, setting);
+        }
+    }
+
+    #[test]
+    fn the_hash_changes_with_a_number_exactly_where_it_decides_states(key in any_key(), share in 0.01f64..0.99) {
+        let Kind::Number(limits) = &key.kind else { return Ok(()) };
+        let high = if limits.high.value.is_finite() { limits.high.value } else { 1.0 };
+        let value = limits.low.value + share * (high - limits.low.value);
+        let Ok(changed) = parse_with_settings(RIGHT, "scene.toml", &[format!("{}={value:?}", key.path())]) else {
+            return Ok(()); // does not go with the other keys
+        };
+        let differences = right().differences(&changed);
+        prop_assert!(differences.iter().all(|difference| difference.reach == key.reach), "{:?}", differences);
+        let decides = differences.iter().any(|difference| difference.reach != Reach::Free);
+        prop_assert_eq!(changed.hash() != right().hash(), decides);
+    }
+
+    #[test]
+    fn a_scene_written_and_read_is_the_same_scene(key in any_key(), value in any_value()) {
+        if let Ok(scene) = parse_with_settings(RIGHT, "scene.toml", &[format!("{}={value}", key.path())]) {
+            let again = parse(&scene.to_toml(), "written.toml").unwrap();
+            prop_assert_eq!(again.hash(), scene.hash());
+            prop_assert_eq!(again, scene);
+        }
+    }
+}
+
+fn is_line_of(line: &str, key: &Key) -> bool {
+    let displaced = |other: &&&Key| {
+        other.section == key.section
+            && (other.presence == Presence::InsteadOf(key.name) || key.presence == Presence::InsteadOf(other.name))
+    };
+    let names = KEYS.iter().filter(displaced).map(|other| other.name).chain([key.name]);
+    names.into_iter().any(|name| line.starts_with(&format!("{name} = ")))
+}
+
+/// For each key a value that differs from that of the scene and goes with the other keys.
+fn another_value(key: &Key) -> Option<&'static str> {
+    Some(match key.path().as_str() {
+        "geometry.kind" | "material.kind" | "load.kind" | "adapt.length_limit" => return None, // one choice only
+        "geometry.length_mm" => "301",
+        "geometry.radius_mm" => "11",
+        "geometry.arc_deg" => "111",
+        "material.youngs_modulus_mpa" => "70000",
+        "material.poissons_ratio" => "0.31",
+        "material.thickness_mm" => "0.2",
+        "mesh.degree" => "[3, 4]",
+        "mesh.elements" => "[4, 6]",
+        "mesh.quadrature" => "reduced",
+        "symmetry.part" => "half-arc",
+        "load.sense" => "equal",
+        "load.rotation_deg" => "61",
+        "load.increment_deg" => "0.5",
+        "adapt.threshold" => "0.02",
+        "adapt.length_limit_mm" => "2",
+        "solver.tolerance" => "1e-8",
+        "solver.max_iterations" => "101",
+        "solver.least_increment_deg" => "2e-6",
+        "solver.snap_tolerance_deg" => "0.02",
+        "pipeline.stages" => "[\"solve\", \"evaluate-indicators\"]",
+        "output.sync" => "at-end",
+        "output.mesh_history" => "true",
+        path => panic!("{path} needs a value here"),
+    })
+}
+
+#[test]
+fn the_hash_changes_with_every_key_but_the_free_ones() {
+    for key in KEYS {
+        let Some(value) = another_value(key) else { continue };
+        let changed = parse_with_settings(RIGHT, "scene.toml", &[format!("{}={value}", key.path())]).unwrap();
+        assert_eq!(changed.hash() == right().hash(), key.reach == Reach::Free, "{}", key.path());
+        let differences = right().differences(&changed);
+        assert!(differences.iter().any(|difference| difference.path == key.path()), "{}", key.path());
+        assert!(differences.iter().all(|difference| difference.reach == key.reach), "{differences:?}");
+    }
+}
+
+#[test]
+fn free_are_the_outputs_and_the_target_alone() {
+    let free: Vec<_> = KEYS.iter().filter(|key| key.reach == Reach::Free).map(|key| key.path()).collect();
+    assert_eq!(free, ["load.rotation_deg", "output.sync", "output.mesh_history"]);
+}
+
+#[test]
+fn every_value_of_a_scene_is_a_key_of_the_table() {
+    let json = serde_json::to_value(right()).unwrap();
+    let mut nothing_known = right();
+    nothing_known.adapt = None;
+    nothing_known.pipeline = vec![Stage::Solve];
+    let paths: Vec<_> = right().differences(&nothing_known).into_iter().map(|difference| difference.path).collect();
+    assert_eq!(paths, ["adapt.length_limit", "adapt.threshold", "pipeline.stages"]);
+    for (section, value) in json.as_object().unwrap() {
+        let keys = || KEYS.iter().filter(|key| key.section == section);
+        assert!(keys().count() > 0, "{section}");
+        for name in value.as_object().into_iter().flat_map(|fields| fields.keys()) {
+            assert!(keys().any(|key| key.name == name), "{section}.{name} is no key of the table");
+        }
+    }
+}
+
+#[test]
+fn writing_and_comments_do_not_change_the_hash() {
+    let bare: String =
+        RIGHT.lines().filter(|line| !line.starts_with('#')).map(|line| line.replace(" = ", "=") + "\n").collect();
+    let integers = bare.replace("300.0", "300").replace("110.0", "1.1e2").replace("[3, 3]", "3");
+    assert_ne!(integers, RIGHT);
+    assert_eq!(parse(&integers, "scene.toml").unwrap().hash(), right().hash());
+    let signed = |zero: &str| parse_with_settings(RIGHT, "scene.toml", &[format!("material.poissons_ratio={zero}")]);
+    assert_eq!(signed("0.0").unwrap().hash(), signed("-0.0").unwrap().hash());
+}
+
+/// The hash is in every log: a change of it must be on purpose, and comes with a new domain string.
+#[test]
+fn the_hash_of_a_known_scene_stays() {
+    let known = "f6e54af3d6325ec8f37c063e23ba568669f118bfc89687c913470146d3493e86";
+    assert_eq!(right().hash().to_hex().as_str(), known);
+}
+
+#[test]
+fn deep_nesting_is_handled() {
+    for depth in [100, 10_000, 200_000] {
+        is_handled(&format!("a = {}", "[".repeat(depth)), &[]);
+        is_handled(&format!("a = {}1{}", "[".repeat(depth), "]".repeat(depth)), &[]);
+        is_handled(&format!("a = {}", "{a = ".repeat(depth)), &[]);
+        is_handled(&format!("{}a = 1", "a.".repeat(depth)), &[]);
+        is_handled(&format!("[{}a]", "a.".repeat(depth)), &[]);
+    }
+}
