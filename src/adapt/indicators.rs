@@ -4,8 +4,9 @@
 
 use rayon::prelude::*;
 
-use crate::model::{Discretization, Tables};
+use crate::model::Discretization;
 use crate::scene::{Adapt, Geometry, LengthLimit, Material, Scene};
+use crate::shell::{PointReference, Strains};
 use crate::spline::Spans;
 
 /// What the indicators say of a state.
@@ -62,27 +63,37 @@ fn length_limit(scene: &Scene, rule: LengthLimit) -> f64 {
 
 /// max|κ_i| h_i over the quadrature points of an element.
 fn element_indicators(discretization: &Discretization, displacement: &[[f64; 3]], element: usize) -> [f64; 2] {
-    let tables: &Tables = &discretization.tables;
-    let [_, p2] = discretization.mesh.degree;
+    let mut largest = [0.0_f64; 2];
+    for (strains, lengths) in element_strains(discretization, displacement, element) {
+        for axis in 0..2 {
+            largest[axis] = largest[axis].max(strains.bending[axis].abs() / (lengths[axis] * lengths[axis]));
+        }
+    }
+    [0, 1].map(|axis| largest[axis] * discretization.tables.lengths[element][axis])
+}
+
+/// Strains at the quadrature points of an element, in the parameter basis, each with |A₁|, |A₂|: physical components are
+/// strains over the lengths.
+pub fn element_strains(
+    discretization: &Discretization,
+    displacement: &[[f64; 3]],
+    element: usize,
+) -> Vec<(Strains, [f64; 2])> {
+    let tables = &discretization.tables;
+    let [p1, p2] = discretization.mesh.degree;
     let n2 = discretization.mesh.control_counts()[1];
-    let count = (discretization.mesh.degree[0] + 1) * (p2 + 1);
     let first = [tables.first[0][element / tables.elements[1]], tables.first[1][element % tables.elements[1]]];
     let functions = tables.element_functions(element);
-    let mut largest = [0.0_f64; 2];
-    for (q, point) in tables.element_points(element).iter().enumerate() {
+    let at_point = |(q, point): (usize, &PointReference)| {
         let mut u = [[0.0; 3]; 5];
         for k in 0..5 {
-            let row = &functions[(q * 5 + k) * tables.padded..][..count];
+            let row = &functions[(q * 5 + k) * tables.padded..][..(p1 + 1) * (p2 + 1)];
             for (a, function) in row.iter().enumerate() {
                 let control = displacement[(first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1)];
                 (0..3).for_each(|c| u[k][c] += function * control[c]);
             }
         }
-        let bending = point.strains(&u).bending;
-        let lengths = point.tangent_lengths();
-        for axis in 0..2 {
-            largest[axis] = largest[axis].max(bending[axis].abs() / (lengths[axis] * lengths[axis]));
-        }
-    }
-    [0, 1].map(|axis| largest[axis] * tables.lengths[element][axis])
+        (point.strains(&u), point.tangent_lengths())
+    };
+    tables.element_points(element).iter().enumerate().map(at_point).collect()
 }

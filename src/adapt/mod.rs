@@ -3,5 +3,5 @@
 mod indicators;
 mod refinement;
 
-pub use indicators::{Indicators, evaluate_indicators};
+pub use indicators::{Indicators, element_strains, evaluate_indicators};
 pub use refinement::{project_displacements, refine_mesh};

@@ -270,8 +270,10 @@ fn constraints(scene: &Scene, mesh: &Mesh, points: &[[f64; 3]]) -> Vec<Expressio
     let mut clamp = |edge: usize, inner: usize| {
         for i2 in 0..n2 {
             all.extend((0..3).map(|c| vec![(at(edge, i2, c), 1.0)]));
-            // The normal of a cylinder at a control point: radial in the section plane.
-            let [_, y, z] = points[inner * n2 + i2];
+            // The normal of a cylinder at a control point: radial in the section plane. At a plane of symmetry the
+            // first two control points span the tangent and share the normal there.
+            let like = if half_arc && i2 == 1 { 0 } else { i2 };
+            let [_, y, z] = points[inner * n2 + like];
             let radius = norm([0.0, y, z]);
             all.push(vec![(at(inner, i2, 1), y / radius), (at(inner, i2, 2), z / radius)]);
         }

@@ -1,0 +1,7 @@
+//! A run is a function of its scene: the same chain of hashes however it is run.
+
+mod threads;
+
+#[path = "../verification/support.rs"]
+#[allow(dead_code, reason = "shared with the verification tests")]
+mod support;

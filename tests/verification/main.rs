@@ -1,0 +1,7 @@
+//! Physics against closed forms, published tables, independent solvers and finite differences.
+
+mod assembly;
+mod baseline;
+mod house;
+mod refinement;
+mod support;
