@@ -2,6 +2,7 @@
 
 mod camera;
 mod colour;
+mod deformed_surface;
 mod mesh_picture;
 mod plot;
 mod samples;
@@ -9,6 +10,7 @@ mod ticks;
 mod vtu;
 
 pub use camera::ViewDirection;
+pub use deformed_surface::deformed_surface;
 pub use mesh_picture::{Picture, mesh_picture};
 pub use plot::{PlotError, moment_rotation_plot};
 pub use samples::{SamplesError, SurfaceSamples};

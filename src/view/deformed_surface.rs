@@ -1,0 +1,179 @@
+//! The deformed shell as samples for pictures: the whole of it, whatever part is modelled.
+
+use super::samples::{SamplesError, SurfaceSamples};
+use crate::scene::Scene;
+use crate::shell::{cross, dot, norm};
+use crate::spline::{Mesh, SurfacePoint, mid_surface_point};
+
+/// Points and values on a grid that follows the elements.
+struct Patch {
+    counts: [usize; 2],
+    points: Vec<[f64; 3]>,
+    values: Vec<f64>,
+}
+
+/// Samples the shell of `scene` on `mesh`, displaced by `displacement` (mm, one vector for each control point), with
+/// `cells_per_element` cells each way in every element. The value of a cell is the larger of the physical bending
+/// strains |κᵢᵢ|/|Aᵢ|² along the length and along the arc at its middle, 1/mm. Symmetric parts are reflected.
+///
+/// # Errors
+/// Where a displacement is not finite.
+///
+/// # Panics
+/// Where `displacement` does not have the length of the mesh's control points.
+pub fn deformed_surface(
+    scene: &Scene,
+    mesh: &Mesh,
+    displacement: &[[f64; 3]],
+    cells_per_element: usize,
+) -> Result<SurfaceSamples, SamplesError> {
+    assert_eq!(displacement.len(), mesh.control_points.len());
+    let parts = cells_per_element.max(1);
+    let [along, across] = [0, 1].map(|way| divided(&mesh.knots[way], parts));
+    let at = |parameters| mid_surface_point(mesh, displacement, parameters).position;
+    let points = along.iter().flat_map(|u| across.iter().map(|v| at([*u, *v]))).collect();
+    let middle = |pair: &[f64]| 0.5 * (pair[0] + pair[1]);
+    let strain = |u: &[f64], v: &[f64]| bending_strain(mesh, displacement, [middle(u), middle(v)]);
+    let values = along.windows(2).flat_map(|u| across.windows(2).map(|v| strain(u, v)).collect::<Vec<_>>()).collect();
+    let mut patch = Patch { counts: [along.len(), across.len()], points, values };
+    let [cut_at_middle, cut_at_apex] = scene.symmetry.cuts();
+    if cut_at_middle {
+        patch = patch.with_reflection_along();
+    }
+    if cut_at_apex {
+        patch = patch.with_reflection_across();
+    }
+    let lines = patch.knot_lines(parts);
+    let Patch { counts, points, values } = patch;
+    SurfaceSamples::new(counts, points, values, lines, "bending strain max|κ| (1/mm)")
+}
+
+/// Every element's parameters, divided into equal parts.
+fn divided(knots: &[f64], parts: usize) -> Vec<f64> {
+    let spans = knots.windows(2).filter(|span| span[0] < span[1]);
+    let inner = spans.flat_map(|span| (1..=parts).map(|i| span[0] + (span[1] - span[0]) * i as f64 / parts as f64));
+    knots.first().copied().into_iter().chain(inner).collect()
+}
+
+/// The larger of |B₁₁ − b₁₁|/A₁₁ and |B₂₂ − b₂₂|/A₂₂ at a point.
+fn bending_strain(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) -> f64 {
+    let curvatures = |surface: &SurfacePoint| {
+        let [a1, a2, a11, a22, _] = surface.derivatives;
+        let normal = cross(a1, a2);
+        [a11, a22].map(|second| dot(second, normal) / norm(normal))
+    };
+    let undeformed = mid_surface_point(mesh, &[], parameters);
+    let before = curvatures(&undeformed);
+    let after = curvatures(&mid_surface_point(mesh, displacement, parameters));
+    let physical = |i: usize| {
+        let tangent = undeformed.derivatives[i];
+        (before[i] - after[i]).abs() / dot(tangent, tangent)
+    };
+    physical(0).max(physical(1))
+}
+
+impl Patch {
+    /// With its image beyond the last row, in the plane x = const. through that row.
+    fn with_reflection_along(self) -> Self {
+        let [n1, n2] = self.counts;
+        let last_row = &self.points[(n1 - 1) * n2..];
+        let plane = last_row.iter().map(|point| point[0]).sum::<f64>() / n2 as f64;
+        let image = |&[x, y, z]: &[f64; 3]| [2.0 * plane - x, y, z];
+        let rows = self.points.chunks(n2).rev().skip(1).flatten().map(image);
+        let points = self.points.iter().copied().chain(rows).collect();
+        let values = self.values.chunks(n2 - 1).chain(self.values.chunks(n2 - 1).rev()).flatten().copied().collect();
+        Self { counts: [2 * n1 - 1, n2], points, values }
+    }
+
+    /// With its image before the first column, in the plane y = 0 through it.
+    fn with_reflection_across(self) -> Self {
+        let [n1, n2] = self.counts;
+        let image = |&[x, y, z]: &[f64; 3]| [x, -y, z];
+        let widened = |row: &[[f64; 3]]| -> Vec<[f64; 3]> {
+            row[1..].iter().rev().map(image).chain(row.iter().copied()).collect()
+        };
+        let points = self.points.chunks(n2).flat_map(widened).collect();
+        let mirrored = |row: &[f64]| -> Vec<f64> { row.iter().rev().chain(row).copied().collect() };
+        let values = self.values.chunks(n2 - 1).flat_map(mirrored).collect();
+        Self { counts: [n1, 2 * n2 - 1], points, values }
+    }
+
+    /// Every `parts`-th line of the grid each way.
+    fn knot_lines(&self, parts: usize) -> Vec<Vec<[f64; 3]>> {
+        let [n1, n2] = self.counts;
+        let across = (0..n1).step_by(parts).map(|i| self.points[i * n2..(i + 1) * n2].to_vec());
+        let along = (0..n2).step_by(parts).map(|j| (0..n1).map(|i| self.points[i * n2 + j]).collect());
+        across.chain(along).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::starting_mesh;
+    use crate::scene::{self, Symmetry};
+
+    const SCENE: &str = r#"
+        [geometry]
+        kind = "tape-spring"
+        length_mm = 60.0
+        radius_mm = 10.0
+        arc_deg = 80.0
+        [material]
+        kind = "isotropic"
+        youngs_modulus_mpa = 131000.0
+        poissons_ratio = 0.3
+        thickness_mm = 0.1
+        [mesh]
+        degree = [3, 3]
+        elements = [4, 4]
+        [load]
+        kind = "end-rotation"
+        sense = "opposite"
+        rotation_deg = 10.0
+        increment_deg = 1.0
+        [pipeline]
+        stages = ["solve"]
+    "#;
+
+    fn undeformed(symmetry: Symmetry, cells_per_element: usize) -> SurfaceSamples {
+        let scene = Scene { symmetry, ..scene::parse(SCENE, "test").unwrap() };
+        let mesh = starting_mesh(&scene).unwrap();
+        let displacement = vec![[0.0; 3]; mesh.control_points.len()];
+        deformed_surface(&scene, &mesh, &displacement, cells_per_element).unwrap()
+    }
+
+    #[test]
+    fn parts_make_the_whole() {
+        let whole = undeformed(Symmetry::None, 2);
+        assert_eq!(whole.counts, [9, 9]);
+        assert_eq!(whole.knot_lines.len(), 10);
+        for symmetry in [Symmetry::HalfLength, Symmetry::HalfArc, Symmetry::Quarter] {
+            let completed = undeformed(symmetry, 2);
+            assert_eq!(completed.counts, whole.counts);
+            assert_eq!(completed.knot_lines.len(), whole.knot_lines.len());
+            for (point, expected) in completed.points.iter().zip(&whole.points) {
+                // The arc is parametrized anew in each part: the same cylinder, points along it a little apart.
+                let off: f64 = (0..3).map(|k| (point[k] - expected[k]).powi(2)).sum::<f64>().sqrt();
+                assert!(off < 0.2, "{symmetry:?}: {point:?} for {expected:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn flattening_the_section_bends_it_by_its_curvature() {
+        let scene = scene::parse(SCENE, "test").unwrap();
+        let mesh = starting_mesh(&scene).unwrap();
+        // Onto the tangent plane at the apex, along the z axis.
+        let apex = mesh.control_points.iter().map(|[_, _, z, w]| z / w).fold(f64::MIN, f64::max);
+        let displacement: Vec<_> = mesh.control_points.iter().map(|[_, _, z, w]| [0.0, 0.0, apex - z / w]).collect();
+        let samples = deformed_surface(&scene, &mesh, &displacement, 3).unwrap();
+        assert!(samples.points.iter().all(|point| (point[2] - apex).abs() < 1e-12));
+        assert!(samples.cell_values.iter().all(|value| (value - 0.1).abs() < 1e-12), "{:?}", samples.cell_values);
+    }
+
+    #[test]
+    fn at_rest_nothing_is_bent() {
+        assert!(undeformed(Symmetry::Quarter, 1).cell_values.iter().all(|value| *value == 0.0));
+    }
+}
