@@ -5,7 +5,7 @@ mod digest;
 pub mod equilibrium;
 pub mod model;
 pub mod pipeline;
+pub mod scene;
 pub mod shell;
 pub mod spline;
-pub mod scene;
 pub mod state;
