@@ -1,0 +1,30 @@
+//! The journal: a run as an MCAP log, stage by stage, that survives what happens to processes, disks and files.
+mod backend;
+mod chunk;
+mod codec;
+mod damage;
+mod encoder;
+pub mod format;
+mod frame;
+mod lock;
+mod log;
+mod manifest;
+pub mod message;
+mod reader;
+mod recovery;
+mod soundness;
+mod verify;
+mod writer;
+
+pub use backend::{Backend, FileBackend};
+pub use codec::{CODEC_VERSION, CodecError, decode_mesh, decode_state, encode_mesh, encode_state};
+pub use damage::{Completeness, Damage, LaterCommit, Problem};
+pub use encoder::{EncodeError, ViewerMessage, ViewerTopic};
+pub use lock::{LockError, LogLock};
+pub use log::{Entry, Log, Note, StateError};
+pub use manifest::{Manifest, ManifestError};
+pub use reader::ReadError;
+pub use recovery::{RecoverOutcome, Resume, ResumeError, Resumed, recover};
+pub use soundness::{Flaw, check_mesh, check_state};
+pub use verify::{Finding, Level, verify, verify_log};
+pub use writer::{JournalWriter, ViewerTopics, WriteError};

@@ -1,0 +1,5 @@
+//! What happens to processes, disks and files, done to logs on purpose.
+
+mod support;
+mod synthetic;
+mod truncation;
