@@ -67,12 +67,12 @@ pub(super) fn open(bytes: &[u8], chunk: &Frame, channels: &mut Channels) -> Resu
     let mut messages = Vec::new();
     let mut places = places.into_iter();
     for_each_record(&bytes[chunk.at..chunk.body.end], |opcode, data| {
-        let unreadable = |source| Damage::Unreadable { opcode, source };
+        let unreadable = |cause| Damage::Unreadable { opcode, cause };
         let place = places.next().ok_or(Damage::ChunkHeader)?;
         match opcode {
-            op::SCHEMA => drop(mcap::parse_record(opcode, data).map_err(unreadable)?),
+            op::SCHEMA => drop(frame::parse(opcode, data).map_err(unreadable)?),
             op::CHANNEL => {
-                if let McapRecord::Channel(channel) = mcap::parse_record(opcode, data).map_err(unreadable)? {
+                if let McapRecord::Channel(channel) = frame::parse(opcode, data).map_err(unreadable)? {
                     let known = described.get(&channel.id).or_else(|| channels.get(&channel.id));
                     if known.is_some_and(|known| *known != channel) {
                         return Err(Damage::ChannelChanged { channel: channel.id });
@@ -81,7 +81,7 @@ pub(super) fn open(bytes: &[u8], chunk: &Frame, channels: &mut Channels) -> Resu
                 }
             }
             op::MESSAGE => {
-                if let McapRecord::Message { header, .. } = mcap::parse_record(opcode, data).map_err(unreadable)? {
+                if let McapRecord::Message { header, .. } = frame::parse(opcode, data).map_err(unreadable)? {
                     let id = header.channel_id;
                     let channel = described.get(&id).or_else(|| channels.get(&id));
                     let topic = channel.ok_or(Damage::UnknownChannel { channel: id })?.topic.clone();
@@ -107,7 +107,7 @@ fn for_each_record(mut left: &[u8], mut see: impl FnMut(u8, &[u8]) -> Result<(),
         .with_record_length_limit(CHUNK_BYTES_LIMIT);
     let mut reader = LinearReader::new_with_options(options);
     while let Some(event) = reader.next_event() {
-        match event.map_err(|source| Damage::Unreadable { opcode: op::CHUNK, source })? {
+        match event.map_err(|cause| Damage::Unreadable { opcode: op::CHUNK, cause })? {
             LinearReadEvent::ReadRequest(asked) => {
                 let (given, rest) = left.split_at(asked.min(left.len()));
                 reader.insert(given.len()).copy_from_slice(given);

@@ -1,4 +1,6 @@
 //! What can be wrong with the bytes of a log, and what that leaves of it.
+//!
+//! Each of these errors says all there is to say in one line, its cause with it, because they come in lists.
 
 use super::format::CHUNK_BYTES_LIMIT;
 use super::frame::Kind;
@@ -13,7 +15,6 @@ pub struct Problem {
     /// First byte of the record that is affected.
     pub at: u64,
     /// What is wrong with it.
-    #[source]
     pub damage: Damage,
 }
 
@@ -54,12 +55,12 @@ pub enum Damage {
         bytes: u64,
     },
     /// A record that MCAP cannot read, or a chunk whose checksum is wrong.
-    #[error("the {} cannot be read: {source}", Kind(*opcode))]
+    #[error("the {} cannot be read: {cause}", Kind(*opcode))]
     Unreadable {
         /// MCAP's code for the kind of record.
         opcode: u8,
         /// What MCAP says.
-        source: mcap::McapError,
+        cause: mcap::McapError,
     },
     /// A chunk whose lengths disagree, or that is compressed, which no log of this program is.
     #[error("the lengths in the chunk's header do not agree, or it is compressed, which foldline's logs are not")]
@@ -93,10 +94,10 @@ pub enum Damage {
     AfterCommit,
     /// The commit is not as it was sealed.
     #[error("the commit cannot be trusted: {0}")]
-    Commit(#[source] SealError),
+    Commit(SealError),
     /// The end of the run is not as it was sealed.
     #[error("the record of the end cannot be trusted: {0}")]
-    Finished(#[source] SealError),
+    Finished(SealError),
     /// Written in a later layout.
     #[error(
         "it is written in layout {found}, and this program reads up to {}: use a newer one",
@@ -134,7 +135,7 @@ pub enum Damage {
     },
     /// A report that is no report.
     #[error("the report cannot be read: {0}")]
-    Report(#[source] serde_json::Error),
+    Report(serde_json::Error),
     /// A report of another stage than its commit.
     #[error("the report is not about the state that the commit names")]
     OtherReport,

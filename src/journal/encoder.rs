@@ -15,7 +15,7 @@ use super::format::{
     BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, OWN_TOPICS, PROFILE, REPORT_TOPIC,
     STATE_TOPIC, log_time_ns, sequence,
 };
-use super::frame::Frame;
+use super::frame::{self, Frame};
 use super::message::{CommitMessage, FinishedMessage, MessageHash, ReportMessage, schema_of, seal};
 use crate::pipeline::{Commit, Record};
 use crate::state::Hash;
@@ -192,7 +192,7 @@ impl Encoder {
     /// A chunk of another log again: the same records with the same numbers and times, so that the bytes are the same.
     pub(super) fn again(&mut self, bytes: &[u8], chunk: &Frame) -> Result<(), McapError> {
         for record in chunk::records(bytes, chunk).unwrap_or_default() {
-            match mcap::parse_record(record.opcode, &bytes[record.body])? {
+            match frame::parse(record.opcode, &bytes[record.body])? {
                 McapRecord::Schema { header, data } => {
                     self.writer.add_schema_with_id(header.id, &header.name, &header.encoding, &data)?;
                 }

@@ -63,6 +63,55 @@ pub(super) fn find_chunk(bytes: &[u8], from: usize) -> Option<usize> {
     })
 }
 
+/// A record parsed by MCAP, once no text in it claims to be longer than the record: the parser reserves what a length
+/// claims before it looks whether that much is there.
+pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<mcap::records::Record<'_>, mcap::McapError> {
+    let mut rest = body;
+    let mut texts_fit = || match opcode {
+        op::HEADER => text(&mut rest).and_then(|()| text(&mut rest)),
+        op::METADATA => text(&mut rest).and_then(|()| texts(&mut rest)),
+        op::SCHEMA => take(&mut rest, 2).and_then(|_| text(&mut rest)).and_then(|()| text(&mut rest)),
+        op::CHANNEL => {
+            take(&mut rest, 4)?;
+            text(&mut rest)?;
+            text(&mut rest)?;
+            texts(&mut rest)
+        }
+        _ => Some(()),
+    };
+    match texts_fit() {
+        Some(()) => mcap::parse_record(opcode, body),
+        None => Err(mcap::McapError::UnexpectedEof),
+    }
+}
+
+fn take<'a>(rest: &mut &'a [u8], len: usize) -> Option<&'a [u8]> {
+    let (taken, left) = rest.split_at_checked(len)?;
+    *rest = left;
+    Some(taken)
+}
+
+fn length(rest: &mut &[u8]) -> Option<usize> {
+    let bytes = take(rest, 4)?.try_into().ok()?;
+    usize::try_from(u32::from_le_bytes(bytes)).ok()
+}
+
+/// Passes over one text: its length, then its bytes.
+fn text(rest: &mut &[u8]) -> Option<()> {
+    let len = length(rest)?;
+    take(rest, len).map(drop)
+}
+
+/// Passes over a map of texts: its length in bytes, then names and values.
+fn texts(rest: &mut &[u8]) -> Option<()> {
+    let len = length(rest)?;
+    let mut map = take(rest, len)?;
+    while !map.is_empty() {
+        text(&mut map)?;
+    }
+    Some(())
+}
+
 /// A kind of record, in words.
 pub(super) struct Kind(pub u8);
 

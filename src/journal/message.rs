@@ -274,7 +274,7 @@ pub enum SealError {
         found: Hash,
     },
     /// Sealed, but not the message that was looked for.
-    #[error("the message is sealed and yet not what it should be")]
+    #[error("the message is sealed and yet not what it should be: {0}")]
     Json(#[from] serde_json::Error),
 }
 

@@ -190,8 +190,8 @@ impl Scan {
         let body = &bytes[frame.body.clone()];
         let misplaced = || Err(Damage::Misplaced { opcode: frame.opcode, bytes: body.len() as u64 });
         let parse = || {
-            let unreadable = |source| Damage::Unreadable { opcode: frame.opcode, source };
-            mcap::parse_record(frame.opcode, body).map_err(unreadable)
+            let unreadable = |cause| Damage::Unreadable { opcode: frame.opcode, cause };
+            frame::parse(frame.opcode, body).map_err(unreadable)
         };
         match frame.opcode {
             op::HEADER if frame.at == mcap::MAGIC.len() => {

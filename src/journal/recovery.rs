@@ -206,7 +206,7 @@ pub(super) fn again<E: From<EncodeError>>(
     for part in log.parts.iter().filter(|part| finished || part.kept != Kept::Finished) {
         let Some(Ok(frame)) = frame::next(&log.bytes, part.at) else { continue };
         let made = match part.kept {
-            Kept::Manifest => match mcap::parse_record(frame.opcode, &log.bytes[frame.body]) {
+            Kept::Manifest => match frame::parse(frame.opcode, &log.bytes[frame.body]) {
                 Ok(McapRecord::Metadata(record)) => encoder.manifest(&record),
                 Ok(_) => Ok(()),
                 Err(error) => Err(error),

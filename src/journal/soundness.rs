@@ -129,9 +129,8 @@ pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
 /// The first flaw.
 pub fn check_state(state: &State) -> Result<(), Flaw> {
     check_mesh(&state.mesh)?;
-    let counts = state.mesh.control_counts();
     let mut expected = 1_usize;
-    for way in 0..2 {
+    for (way, count) in state.mesh.control_counts().into_iter().enumerate() {
         let knots = &state.mesh.knots[way];
         let inner = state.mesh.degree[way] + 1..knots.len() - state.mesh.degree[way] - 1;
         for &value in &state.marked[way] {
@@ -146,7 +145,7 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
                 None => return Err(Flaw::ForeignKnot { what: "inserted", way, value }),
             };
         }
-        expected *= counts[way] - state.inserted[way].len();
+        expected *= count - state.inserted[way].len();
     }
     if state.displacement.len() != expected {
         return Err(Flaw::Length { what: "displacements", expected, found: state.displacement.len() });

@@ -51,7 +51,8 @@ pub fn verify_log(log: &Log) -> Vec<Finding> {
     let mut findings = vec![completeness(log)];
     for problem in log.problems() {
         // What the chain reaches across costs no commit, nor does anything behind the record of the end.
-        let costly = problem.at >= log.good_end() && log.completeness() != Completeness::Finished;
+        // What a cut costs is the stage that was in flight.
+        let costly = problem.at >= log.good_end() && matches!(log.completeness(), Completeness::Damaged { .. });
         let level = if costly { Level::Error } else { Level::Warning };
         findings.push(finding(level, format!("byte {}", problem.at), problem.damage.to_string()));
     }
@@ -89,7 +90,8 @@ fn completeness(log: &Log) -> Finding {
         Completeness::Finished => (Level::Info, format!("{commits} commits, finished")),
         Completeness::Unfinished => (Level::Info, format!("{commits} commits, not finished")),
         Completeness::Truncated { at, dropped } => {
-            (Level::Warning, format!("{commits} commits; {dropped} bytes from byte {at} on are of one cut off"))
+            let text = format!("{commits} commits; the {dropped} bytes from byte {at} on are of one that was cut off");
+            (Level::Warning, text)
         }
         Completeness::Damaged { at, dropped, later_commits } => {
             let text = format!(

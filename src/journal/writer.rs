@@ -36,6 +36,14 @@ pub enum WriteError {
         /// The log.
         log: String,
     },
+    /// The folder that the log should lie in is not there.
+    #[error("there is no folder {folder} for {log}: make it, or choose another place with `-o OTHER`")]
+    NoFolder {
+        /// The folder.
+        folder: String,
+        /// The log.
+        log: String,
+    },
     /// The right to write is another's.
     #[error(transparent)]
     Lock(#[from] LockError),
@@ -158,6 +166,9 @@ impl JournalWriter {
         let log = path.display().to_string();
         if path.exists() {
             return Err(WriteError::Exists { log });
+        }
+        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+            return Err(WriteError::NoFolder { folder: folder.display().to_string(), log });
         }
         let lock = LogLock::take(path)?;
         let backend = FileBackend::create_new(path).map_err(|source| match source.kind() {
