@@ -3,6 +3,7 @@
 pub mod adapt;
 mod digest;
 pub mod equilibrium;
+pub mod journal;
 pub mod model;
 pub mod pipeline;
 pub mod scene;
