@@ -1,6 +1,7 @@
 //! Thin-shell structures that fold, simulated on a mesh that refines itself, as a pipeline of restartable steps.
 
 pub mod adapt;
+pub mod cli;
 mod digest;
 pub mod equilibrium;
 pub mod journal;
@@ -10,3 +11,6 @@ pub mod scene;
 pub mod shell;
 pub mod spline;
 pub mod state;
+pub mod study;
+mod units;
+pub mod view;

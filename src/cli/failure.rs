@@ -1,0 +1,120 @@
+//! What can stop a command, in words, and the exit code that says so to scripts.
+
+use std::io;
+use std::path::PathBuf;
+
+use crate::scene::Scene;
+use crate::view::{PlotError, SamplesError};
+
+/// Below the options in `--help`.
+pub(super) const EXIT_CODES: &str = "\
+Exit codes:
+   0  done
+   1  failed; what was logged before stands
+   2  wrong arguments, a wrong scene, or no such file; nothing was started
+  75  interrupted; `foldline resume LOG` goes on where it stopped";
+
+/// Why a command did not do what it was asked to.
+#[expect(dead_code, reason = "some are built only where `wiring` reaches the parser, the log and the run loop")]
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Failure {
+    #[error("cannot read {}", path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("cannot write {}", path.display())]
+    Write { path: PathBuf, source: io::Error },
+    #[error("cannot write to standard output")]
+    Print { source: io::Error },
+    /// Everything that is wrong with a scene, rendered with its lines.
+    #[error("{rendered}")]
+    WrongScene { rendered: String },
+    #[error("--until {until_deg} is beyond the {}° that the scene asks for; raise `rotation-deg` there", scene.load.rotation_deg)]
+    UntilBeyondScene { until_deg: f64, scene: Box<Scene> },
+    #[error("cannot use the log {}", log.display())]
+    WrongLog { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
+    #[error("{} has no load step {step}; {}", log.display(), known_steps(*known))]
+    NoSuchStep { log: PathBuf, step: u64, known: Option<(u64, u64)> },
+    #[error("the run stopped; {} keeps every stage before", log.display())]
+    Stopped { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
+    #[error("interrupted; go on with: foldline resume {}", log.display())]
+    Interrupted { log: PathBuf },
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+    #[error(transparent)]
+    Samples(#[from] SamplesError),
+    #[error("no help on `{topic}`; there is help on {}{}", known.join(", "), did_you_mean(topic, known))]
+    NoSuchTopic { topic: String, known: Vec<String> },
+    #[error("{what} is not yet wired")]
+    NotYetWired { what: &'static str },
+}
+
+impl Failure {
+    /// As in [`EXIT_CODES`].
+    pub(super) fn exit_code(&self) -> u8 {
+        match self {
+            Failure::Read { .. }
+            | Failure::WrongScene { .. }
+            | Failure::UntilBeyondScene { .. }
+            | Failure::NoSuchStep { .. }
+            | Failure::NoSuchTopic { .. } => 2,
+            Failure::Interrupted { .. } => 75,
+            _ => 1,
+        }
+    }
+
+    /// The failure and what is below it, a line each.
+    pub(super) fn in_full(&self) -> String {
+        let mut text = match self {
+            // Has its own head.
+            Failure::WrongScene { rendered } => return rendered.trim_end().to_string(),
+            _ => format!("foldline: {self}"),
+        };
+        let mut cause = std::error::Error::source(self);
+        while let Some(error) = cause {
+            text.push_str(&format!("\n  because: {error}"));
+            cause = error.source();
+        }
+        text
+    }
+}
+
+fn known_steps(known: Option<(u64, u64)>) -> String {
+    match known {
+        Some((first, last)) => format!("it has {first} to {last}"),
+        None => "it holds no stage yet".to_string(),
+    }
+}
+
+fn did_you_mean(topic: &str, known: &[String]) -> String {
+    let likely = known.iter().min_by_key(|name| strsim::damerau_levenshtein(topic, name));
+    match likely {
+        Some(name) if strsim::damerau_levenshtein(topic, name) <= 2 => format!("; did you mean `{name}`?"),
+        _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn causes_stand_below() {
+        let source = io::Error::new(io::ErrorKind::NotFound, "no such file");
+        let failure = Failure::Read { path: "a.toml".into(), source };
+        assert_eq!(failure.in_full(), "foldline: cannot read a.toml\n  because: no such file");
+        assert_eq!(failure.exit_code(), 2);
+    }
+
+    #[test]
+    fn a_step_that_is_not_there_says_which_are() {
+        let failure = Failure::NoSuchStep { log: "a.mcap".into(), step: 9, known: Some((1, 4)) };
+        assert_eq!(failure.in_full(), "foldline: a.mcap has no load step 9; it has 1 to 4");
+        assert_eq!(failure.exit_code(), 2);
+    }
+
+    #[test]
+    fn interruption_says_how_to_go_on() {
+        let failure = Failure::Interrupted { log: "a.mcap".into() };
+        assert_eq!(failure.in_full(), "foldline: interrupted; go on with: foldline resume a.mcap");
+        assert_eq!(failure.exit_code(), 75);
+    }
+}

@@ -1,0 +1,37 @@
+//! `foldline help`: on a subcommand, or on a topic.
+
+use clap::{Args, CommandFactory};
+
+use super::failure::Failure;
+use super::output::print;
+use super::wiring;
+
+/// Help on a subcommand, or on the keys of a scene file: `help scene`
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// A subcommand, or `scene`
+    topic: Option<String>,
+}
+
+const SCENE: &str = "scene";
+
+impl Arguments {
+    /// Shows it.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let mut command = super::Arguments::command();
+        // Gives the subcommands their full names in usage lines.
+        command.build();
+        match self.topic.as_deref() {
+            None => print(&command.render_long_help().to_string()),
+            Some(SCENE) => print(&wiring::scene_help()?),
+            Some(topic) => match command.find_subcommand_mut(topic) {
+                Some(subcommand) => print(&subcommand.render_long_help().to_string()),
+                None => {
+                    let names = command.get_subcommands().map(|subcommand| subcommand.get_name().to_string());
+                    let known = names.chain([SCENE.to_string()]).collect();
+                    Err(Failure::NoSuchTopic { topic: topic.to_string(), known })
+                }
+            },
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! `foldline inspect`: what a log holds.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::json_line::json_line;
+use super::output::{print, say};
+use super::stage_table::{stage_table, step_in_full};
+use super::wiring::{self, ReadLog};
+use crate::pipeline::Record;
+use crate::study::Summary;
+
+/// Show the stages of a log
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Log to read (MCAP)
+    log: PathBuf,
+    /// Show everything about the stages of this load step
+    #[arg(long, value_name = "K")]
+    step: Option<u64>,
+    /// Print a JSON object for each stage
+    #[arg(long)]
+    json: bool,
+}
+
+impl Arguments {
+    /// Reads the log and shows it.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let Self { log, step, json } = self;
+        let ReadLog { scene, records, finished, warnings } = wiring::read_log(&log)?;
+        for warning in &warnings {
+            say(&format!("foldline: {}: {warning}", log.display()));
+        }
+        let wanted: Vec<Record> =
+            records.iter().filter(|record| step.is_none_or(|step| record.report.step == step)).cloned().collect();
+        if let (Some(step), true) = (step, wanted.is_empty()) {
+            let steps = || records.iter().map(|record| record.report.step);
+            return Err(Failure::NoSuchStep { known: steps().min().zip(steps().max()), step, log });
+        }
+        if json {
+            return print(&wanted.iter().map(|record| json_line(record) + "\n").collect::<String>());
+        }
+        if let Some(step) = step {
+            return print(&step_in_full(&wanted, step));
+        }
+        let mut text = format!("{}\n{}", stage_table(&records), Summary::new(&scene, &records));
+        if !finished {
+            text.push_str(&format!("\nunfinished; go on with: foldline resume {}\n", log.display()));
+        }
+        print(&text)
+    }
+}

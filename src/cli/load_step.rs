@@ -1,0 +1,147 @@
+//! The stages of one load step, gathered into one line.
+
+use crate::pipeline::{Outcome, Record, Report};
+use crate::scene::{Scene, Stage};
+use crate::units::{count, duration};
+
+/// A load step that found an equilibrium, with what it took to find it.
+#[derive(Clone, Debug)]
+pub(super) struct LoadStep {
+    /// What its last stage reported.
+    report: Report,
+    elements_before: [usize; 2],
+    iterations: usize,
+    wall_s: f64,
+    /// Solves turned down on the way: without equilibrium, and for a jump.
+    rejected: [usize; 2],
+    /// Energy released, where it jumped.
+    released_n_mm: Option<f64>,
+}
+
+impl LoadStep {
+    /// One line: step, rotation, moment, elements, iterations, time, and what else happened.
+    pub(super) fn line(&self) -> String {
+        let Report { step, rotation_deg, moment_n_mm, elements: [n1, n2], .. } = self.report;
+        let elements = format!("{n1} × {n2}");
+        let mut line = format!(
+            "step {step:>4}  {rotation_deg:>8.3}°  {moment_n_mm:>9.3} N·mm  {elements:>9}  {:>3} iterations  {:>8}",
+            self.iterations,
+            duration(self.wall_s)
+        );
+        for event in self.events() {
+            line.push_str("  ");
+            line.push_str(&event);
+        }
+        line
+    }
+
+    /// Refinement, jump, rejected solves, instability: in words, where they happened.
+    pub(super) fn events(&self) -> Vec<String> {
+        let mut events = Vec::new();
+        if let Some(released) = self.released_n_mm {
+            events.push(format!("snapped, released {released:.2} N·mm"));
+        }
+        if self.elements_before != self.report.elements {
+            events.push(format!("refined from {} × {}", self.elements_before[0], self.elements_before[1]));
+        }
+        if self.report.negative_pivots > 0 {
+            events.push(format!("not stable ({})", count(self.report.negative_pivots as usize, "negative pivot")));
+        }
+        let [no_equilibrium, jump] = self.rejected;
+        if no_equilibrium > 0 {
+            events.push(format!("after {} without equilibrium", count(no_equilibrium, "solve")));
+        }
+        if jump > 0 {
+            events.push(format!("after {} too far past the jump", count(jump, "solve")));
+        }
+        events
+    }
+
+    /// Whether it is worth a line of its own above a live one.
+    pub(super) fn is_eventful(&self) -> bool {
+        self.released_n_mm.is_some() || self.elements_before != self.report.elements || self.report.negative_pivots > 0
+    }
+}
+
+/// Gathers stages until a load step is over.
+#[derive(Debug)]
+pub(super) struct Gatherer {
+    refines: bool,
+    last_stage: Option<Stage>,
+    elements: Option<[usize; 2]>,
+    pending_rejections: [usize; 2],
+    pending_iterations: usize,
+    pending_wall_s: f64,
+    open: Option<LoadStep>,
+}
+
+impl Gatherer {
+    /// For runs of `scene`.
+    pub(super) fn new(scene: &Scene) -> Self {
+        Self {
+            refines: scene.pipeline.contains(&Stage::RefineKnots),
+            last_stage: scene.pipeline.last().copied(),
+            elements: None,
+            pending_rejections: [0, 0],
+            pending_iterations: 0,
+            pending_wall_s: 0.0,
+            open: None,
+        }
+    }
+
+    /// Takes a stage, and gives the load steps that are over now: none, the one before, the one that this stage ends.
+    pub(super) fn take(&mut self, record: &Record) -> Vec<LoadStep> {
+        let report = &record.report;
+        let mut over = Vec::new();
+        if report.stage == Stage::Solve {
+            over.extend(self.open.take());
+            if report.outcome == Outcome::Done {
+                self.open = Some(LoadStep {
+                    report: report.clone(),
+                    elements_before: self.elements.unwrap_or(report.elements),
+                    iterations: std::mem::take(&mut self.pending_iterations),
+                    wall_s: std::mem::take(&mut self.pending_wall_s),
+                    rejected: std::mem::take(&mut self.pending_rejections),
+                    released_n_mm: None,
+                });
+            }
+        }
+        self.elements = Some(report.elements);
+        match report.outcome {
+            Outcome::Done => {}
+            Outcome::RejectedNoEquilibrium => self.pending_rejections[0] += 1,
+            Outcome::RejectedJump => self.pending_rejections[1] += 1,
+        }
+        match &mut self.open {
+            Some(step) => {
+                step.report = report.clone();
+                step.iterations += report.iterations;
+                step.wall_s += record.wall_s;
+                if report.jumped {
+                    *step.released_n_mm.get_or_insert(0.0) += report.energy_released_n_mm;
+                }
+            }
+            None => {
+                self.pending_iterations += report.iterations;
+                self.pending_wall_s += record.wall_s;
+            }
+        }
+        if self.ends_step(report) {
+            over.extend(self.open.take());
+        }
+        over
+    }
+
+    /// The step that was still open when the run ended.
+    pub(super) fn finish(&mut self) -> Option<LoadStep> {
+        self.open.take()
+    }
+
+    fn ends_step(&self, report: &Report) -> bool {
+        if self.refines {
+            report.stage == Stage::EvaluateIndicators && report.marked == [0, 0]
+        } else {
+            Some(report.stage) == self.last_stage
+        }
+    }
+}

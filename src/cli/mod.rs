@@ -1,0 +1,72 @@
+//! The command line: one file per subcommand, nothing but arguments and printing.
+//!
+//! Everything that can be wrong with the arguments and the scene is found before anything starts. What a program would
+//! read goes to standard output, what a person would watch to standard error.
+
+mod failure;
+mod help;
+mod inspect;
+mod json_line;
+mod load_step;
+mod output;
+mod plot;
+mod progress;
+mod run;
+mod stage_table;
+mod wiring;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::{EXIT_CODES, Failure};
+
+pub use json_line::json_line;
+pub use progress::{Manner, Shown};
+pub use stage_table::{stage_table, step_in_full};
+
+/// Thin shells that fold, simulated as a pipeline of restartable stages
+#[derive(Parser, Debug)]
+#[command(name = "foldline", version, after_help = EXIT_CODES, disable_help_subcommand = true, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    Run(run::Arguments),
+    Inspect(inspect::Arguments),
+    Plot(plot::Arguments),
+    Help(help::Arguments),
+}
+
+impl Command {
+    fn run(self) -> Result<(), Failure> {
+        match self {
+            Command::Run(arguments) => arguments.prepare()?.run(),
+            Command::Inspect(arguments) => arguments.run(),
+            Command::Plot(arguments) => arguments.run(),
+            Command::Help(arguments) => arguments.run(),
+        }
+    }
+}
+
+/// Does what the arguments of this process ask for, and says what came of it.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version too; nobody has to read them to the end.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    match arguments.command.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::say(&failure.in_full());
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

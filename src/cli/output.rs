@@ -1,0 +1,37 @@
+//! Standard output that may be closed, and files that are whole or not there.
+
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+
+use super::failure::Failure;
+
+/// Writes to standard output. A reader that has closed its end (`| head`) has what it wanted: that is no failure.
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(source) if source.kind() != ErrorKind::BrokenPipe => Err(Failure::Print { source }),
+        _ => Ok(()),
+    }
+}
+
+/// Says something beside the output; nobody has to listen.
+pub(super) fn say(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// Writes a file under a temporary name and renames it, so that no half of it is ever seen.
+pub(super) fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
+    let failed = |source| Failure::Write { path: path.to_path_buf(), source };
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    let mut file = tempfile::Builder::new().permissions(shared()).tempfile_in(folder).map_err(failed)?;
+    file.write_all(text.as_bytes()).map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+/// Permissions of an ordinary new file, rather than those of a secret one.
+fn shared() -> std::fs::Permissions {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::Permissions::from_mode(0o644)
+}

@@ -1,0 +1,96 @@
+//! `foldline plot`: pictures from a log.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::output::{print, write_file};
+use super::wiring::{self, ReadLog};
+use crate::pipeline::Report;
+use crate::units::rounded;
+use crate::view::{Picture, ViewDirection, mesh_picture, moment_rotation_plot, vtu};
+
+/// Draw the moment–rotation curve and the deformed mesh of a log
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Log to read (MCAP)
+    log: PathBuf,
+    /// Folder for moment-rotation.svg, mesh.svg and mesh.vtu [default: the log's name without .mcap]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Show the mesh at the end of this load step [default: the last one]
+    #[arg(long, value_name = "K")]
+    step: Option<u64>,
+    /// Look at the mesh from this side: degrees about z from x towards y, degrees above the xy-plane
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = direction, allow_hyphen_values = true)]
+    view: Option<ViewDirection>,
+}
+
+impl Arguments {
+    /// Reads the log, draws, and names the files.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let Self { log, output, step, view } = self;
+        let ReadLog { scene, records, .. } = wiring::read_log(&log)?;
+        let folder = output.unwrap_or_else(|| log.with_extension(""));
+        let name = log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let last = records.iter().rev().find(|record| step.is_none_or(|step| record.report.step == step));
+        let Some(record) = last else {
+            let steps = || records.iter().map(|record| record.report.step);
+            let known = steps().min().zip(steps().max());
+            return Err(match step {
+                Some(step) => Failure::NoSuchStep { log, step, known },
+                None => crate::view::PlotError::NoEquilibrium.into(),
+            });
+        };
+        // Everything is drawn before anything is written.
+        let curve = moment_rotation_plot(&scene, &records, &name)?;
+        let samples = wiring::surface(&log, &scene, record)?;
+        let picture = Picture {
+            direction: view.unwrap_or_default(),
+            title: format!("{name}, load step {}", record.report.step),
+            subtitle: subtitle(&record.report),
+            ..Picture::default()
+        };
+        let files = [
+            ("moment-rotation.svg", curve),
+            ("mesh.svg", mesh_picture(&samples, &picture)),
+            ("mesh.vtu", vtu(&samples)),
+        ];
+        let write = |(file, text): (&str, String)| {
+            let path = Path::join(&folder, file);
+            write_file(&path, &text).map(|()| format!("{}\n", path.display()))
+        };
+        print(&files.into_iter().map(write).collect::<Result<String, Failure>>()?)
+    }
+}
+
+/// The numbers of the state that a picture shows.
+fn subtitle(report: &Report) -> String {
+    let Report { rotation_deg, moment_n_mm, elements: [n1, n2], .. } = report;
+    format!("θ {}°, M {moment_n_mm:.2} N·mm, {n1} × {n2} elements in the model", rounded(*rotation_deg))
+}
+
+/// "AZIMUTH,ELEVATION".
+fn direction(text: &str) -> Result<ViewDirection, String> {
+    let numbers = text.split_once(',').map(|(azimuth, elevation)| (azimuth.trim().parse(), elevation.trim().parse()));
+    match numbers {
+        Some((Ok(azimuth_deg), Ok(elevation_deg))) if f64::is_finite(azimuth_deg + elevation_deg) => {
+            Ok(ViewDirection { azimuth_deg, elevation_deg })
+        }
+        _ => Err("two numbers of degrees are wanted, such as -62,24".to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions() {
+        assert_eq!(direction("-62, 24"), Ok(ViewDirection { azimuth_deg: -62.0, elevation_deg: 24.0 }));
+        for wrong in ["", "1", "1,", "a,b", "inf,0", "1,2,3"] {
+            assert!(direction(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! What a run shows while it goes on: a live line on a terminal, a plain line for each load step otherwise, JSON lines
+//! for programs, or nothing.
+
+use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::json_line::json_line;
+use super::load_step::Gatherer;
+use crate::pipeline::{Outcome, Record, Report, Sink, SinkError};
+use crate::scene::Scene;
+use crate::state::State;
+use crate::units::rounded;
+
+/// How a run is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manner {
+    /// Nothing.
+    Quiet,
+    /// A line that changes in place, on standard error.
+    Live,
+    /// A line for each load step with an equilibrium, on standard error.
+    Lines,
+    /// A JSON object for each stage, on standard output.
+    Json,
+}
+
+impl Manner {
+    /// What the arguments ask for; a live line only where standard error is a terminal.
+    pub fn of(quiet: bool, json: bool) -> Self {
+        match (quiet, json) {
+            (_, true) => Manner::Json,
+            (true, _) => Manner::Quiet,
+            _ if io::stderr().is_terminal() => Manner::Live,
+            _ => Manner::Lines,
+        }
+    }
+}
+
+/// A sink that shows every stage after the sink within has taken it, so that what is shown is also kept.
+pub struct Shown<'a, S> {
+    inner: S,
+    display: Display<'a>,
+    records: Vec<Record>,
+}
+
+enum Display<'a> {
+    Quiet,
+    Live {
+        bar: ProgressBar,
+        target_deg: f64,
+        gatherer: Gatherer,
+    },
+    Lines {
+        out: Box<dyn Write + 'a>,
+        gatherer: Gatherer,
+    },
+    /// `None` after the reader has closed its end.
+    Json(Option<Box<dyn Write + 'a>>),
+}
+
+impl<'a, S: Sink> Shown<'a, S> {
+    /// Shows a run of `scene` that stands at `start_deg` (0, or where it is taken up again) to the streams of this
+    /// process.
+    pub fn new(inner: S, manner: Manner, scene: &Scene, start_deg: f64) -> Self {
+        let gatherer = Gatherer::new(scene);
+        let display = match manner {
+            Manner::Quiet => Display::Quiet,
+            Manner::Live => {
+                let target_deg = scene.load.rotation_deg;
+                Display::Live { bar: live_bar(target_deg, start_deg), target_deg, gatherer }
+            }
+            Manner::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
+            Manner::Json => Display::Json(Some(Box::new(io::stdout()))),
+        };
+        Self { inner, display, records: Vec::new() }
+    }
+
+    /// Writes lines as [`Manner::Lines`] to `out`.
+    pub fn lines(inner: S, scene: &Scene, out: impl Write + 'a) -> Self {
+        let display = Display::Lines { out: Box::new(out), gatherer: Gatherer::new(scene) };
+        Self { inner, display, records: Vec::new() }
+    }
+
+    /// Writes lines as [`Manner::Json`] to `out`.
+    pub fn json(inner: S, out: impl Write + 'a) -> Self {
+        Self { inner, display: Display::Json(Some(Box::new(out))), records: Vec::new() }
+    }
+
+    /// Ends the display, however the run ended. Gives back the sink within and the stages that were shown.
+    pub fn finish(mut self) -> (S, Vec<Record>) {
+        match &mut self.display {
+            Display::Live { bar, gatherer, .. } => {
+                if let Some(step) = gatherer.finish().filter(|step| step.is_eventful()) {
+                    bar.println(step.line());
+                }
+                bar.finish_and_clear();
+            }
+            Display::Lines { out, gatherer } => {
+                if let Some(step) = gatherer.finish() {
+                    write_or_forget(out, &step.line());
+                }
+            }
+            Display::Json(_) | Display::Quiet => {}
+        }
+        (self.inner, self.records)
+    }
+
+    fn show(&mut self, record: &Record) -> Result<(), SinkError> {
+        match &mut self.display {
+            Display::Quiet => {}
+            Display::Live { bar, target_deg, gatherer } => {
+                for step in gatherer.take(record).into_iter().filter(|step| step.is_eventful()) {
+                    bar.println(step.line());
+                }
+                bar.set_position(thousandths(record.report.rotation_deg));
+                bar.set_prefix(live_prefix(record.report.rotation_deg, *target_deg));
+                bar.set_message(live_message(&record.report));
+            }
+            Display::Lines { out, gatherer } => {
+                for step in gatherer.take(record) {
+                    write_or_forget(out, &step.line());
+                }
+            }
+            Display::Json(out) => {
+                let Some(open) = out else { return Ok(()) };
+                match writeln!(open, "{}", json_line(record)).and_then(|()| open.flush()) {
+                    Ok(()) => {}
+                    // The reader has seen enough. The log is what the run is for, so it goes on.
+                    Err(error) if error.kind() == ErrorKind::BrokenPipe => *out = None,
+                    Err(error) => {
+                        let context = format!(
+                            "cannot write stage {} as a JSON line; the log has it, and the run can be resumed",
+                            record.commit.ordinal
+                        );
+                        return Err(SinkError { context, source: Some(Box::new(error)) });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<S: Sink> Sink for Shown<'_, S> {
+    fn take(&mut self, state: &State, record: &Record) -> Result<(), SinkError> {
+        self.inner.take(state, record)?;
+        self.records.push(record.clone());
+        self.show(record)
+    }
+}
+
+/// Progress is worth nothing if nobody reads it: a closed stream does not stop a run.
+fn write_or_forget(out: &mut dyn Write, line: &str) {
+    let _ = writeln!(out, "{line}");
+}
+
+/// Rotation as a position of the bar.
+fn thousandths(rotation_deg: f64) -> u64 {
+    (rotation_deg * 1000.0).max(0.0) as u64
+}
+
+fn live_bar(target_deg: f64, start_deg: f64) -> ProgressBar {
+    let template = "{prefix}  {bar:10}  {wide_msg}  {elapsed}, {eta} left";
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = ProgressBar::with_draw_target(Some(thousandths(target_deg)), ProgressDrawTarget::stderr())
+        .with_style(style.progress_chars("━╸─"))
+        .with_prefix(live_prefix(start_deg, target_deg))
+        .with_position(thousandths(start_deg));
+    bar.reset_eta();
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+/// What stands before the bar.
+fn live_prefix(rotation_deg: f64, target_deg: f64) -> String {
+    format!("{rotation_deg:.3}° of {}°", rounded(target_deg))
+}
+
+/// What stands after the bar: the last stage and the numbers of the state that it made.
+fn live_message(report: &Report) -> String {
+    let Report { stage, moment_n_mm, elements: [n1, n2], iterations, .. } = report;
+    let outcome = match report.outcome {
+        Outcome::Done if report.iterations > 0 => format!(", {iterations} iterations"),
+        Outcome::Done => String::new(),
+        Outcome::RejectedJump => format!(" turned down at {:.3}°: jump", report.attempted_rotation_deg),
+        Outcome::RejectedNoEquilibrium => {
+            format!(" turned down at {:.3}°: no equilibrium", report.attempted_rotation_deg)
+        }
+    };
+    format!("{moment_n_mm:.2} N·mm  {n1}×{n2}  {stage}{outcome}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Stage;
+
+    #[test]
+    fn live_line() {
+        let mut report = Report {
+            step: 7,
+            stage: Stage::Solve,
+            outcome: Outcome::Done,
+            rotation_deg: 9.6,
+            attempted_rotation_deg: 9.615,
+            moment_n_mm: 289.1247,
+            strain_energy_n_mm: 63.0,
+            elements: [16, 8],
+            unknowns: 615,
+            iterations: 5,
+            factorizations: 5,
+            negative_pivots: 0,
+            residual: 1e-9,
+            energy_released_n_mm: 0.0,
+            jumped: false,
+            marked: [0, 0],
+            largest_indicator: [0.0, 0.0],
+        };
+        assert_eq!(live_prefix(report.rotation_deg, 20.0), "9.600° of 20°");
+        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve, 5 iterations");
+        report.outcome = Outcome::RejectedJump;
+        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve turned down at 9.615°: jump");
+        report = Report { outcome: Outcome::Done, stage: Stage::RefineKnots, iterations: 0, ..report };
+        assert_eq!(live_message(&report), "289.12 N·mm  16×8  refine-knots");
+    }
+}

@@ -1,0 +1,160 @@
+//! The stages of a log as a table, and the stages of one load step in full.
+
+use std::fmt::Write as _;
+
+use crate::pipeline::{Outcome, Record, Report};
+use crate::scene::Stage;
+
+/// A column: its head, and whether its cells stand to the right.
+struct Column(&'static str, bool);
+
+const COLUMNS: [Column; 14] = [
+    Column("#", true),
+    Column("step", true),
+    Column("stage", false),
+    Column("θ °", true),
+    Column("M N·mm", true),
+    Column("Π N·mm", true),
+    Column("mesh", true),
+    Column("free", true),
+    Column("iter", true),
+    Column("fact", true),
+    Column("neg", true),
+    Column("wall s", true),
+    Column("state", false),
+    Column("", false),
+];
+
+/// A row a stage, in columns that are as wide as they need to be; a run of a thousand stages fits 120 characters.
+///
+/// `mesh` is elements along the length × along the arc, `free` the free unknowns, `neg` the negative pivots; blank is
+/// zero. The last column says what else happened; ✗ is a solve turned down, at the rotation that it tried.
+pub fn stage_table(records: &[Record]) -> String {
+    let rows: Vec<[String; COLUMNS.len()]> = records.iter().map(cells).collect();
+    let width_of = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        cells.chain([COLUMNS[column].0.chars().count()]).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..COLUMNS.len()).map(width_of).collect();
+    let heads = COLUMNS.map(|column| column.0.to_string());
+    let mut table = String::new();
+    for row in std::iter::once(&heads).chain(&rows) {
+        let mut line = String::new();
+        for ((cell, &width), column) in row.iter().zip(&widths).zip(&COLUMNS) {
+            let cell = if column.1 { format!("{cell:>width$}") } else { format!("{cell:<width$}") };
+            line.push_str(&cell);
+            line.push(' ');
+        }
+        table.push_str(line.trim_end());
+        table.push('\n');
+    }
+    table
+}
+
+fn cells(record: &Record) -> [String; COLUMNS.len()] {
+    let Record { report, commit, wall_s } = record;
+    let unless_zero = |number: u64| if number == 0 { String::new() } else { number.to_string() };
+    [
+        commit.ordinal.to_string(),
+        report.step.to_string(),
+        report.stage.name().to_string(),
+        format!("{:.3}", report.rotation_deg),
+        format!("{:.3}", report.moment_n_mm),
+        format!("{:.3}", report.strain_energy_n_mm),
+        format!("{}×{}", report.elements[0], report.elements[1]),
+        report.unknowns.to_string(),
+        unless_zero(report.iterations as u64),
+        unless_zero(report.factorizations as u64),
+        unless_zero(report.negative_pivots),
+        format!("{wall_s:.2}"),
+        commit.state_hash.to_hex()[..8].to_string(),
+        note(report),
+    ]
+}
+
+/// What else happened, in few words.
+fn note(report: &Report) -> String {
+    let attempted = report.attempted_rotation_deg;
+    match report.outcome {
+        Outcome::RejectedJump => format!("✗ jump at {attempted:.3}°"),
+        Outcome::RejectedNoEquilibrium => format!("✗ no solution {attempted:.3}°"),
+        Outcome::Done if report.jumped => format!("snap, −{:.2} N·mm", report.energy_released_n_mm),
+        Outcome::Done if report.marked != [0, 0] => {
+            let verb = if report.stage == Stage::RefineKnots { "inserted" } else { "marked" };
+            format!("{verb} {} + {}", report.marked[0], report.marked[1])
+        }
+        Outcome::Done => String::new(),
+    }
+}
+
+/// Everything about every stage of load step `step`; empty where the log has no such step.
+pub fn step_in_full(records: &[Record], step: u64) -> String {
+    let mut text = String::new();
+    for record in records.iter().filter(|record| record.report.step == step) {
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        for (name, value) in in_full(record) {
+            // Writing to a string does not fail.
+            let _ = match name {
+                "" => writeln!(text, "{value}"),
+                name => writeln!(text, "  {name:<20} {value}"),
+            };
+        }
+    }
+    text
+}
+
+fn in_full(record: &Record) -> Vec<(&'static str, String)> {
+    let Record { report, commit, wall_s } = record;
+    let outcome = match report.outcome {
+        Outcome::Done if report.jumped => "done; the shell jumped".to_string(),
+        Outcome::Done => "done".to_string(),
+        Outcome::RejectedJump => "turned down: jumped; the increment is halved until the jump is located".to_string(),
+        Outcome::RejectedNoEquilibrium => "turned down: no equilibrium found; the increment is halved".to_string(),
+    };
+    let [n1, n2] = report.elements;
+    let mut lines = vec![
+        ("", format!("stage {}: {}, load step {}", commit.ordinal, report.stage, report.step)),
+        ("outcome", outcome),
+        ("rotation", format!("{}°", report.rotation_deg)),
+    ];
+    if report.attempted_rotation_deg != report.rotation_deg {
+        lines.push(("attempted rotation", format!("{}°", report.attempted_rotation_deg)));
+    }
+    lines.extend([
+        ("end moment", format!("{} N·mm", report.moment_n_mm)),
+        ("strain energy", format!("{} N·mm", report.strain_energy_n_mm)),
+    ]);
+    if report.jumped {
+        lines.push(("energy released", format!("{} N·mm", report.energy_released_n_mm)));
+    }
+    lines.extend([
+        ("elements", format!("{n1} × {n2} = {} (length × arc, of the model)", n1 * n2)),
+        ("free unknowns", report.unknowns.to_string()),
+    ]);
+    if matches!(report.stage, Stage::Solve | Stage::ReEquilibrate) {
+        lines.extend([
+            ("Newton iterations", report.iterations.to_string()),
+            ("factorizations", report.factorizations.to_string()),
+            ("residual/reactions", format!("{:.3e}", report.residual)),
+        ]);
+    }
+    let stable = if report.negative_pivots == 0 { "stable" } else { "not stable" };
+    lines.push(("negative pivots", format!("{} ({stable})", report.negative_pivots)));
+    if report.stage == Stage::EvaluateIndicators {
+        let ([marked1, marked2], [r1, r2]) = (report.marked, report.largest_indicator);
+        lines.extend([
+            ("knots asked for", format!("{marked1} along the length, {marked2} along the arc")),
+            ("largest max|κ| h", format!("{r1} along the length, {r2} along the arc")),
+        ]);
+    }
+    lines.extend([
+        ("wall time", format!("{wall_s:.6} s")),
+        ("state", commit.state_hash.to_string()),
+        ("parent state", commit.parent_hash.to_string()),
+        ("chain", commit.chain_hash.to_string()),
+        ("scene", commit.scene_hash.to_string()),
+    ]);
+    lines
+}

@@ -1,0 +1,98 @@
+//! The equilibrium path of a run: which of its stages are points of the moment–rotation curve, and where it jumped.
+
+use crate::pipeline::{Outcome, Record};
+use crate::scene::Stage;
+
+/// A point of the moment–rotation curve: the last equilibrium of a load step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPoint {
+    /// Load step.
+    pub step: u64,
+    /// Rotation of each end, degrees.
+    pub rotation_deg: f64,
+    /// End moment of the whole section, N·mm.
+    pub moment_n_mm: f64,
+    /// Strain energy of the whole shell, N·mm.
+    pub strain_energy_n_mm: f64,
+    /// Elements (along the length, along the arc) of the model.
+    pub elements: [usize; 2],
+    /// Negative pivots of the tangent stiffness: 0 where the equilibrium is stable.
+    pub negative_pivots: u64,
+    /// Whether the shell jumped to get here.
+    pub jumped: bool,
+}
+
+/// A jump from one equilibrium to another, with all that followed in the same load step: on the finer meshes that the
+/// fold calls for it may fall further.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Snap {
+    /// Rotation of the last equilibrium before the jump, degrees.
+    pub before_deg: f64,
+    /// Rotation of the first equilibrium after the jump, degrees; the same where a finer mesh set the jump off.
+    pub after_deg: f64,
+    /// Moment before the jump, N·mm.
+    pub moment_before_n_mm: f64,
+    /// Moment at the end of the load step that jumped, N·mm.
+    pub moment_after_n_mm: f64,
+    /// Energy that the jump released, and any on finer meshes in the same load step, N·mm.
+    pub energy_released_n_mm: f64,
+}
+
+/// The moment–rotation curve: of every load step its last equilibrium, and where a step jumped after it had found one
+/// (on a finer mesh), the one before the jump too.
+pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
+    let mut path: Vec<PathPoint> = Vec::new();
+    for report in equilibria(records).map(|record| &record.report) {
+        let same_step = path.last().is_some_and(|last| last.step == report.step);
+        let jumped_before = same_step && path.last().is_some_and(|last| last.jumped);
+        if same_step && (jumped_before || !report.jumped) {
+            path.pop();
+        }
+        path.push(PathPoint {
+            step: report.step,
+            rotation_deg: report.rotation_deg,
+            moment_n_mm: report.moment_n_mm,
+            strain_energy_n_mm: report.strain_energy_n_mm,
+            elements: report.elements,
+            negative_pivots: report.negative_pivots,
+            jumped: report.jumped || jumped_before,
+        });
+    }
+    path
+}
+
+/// The jumps of a run, in order, at most one a load step. One in the first solve of `records` counts from the unloaded
+/// shell.
+pub fn snaps(records: &[Record]) -> Vec<Snap> {
+    let mut before = (0.0, 0.0);
+    let mut snaps: Vec<(u64, Snap)> = Vec::new();
+    for report in equilibria(records).map(|record| &record.report) {
+        match snaps.last_mut().filter(|(step, _)| *step == report.step) {
+            Some((_, snap)) => {
+                snap.moment_after_n_mm = report.moment_n_mm;
+                snap.energy_released_n_mm += report.energy_released_n_mm;
+            }
+            None if report.jumped => {
+                let snap = Snap {
+                    before_deg: before.0,
+                    after_deg: report.rotation_deg,
+                    moment_before_n_mm: before.1,
+                    moment_after_n_mm: report.moment_n_mm,
+                    energy_released_n_mm: report.energy_released_n_mm,
+                };
+                snaps.push((report.step, snap));
+            }
+            None => {}
+        }
+        before = (report.rotation_deg, report.moment_n_mm);
+    }
+    snaps.into_iter().map(|(_, snap)| snap).collect()
+}
+
+/// The stages that ended in an equilibrium.
+fn equilibria(records: &[Record]) -> impl Iterator<Item = &Record> {
+    records.iter().filter(|record| {
+        let Record { report, .. } = record;
+        report.outcome == Outcome::Done && matches!(report.stage, Stage::Solve | Stage::ReEquilibrate)
+    })
+}

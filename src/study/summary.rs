@@ -1,0 +1,229 @@
+//! The summary of a run: what it found, beside what theory says, and what it cost.
+
+use crate::pipeline::{Outcome, Record};
+use crate::scene::{Scene, Stage, Symmetry};
+use crate::study::{PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
+
+/// From this rotation on a fold is far from the ends, and its moment is compared as it stands (theory: the plateau is
+/// flat to 0.1 N·mm beyond 40°).
+const FAR_FROM_ENDS_DEG: f64 = 40.0;
+
+/// What a run found. Every number comes from the records; `Display` lays them out beside the closed-form laws.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// The shell, for the laws that the run is held against.
+    pub spring: TapeSpring,
+    /// Rotation that the scene asks for, degrees.
+    pub target_deg: f64,
+    /// Elements of the whole shell for each element of the model: 1, 2 or 4.
+    pub symmetric_parts: usize,
+    /// dM/dθ at θ = 0, N·mm per radian of each end; `None` before the first equilibrium.
+    pub initial_stiffness_n_mm: Option<f64>,
+    /// The highest moment before a jump; `None` where the moment was still rising at the end.
+    pub peak: Option<MeasuredPeak>,
+    /// The jumps, in order.
+    pub snaps: Vec<Snap>,
+    /// Moment of the fold; `None` where the shell did not jump.
+    pub fold: Option<FoldMean>,
+    /// The mesh at the start and after every change.
+    pub meshes: Vec<MeshChange>,
+    /// What each stage that ran has cost, in the order of [`Stage::ALL`].
+    pub work: Vec<StageWork>,
+    /// Solves that were turned down.
+    pub rejections: usize,
+    /// Load steps that ended in an equilibrium.
+    pub load_steps: usize,
+    /// The last equilibrium; `None` before the first.
+    pub last: Option<PathPoint>,
+}
+
+/// A maximum of the measured moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredPeak {
+    /// Moment, N·mm.
+    pub moment_n_mm: f64,
+    /// Rotation of each end, degrees.
+    pub rotation_deg: f64,
+    /// Whether a parabola through the largest moment and its neighbours says so, rather than the largest moment itself
+    /// (which stands where the shell jumped before the moment fell).
+    pub interpolated: bool,
+}
+
+/// Mean moment of the fold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoldMean {
+    /// Mean, N·mm.
+    pub moment_n_mm: f64,
+    /// Rotations from and to which it is taken, degrees.
+    pub range_deg: [f64; 2],
+    /// Load steps in it.
+    pub points: usize,
+}
+
+/// A mesh, and where the run came to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshChange {
+    /// Rotation of each end at which it was made, degrees; 0 for the mesh that the run starts with.
+    pub rotation_deg: f64,
+    /// Elements (along the length, along the arc) of the model.
+    pub elements: [usize; 2],
+    /// Free unknowns of the model.
+    pub unknowns: usize,
+}
+
+/// What the runs of one stage have cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageWork {
+    /// The stage.
+    pub stage: Stage,
+    /// How often it ran.
+    pub runs: usize,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Numeric factorizations.
+    pub factorizations: usize,
+    /// Wall time, seconds.
+    pub wall_s: f64,
+}
+
+impl Summary {
+    /// Sums up `records`, the stages of a run of `scene` from its first one on. An unfinished run has a summary too.
+    pub fn new(scene: &Scene, records: &[Record]) -> Self {
+        let path = equilibrium_path(records);
+        let snaps = snaps(records);
+        let before_jump = path.iter().position(|point| point.jumped).unwrap_or(path.len());
+        let mut steps: Vec<u64> = path.iter().map(|point| point.step).collect();
+        steps.dedup();
+        Self {
+            spring: TapeSpring::of_scene(scene),
+            target_deg: scene.load.rotation_deg,
+            symmetric_parts: symmetric_parts(scene),
+            initial_stiffness_n_mm: initial_stiffness(&path[..before_jump]),
+            peak: peak(&path[..before_jump], before_jump < path.len()),
+            fold: fold_mean(&path, snaps.last()),
+            snaps,
+            meshes: mesh_changes(records),
+            work: work(records),
+            rejections: records.iter().filter(|record| record.report.outcome != Outcome::Done).count(),
+            load_steps: steps.len(),
+            last: path.last().copied(),
+        }
+    }
+
+    /// Wall time of all stages, seconds.
+    pub fn wall_s(&self) -> f64 {
+        self.work.iter().map(|work| work.wall_s).sum()
+    }
+
+    /// How often any stage ran.
+    pub fn stages(&self) -> usize {
+        self.work.iter().map(|work| work.runs).sum()
+    }
+}
+
+/// Elements of the whole shell for each element of the model.
+fn symmetric_parts(scene: &Scene) -> usize {
+    match scene.symmetry {
+        Symmetry::None => 1,
+        Symmetry::HalfLength | Symmetry::HalfArc => 2,
+        Symmetry::Quarter => 4,
+    }
+}
+
+/// dM/dθ at θ = 0: M/θ of up to three first points on one mesh, extrapolated by the polynomial through them.
+fn initial_stiffness(path: &[PathPoint]) -> Option<f64> {
+    let first = path.first()?;
+    let points: Vec<(f64, f64)> = path
+        .iter()
+        .take(3)
+        .take_while(|point| point.elements == first.elements)
+        .map(|point| (point.rotation_deg.to_radians(), point.moment_n_mm))
+        .filter(|point| point.0 > 0.0)
+        .collect();
+    let at_zero = |(i, &(theta, moment)): (usize, &(f64, f64))| {
+        let others = points.iter().enumerate().filter(|(j, _)| *j != i);
+        others.fold(moment / theta, |term, (_, other)| term * other.0 / (other.0 - theta))
+    };
+    (!points.is_empty()).then(|| points.iter().enumerate().map(at_zero).sum())
+}
+
+/// The largest moment of the points before the jump.
+fn peak(path: &[PathPoint], jumps_after: bool) -> Option<MeasuredPeak> {
+    let index = (0..path.len()).max_by(|&i, &j| path[i].moment_n_mm.total_cmp(&path[j].moment_n_mm))?;
+    let largest = &path[index];
+    let as_it_stands =
+        MeasuredPeak { moment_n_mm: largest.moment_n_mm, rotation_deg: largest.rotation_deg, interpolated: false };
+    if index + 1 == path.len() {
+        return jumps_after.then_some(as_it_stands);
+    }
+    let Some(left) = index.checked_sub(1).map(|before| &path[before]) else { return Some(as_it_stands) };
+    let right = &path[index + 1];
+    Some(vertex([left, largest, right]).unwrap_or(as_it_stands))
+}
+
+/// The top of the parabola through three points of the path.
+fn vertex(points: [&PathPoint; 3]) -> Option<MeasuredPeak> {
+    let [x0, x1, x2] = points.map(|point| point.rotation_deg);
+    let [y0, y1, y2] = points.map(|point| point.moment_n_mm);
+    let (slope_left, slope_right) = ((y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1));
+    let bend = (slope_right - slope_left) / (x2 - x0);
+    if !(bend < 0.0 && bend.is_finite()) {
+        return None;
+    }
+    // y = y1 + slope (x − x1) + bend (x − x1)², with the slope at x1.
+    let slope = (slope_left * (x2 - x1) + slope_right * (x1 - x0)) / (x2 - x0);
+    let offset = -slope / (2.0 * bend);
+    Some(MeasuredPeak { moment_n_mm: y1 + 0.5 * slope * offset, rotation_deg: x1 + offset, interpolated: true })
+}
+
+/// Mean moment beyond the last jump: over the last third of the rotation, or where all of that is far from the ends,
+/// over everything that is.
+fn fold_mean(path: &[PathPoint], snap: Option<&Snap>) -> Option<FoldMean> {
+    let (snap, last) = (snap?, path.last()?);
+    let third = snap.after_deg + (last.rotation_deg - snap.after_deg) * 2.0 / 3.0;
+    let from = if last.rotation_deg > FAR_FROM_ENDS_DEG { FAR_FROM_ENDS_DEG.max(snap.after_deg) } else { third };
+    let jump = path.iter().rposition(|point| point.jumped)?;
+    let points: Vec<&PathPoint> = path[jump..].iter().filter(|point| point.rotation_deg >= from).collect();
+    let sum: f64 = points.iter().map(|point| point.moment_n_mm).sum();
+    Some(FoldMean {
+        moment_n_mm: sum / points.len() as f64,
+        range_deg: [points.first()?.rotation_deg, last.rotation_deg],
+        points: points.len(),
+    })
+}
+
+/// The first mesh and every change after it, each once.
+fn mesh_changes(records: &[Record]) -> Vec<MeshChange> {
+    let mut changes: Vec<MeshChange> = Vec::new();
+    for Record { report, .. } in records {
+        let same = changes.last().is_some_and(|last| last.elements == report.elements);
+        if same {
+            // A stage between refining and projecting may still count the unknowns of the coarser space.
+            if let Some(last) = changes.last_mut() {
+                last.unknowns = report.unknowns;
+            }
+        } else {
+            changes.push(MeshChange {
+                rotation_deg: if changes.is_empty() { 0.0 } else { report.rotation_deg },
+                elements: report.elements,
+                unknowns: report.unknowns,
+            });
+        }
+    }
+    changes
+}
+
+/// Work by stage, of the stages that ran.
+fn work(records: &[Record]) -> Vec<StageWork> {
+    let of_stage = |stage: Stage| {
+        let start = StageWork { stage, runs: 0, iterations: 0, factorizations: 0, wall_s: 0.0 };
+        records.iter().filter(|record| record.report.stage == stage).fold(start, |sum, record| StageWork {
+            stage,
+            runs: sum.runs + 1,
+            iterations: sum.iterations + record.report.iterations,
+            factorizations: sum.factorizations + record.report.factorizations,
+            wall_s: sum.wall_s + record.wall_s,
+        })
+    };
+    Stage::ALL.map(of_stage).into_iter().filter(|work| work.runs > 0).collect()
+}

@@ -1,0 +1,210 @@
+//! The summary as a block of text, for the end of a run and the head of an inspection.
+
+use std::fmt::{self, Display, Formatter};
+
+use super::Summary;
+use super::summary::{FoldMean, MeshChange};
+use crate::scene::Sense;
+use crate::units::{count, duration, rounded, signed};
+
+impl Display for Summary {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.write_head(f)?;
+        if self.last.is_some() {
+            writeln!(f)?;
+            self.write_findings(f)?;
+        }
+        if !self.meshes.is_empty() {
+            writeln!(f)?;
+            self.write_meshes(f)?;
+            writeln!(f)?;
+            self.write_work(f)?;
+        }
+        Ok(())
+    }
+}
+
+impl Summary {
+    fn write_head(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let spring = &self.spring;
+        let sense = match spring.sense {
+            Sense::Opposite => "opposite sense",
+            Sense::Equal => "equal sense",
+        };
+        let part = match self.symmetric_parts {
+            1 => "whole shell",
+            2 => "half model",
+            _ => "quarter model",
+        };
+        writeln!(
+            f,
+            "tape spring, L {} R {} t {} mm, arc {}°, {sense}, {part}",
+            spring.length_mm,
+            spring.radius_mm,
+            spring.thickness_mm,
+            rounded(spring.arc_rad.to_degrees()),
+        )?;
+        let Some(last) = self.last else {
+            let turned_down = match self.rejections {
+                0 => String::new(),
+                n => format!(": {} turned down", count(n, "solve")),
+            };
+            return writeln!(f, "no equilibrium yet{turned_down}");
+        };
+        let reached = if last.rotation_deg >= self.target_deg * (1.0 - 1e-9) {
+            format!("{}°, as the scene asks", rounded(self.target_deg))
+        } else {
+            format!("{}° of {}°", rounded(last.rotation_deg), rounded(self.target_deg))
+        };
+        let (stages, steps) = (count(self.stages(), "stage"), count(self.load_steps, "load step"));
+        writeln!(f, "{stages} in {steps} to {reached}, {}", duration(self.wall_s()))?;
+        if last.negative_pivots > 0 {
+            let pivots = count(last.negative_pivots as usize, "negative pivot");
+            writeln!(f, "the last equilibrium is not stable: its stiffness has {pivots}")?;
+        }
+        Ok(())
+    }
+
+    fn write_findings(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        Line { name: "", measured: "this run".into(), law: Some(("theory", "".into())), off: None, note: "" }
+            .write(f)?;
+        if let Some(stiffness) = self.initial_stiffness_n_mm {
+            let law = self.spring.initial_stiffness_n_mm();
+            Line {
+                name: "initial stiffness",
+                measured: format!("{stiffness:7.1}  N·mm/rad"),
+                law: Some(("beam, 2EI/L", format!("{law:7.1}"))),
+                off: Some(stiffness / law),
+                note: "",
+            }
+            .write(f)?;
+        }
+        self.write_peak(f)?;
+        if self.snaps.is_empty() {
+            Line { name: "snap", measured: "   none".into(), law: None, off: None, note: "" }.write(f)?;
+        }
+        for snap in &self.snaps {
+            let measured = if snap.after_deg > snap.before_deg {
+                format!("{:8.3}° to {:.3}°", snap.before_deg, snap.after_deg)
+            } else {
+                format!("{:8.3}° on refining", snap.after_deg)
+            };
+            let drop = format!(
+                "{:.2} → {:.2} N·mm, released {:.2} N·mm; located to {:.3}°",
+                snap.moment_before_n_mm,
+                snap.moment_after_n_mm,
+                snap.energy_released_n_mm,
+                snap.after_deg - snap.before_deg
+            );
+            Line { name: "snap", measured, law: None, off: None, note: &drop }.write(f)?;
+        }
+        self.fold.map_or(Ok(()), |fold| self.write_fold(f, fold))
+    }
+
+    fn write_peak(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let measured = match self.peak {
+            Some(peak) => {
+                let how = if peak.interpolated { "" } else { ", jump" };
+                format!("{:7.1}  N·mm at {:.2}°{how}", peak.moment_n_mm, peak.rotation_deg)
+            }
+            None if self.snaps.is_empty() => "   none, still rising".into(),
+            None => "   none before the jump".into(),
+        };
+        let law = self.spring.peak();
+        Line {
+            name: "peak",
+            measured,
+            law: Some(("Wuest", law.map_or("   none".into(), |law| format!("{:7.1}", law.moment_n_mm)))),
+            off: self.peak.zip(law).map(|(peak, law)| peak.moment_n_mm / law.moment_n_mm),
+            note: &law.map_or(String::new(), |law| format!("at {:.2}°", law.rotation_deg)),
+        }
+        .write(f)
+    }
+
+    fn write_fold(&self, f: &mut Formatter<'_>, fold: FoldMean) -> fmt::Result {
+        let range = match fold.points {
+            1 => format!("     at {:.1}°", fold.range_deg[0]),
+            n => format!("     {n} steps, {:.1}° to {:.1}°", fold.range_deg[0], fold.range_deg[1]),
+        };
+        let closed_form = match self.spring.sense {
+            Sense::Opposite => "(1+ν)Dα",
+            Sense::Equal => "(1−ν)Dα",
+        };
+        let plateau = self.spring.plateau().map(|plateau| ("Wuest, equal energy", plateau.moment_n_mm));
+        let laws = plateau.into_iter().chain([(closed_form, self.spring.fold_moment_n_mm())]);
+        for (i, (name, value)) in laws.enumerate() {
+            let measured = if i == 0 { format!("{:8.2} N·mm", fold.moment_n_mm) } else { range.clone() };
+            Line {
+                name: if i == 0 { "fold moment" } else { "" },
+                measured,
+                law: Some((name, format!("{value:8.2}"))),
+                off: Some(fold.moment_n_mm / value),
+                note: "",
+            }
+            .write(f)?;
+        }
+        Ok(())
+    }
+
+    fn write_meshes(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let whole = if self.symmetric_parts > 1 { "   whole shell" } else { "" };
+        writeln!(f, "  {:<11}   {:>18}{whole}   {:>8}", "mesh from", "elements", "unknowns")?;
+        for &MeshChange { rotation_deg, elements: [n1, n2], unknowns } in &self.meshes {
+            let elements = format!("{n1} × {n2} = {}", n1 * n2);
+            let whole = match self.symmetric_parts {
+                1 => String::new(),
+                parts => format!("   {:>11}", n1 * n2 * parts),
+            };
+            writeln!(f, "  {:>10.3}°   {elements:>18}{whole}   {unknowns:>8}", rotation_deg)?;
+        }
+        Ok(())
+    }
+
+    fn write_work(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let total = self.wall_s();
+        let row = |f: &mut Formatter<'_>, name: &str, numbers: [usize; 3], wall_s: f64| {
+            let share = if total > 0.0 { 100.0 * wall_s / total } else { 0.0 };
+            let [runs, iterations, factorizations] = numbers;
+            writeln!(
+                f,
+                "  {name:<21}   {runs:>5}   {iterations:>10}   {factorizations:>14}   {wall_s:>8.2}   {share:>4.0} %"
+            )
+        };
+        writeln!(
+            f,
+            "  {:<21}   {:>5}   {:>10}   {:>14}   {:>8}   {:>6}",
+            "work in", "runs", "iterations", "factorizations", "wall s", "share"
+        )?;
+        for work in &self.work {
+            row(f, work.stage.name(), [work.runs, work.iterations, work.factorizations], work.wall_s)?;
+        }
+        let sum = |number: fn(&super::summary::StageWork) -> usize| self.work.iter().map(number).sum();
+        row(f, "all", [self.stages(), sum(|work| work.iterations), sum(|work| work.factorizations)], total)?;
+        if self.rejections > 0 {
+            writeln!(f, "  {} turned down on the way", count(self.rejections, "solve"))?;
+        }
+        Ok(())
+    }
+}
+
+/// One finding beside the law that it is held against.
+struct Line<'a> {
+    name: &'a str,
+    measured: String,
+    law: Option<(&'a str, String)>,
+    /// Measured over law.
+    off: Option<f64>,
+    note: &'a str,
+}
+
+impl Line<'_> {
+    fn write(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let mut text = format!("  {:<17}  {:<29}  ", self.name, self.measured);
+        if let Some((name, value)) = &self.law {
+            let off = self.off.map_or(String::new(), |off| format!("{} %", signed(100.0 * (off - 1.0), 1)));
+            text.push_str(&format!("{name:<19}  {value:<8}  {off:>9}  "));
+        }
+        text.push_str(self.note);
+        writeln!(f, "{}", text.trim_end())
+    }
+}

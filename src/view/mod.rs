@@ -1,0 +1,15 @@
+//! Pictures of runs: the moment–rotation curve, the deformed mesh, and the mesh for ParaView.
+
+mod camera;
+mod colour;
+mod mesh_picture;
+mod plot;
+mod samples;
+mod ticks;
+mod vtu;
+
+pub use camera::ViewDirection;
+pub use mesh_picture::{Picture, mesh_picture};
+pub use plot::{PlotError, moment_rotation_plot};
+pub use samples::{SamplesError, SurfaceSamples};
+pub use vtu::vtu;

@@ -1,0 +1,240 @@
+//! The moment–rotation curve of a run beside Wuest's law, with the size of the mesh below it.
+
+use plotters::chart::{ChartBuilder, SeriesLabelPosition};
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
+use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
+use plotters::element::{Circle, DashedPathElement, PathElement, Text};
+use plotters::prelude::SVGBackend;
+use plotters::series::{DashedLineSeries, LineSeries};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle, WHITE};
+
+use crate::pipeline::Record;
+use crate::scene::Scene;
+use crate::study::{PathPoint, TapeSpring, equilibrium_path, snaps};
+
+/// Why a plot could not be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum PlotError {
+    /// The records hold no equilibrium yet.
+    #[error("there is no equilibrium to plot: the run has not finished its first load step")]
+    NoEquilibrium,
+    /// The drawing library gave up.
+    #[error("the plot could not be drawn: {0}")]
+    Drawing(String),
+}
+
+impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for PlotError {
+    fn from(error: DrawingAreaErrorKind<E>) -> Self {
+        PlotError::Drawing(error.to_string())
+    }
+}
+
+const SIZE: (u32, u32) = (1000, 760);
+const UPPER_HEIGHT: u32 = 500;
+const LEFT: u32 = 70;
+const FONT: &str = "DejaVu Sans, Helvetica, Arial, sans-serif";
+
+const INK: RGBColor = RGBColor(0x1a, 0x1a, 0x1a);
+const GRID: RGBColor = RGBColor(0xe4, 0xe4, 0xe4);
+const MEASURED: RGBColor = RGBColor(0x31, 0x68, 0x8e);
+const LAW: RGBColor = RGBColor(0x8a, 0x8a, 0x8a);
+const PLATEAU: RGBColor = RGBColor(0xd9, 0x7a, 0x1c);
+const SNAP: RGBColor = RGBColor(0xb7, 0x37, 0x79);
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// The curve of `records`, a run of `scene`, as SVG text: measured moment, Wuest's law for uniform curvature (dashed),
+/// the equal-energy plateau, the jumps; below, elements of the model on a logarithmic axis. `title` stands on top.
+///
+/// # Errors
+/// Where there is no equilibrium yet.
+pub fn moment_rotation_plot(scene: &Scene, records: &[Record], title: &str) -> Result<String, PlotError> {
+    let path = equilibrium_path(records);
+    let last = path.last().ok_or(PlotError::NoEquilibrium)?;
+    let end_deg = path.iter().map(|point| point.rotation_deg).fold(last.rotation_deg, f64::max) * 1.02;
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        root.fill(&WHITE)?;
+        let (upper, lower) = root.split_vertically(UPPER_HEIGHT);
+        draw_moment(&upper, scene, records, &path, end_deg, title)?;
+        draw_elements(&lower, &path, end_deg)?;
+        root.present()?;
+    }
+    Ok(svg)
+}
+
+fn draw_moment(
+    area: &Area,
+    scene: &Scene,
+    records: &[Record],
+    path: &[PathPoint],
+    end_deg: f64,
+    title: &str,
+) -> Result<(), PlotError> {
+    let spring = TapeSpring::of_scene(scene);
+    let law: Vec<(f64, f64)> = (0..=400)
+        .map(|i| f64::from(i) / 400.0 * end_deg)
+        .map(|rotation_deg| (rotation_deg, spring.moment_at_rotation(rotation_deg)))
+        .collect();
+    let measured = std::iter::once((0.0, 0.0)).chain(path.iter().map(|point| (point.rotation_deg, point.moment_n_mm)));
+    let measured: Vec<(f64, f64)> = measured.collect();
+    let highest = measured.iter().chain(&law).map(|point| point.1).fold(f64::MIN_POSITIVE, f64::max);
+    let lowest = measured.iter().map(|point| point.1).fold(0.0, f64::min);
+
+    let mut chart = ChartBuilder::on(area)
+        .caption(title, text(19))
+        .margin(16)
+        .margin_right(28)
+        .x_label_area_size(28)
+        .y_label_area_size(LEFT)
+        .build_cartesian_2d(0.0..end_deg, 1.08 * lowest..1.08 * highest)?;
+    chart
+        .configure_mesh()
+        .y_desc("end moment M (N·mm)")
+        .x_label_formatter(&|value| short(*value))
+        .y_label_formatter(&|value| short(*value))
+        .label_style(text(14))
+        .axis_desc_style(text(15))
+        .axis_style(INK)
+        .bold_line_style(GRID)
+        .light_line_style(WHITE)
+        .draw()?;
+
+    let dashes = DashedLineSeries::new(law.clone(), 7, 5, line(LAW, 2));
+    chart
+        .draw_series(dashes)?
+        .label("Wuest 1954, uniform curvature")
+        .legend(|(x, y)| DashedPathElement::new([(x, y), (x + 22, y)], 7, 5, line(LAW, 2)));
+    if let Some(plateau) = spring.plateau() {
+        let level = plateau.moment_n_mm;
+        chart
+            .draw_series(LineSeries::new([(0.0, level), (end_deg, level)], line(PLATEAU, 2)))?
+            .label(format!("equal-energy plateau, {level:.2} N·mm"))
+            .legend(|(x, y)| PathElement::new(vec![(x, y), (x + 22, y)], line(PLATEAU, 2)));
+    }
+    // A jump is not a path: the curve is broken there.
+    let jumps: Vec<usize> = (0..path.len()).filter(|&i| path[i].jumped).map(|i| i + 1).collect();
+    let starts = std::iter::once(0).chain(jumps.iter().copied());
+    let ends = jumps.iter().copied().chain([measured.len()]);
+    for (i, (from, to)) in starts.zip(ends).enumerate() {
+        let series = chart.draw_series(LineSeries::new(measured[from..to].to_vec(), line(MEASURED, 2)))?;
+        if i == 0 {
+            series.label("this run").legend(|(x, y)| PathElement::new(vec![(x, y), (x + 22, y)], line(MEASURED, 2)));
+        }
+    }
+    chart.draw_series(measured[1..].iter().map(|point| Circle::new(*point, 2, MEASURED.filled())))?;
+    for snap in snaps(records) {
+        let (from, to) = ((snap.before_deg, snap.moment_before_n_mm), (snap.after_deg, snap.moment_after_n_mm));
+        chart.draw_series(DashedLineSeries::new([from, to], 3, 4, line(SNAP, 1)))?;
+        chart.draw_series([from, to].map(|end| Circle::new(end, 4, line(SNAP, 2))))?;
+        // On the side of the jump that has room.
+        let (side, shift) = if from.0 > 0.6 * end_deg { (HPos::Right, -0.012) } else { (HPos::Left, 0.012) };
+        let style = text(14).color(&SNAP).pos(Pos::new(side, VPos::Center));
+        let place = (from.0 + shift * end_deg, 0.5 * (from.1 + to.1));
+        chart.draw_series([Text::new(format!("snap at {:.2}°", snap.after_deg), place, style)])?;
+    }
+    let top = measured.iter().chain(&law).fold((0.0, 0.0), |top, point| if point.1 > top.1 { *point } else { top });
+    let free_corner =
+        if top.0 > 0.6 * end_deg { SeriesLabelPosition::UpperLeft } else { SeriesLabelPosition::UpperRight };
+    chart
+        .configure_series_labels()
+        .position(free_corner)
+        .margin(12)
+        .legend_area_size(34)
+        .label_font(text(14))
+        .background_style(WHITE.mix(0.9))
+        .border_style(GRID)
+        .draw()?;
+    Ok(())
+}
+
+fn draw_elements(area: &Area, path: &[PathPoint], end_deg: f64) -> Result<(), PlotError> {
+    let height = |point: &PathPoint| ((point.elements[0] * point.elements[1]) as f64).max(1.0).log2();
+    let (low, high) = path.iter().map(height).fold((f64::MAX, 0.0f64), |(low, high), n| (low.min(n), high.max(n)));
+    let (bottom, top) = ((low - 0.6).floor(), (high + 1.0).ceil());
+    let mut chart = ChartBuilder::on(area)
+        .margin(16)
+        .margin_top(4)
+        .margin_right(28)
+        .x_label_area_size(48)
+        .y_label_area_size(LEFT)
+        .build_cartesian_2d(0.0..end_deg, PowersOfTwo { bottom, top })?;
+    chart
+        .configure_mesh()
+        .x_desc("rotation of each end θ (degrees)")
+        .y_desc("elements of the model")
+        .x_label_formatter(&|value| short(*value))
+        .y_label_formatter(&|value| short(value.exp2()))
+        .label_style(text(14))
+        .axis_desc_style(text(15))
+        .axis_style(INK)
+        .bold_line_style(GRID)
+        .light_line_style(WHITE)
+        .draw()?;
+    // The mesh stays as it is until the step that refines it.
+    let mut stairs: Vec<(f64, f64)> = path.first().map(|first| (0.0, height(first))).into_iter().collect();
+    for point in path {
+        let before = stairs.last().map_or(height(point), |last| last.1);
+        stairs.extend([(point.rotation_deg, before), (point.rotation_deg, height(point))]);
+    }
+    chart.draw_series(LineSeries::new(stairs, line(MEASURED, 2)))?;
+    // Every stair that is wide enough has its mesh written upon it.
+    let mut from_deg = 0.0;
+    for (i, point) in path.iter().enumerate() {
+        let next = path.get(i + 1);
+        if next.is_some_and(|next| next.elements == point.elements) {
+            continue;
+        }
+        let to_deg = next.map_or(point.rotation_deg, |next| next.rotation_deg);
+        if to_deg - from_deg > 0.09 * end_deg {
+            let [n1, n2] = point.elements;
+            let style = text(13).pos(Pos::new(HPos::Center, VPos::Bottom));
+            let place = (0.5 * (from_deg + to_deg), height(point) + 0.03 * (top - bottom));
+            chart.draw_series([Text::new(format!("{n1} × {n2}"), place, style)])?;
+        }
+        from_deg = to_deg;
+    }
+    Ok(())
+}
+
+/// An axis of logarithms to base 2, labelled at every power of two, or every second, third, …, so that they fit.
+struct PowersOfTwo {
+    bottom: f64,
+    top: f64,
+}
+
+impl Ranged for PowersOfTwo {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        from + ((value - self.bottom) / (self.top - self.bottom) * f64::from(to - from)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
+        const MOST_LABELS: f64 = 5.0;
+        let stride = ((self.top - self.bottom) / MOST_LABELS).ceil().max(1.0) as usize;
+        (self.bottom as i32..=self.top as i32).step_by(stride).map(f64::from).collect()
+    }
+
+    fn range(&self) -> std::ops::Range<f64> {
+        self.bottom..self.top
+    }
+}
+
+fn text(size: u32) -> TextStyle<'static> {
+    (FONT, size).into_font().color(&INK)
+}
+
+fn line(colour: RGBColor, width: u32) -> ShapeStyle {
+    colour.stroke_width(width)
+}
+
+/// A number at an axis.
+fn short(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').replace('-', "−")
+}

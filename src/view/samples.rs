@@ -1,0 +1,102 @@
+//! A sampled surface: what pictures are drawn from, whatever made it.
+
+/// A surface as a grid of points with a value for each cell, and lines upon it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceSamples {
+    pub(super) counts: [usize; 2],
+    pub(super) points: Vec<[f64; 3]>,
+    pub(super) cell_values: Vec<f64>,
+    pub(super) knot_lines: Vec<Vec<[f64; 3]>>,
+    pub(super) quantity: String,
+}
+
+/// Why samples do not make a surface.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SamplesError {
+    /// Fewer than 2 points one way.
+    #[error("a surface needs 2 points each way, not {} × {}", counts[0], counts[1])]
+    TooFewPoints {
+        /// Points each way.
+        counts: [usize; 2],
+    },
+    /// A buffer does not fit the counts.
+    #[error("a surface of {} × {} points has {expected} {what}, not {found}", counts[0], counts[1])]
+    Length {
+        /// Which buffer.
+        what: &'static str,
+        /// Points each way.
+        counts: [usize; 2],
+        /// Length that fits.
+        expected: usize,
+        /// Length that came.
+        found: usize,
+    },
+    /// A coordinate that is infinite or not a number.
+    #[error("point {index} of the {what} is not finite")]
+    NotFinite {
+        /// Of what.
+        what: &'static str,
+        /// Which one.
+        index: usize,
+    },
+}
+
+impl SurfaceSamples {
+    /// Points of a grid of `counts` points.
+    pub fn points_len(counts: [usize; 2]) -> usize {
+        counts[0] * counts[1]
+    }
+
+    /// Cells of a grid of `counts` points.
+    pub fn cell_values_len(counts: [usize; 2]) -> usize {
+        counts[0].saturating_sub(1) * counts[1].saturating_sub(1)
+    }
+
+    /// A surface of `counts` points each way, at least 2. `points` are in mm, the second direction fastest
+    /// (index = i₁ · n₂ + i₂); `cell_values` likewise with n − 1 cells each way, and not-a-number where there is no
+    /// value; `knot_lines` are polylines on the surface, mm. `quantity` names what the values are, with its unit.
+    ///
+    /// # Errors
+    /// Where the lengths do not fit each other, or a coordinate is not finite.
+    pub fn new(
+        counts: [usize; 2],
+        points: Vec<[f64; 3]>,
+        cell_values: Vec<f64>,
+        knot_lines: Vec<Vec<[f64; 3]>>,
+        quantity: &str,
+    ) -> Result<Self, SamplesError> {
+        if counts[0] < 2 || counts[1] < 2 {
+            return Err(SamplesError::TooFewPoints { counts });
+        }
+        let fits = |what, found, expected| {
+            if found == expected { Ok(()) } else { Err(SamplesError::Length { what, counts, expected, found }) }
+        };
+        fits("points", points.len(), Self::points_len(counts))?;
+        fits("cell values", cell_values.len(), Self::cell_values_len(counts))?;
+        let broken = |point: &[f64; 3]| point.iter().any(|coordinate| !coordinate.is_finite());
+        if let Some(index) = points.iter().position(broken) {
+            return Err(SamplesError::NotFinite { what: "surface", index });
+        }
+        if let Some(index) = knot_lines.iter().flatten().position(broken) {
+            return Err(SamplesError::NotFinite { what: "knot lines", index });
+        }
+        Ok(Self { counts, points, cell_values, knot_lines, quantity: quantity.to_string() })
+    }
+
+    /// Point indices of the corners of every cell, around it, in the order of the cell values.
+    pub(super) fn cells(&self) -> impl Iterator<Item = [usize; 4]> {
+        let [n1, n2] = self.counts;
+        (0..n1 - 1).flat_map(move |i| {
+            (0..n2 - 1).map(move |j| {
+                let corner = i * n2 + j;
+                [corner, corner + n2, corner + n2 + 1, corner + 1]
+            })
+        })
+    }
+
+    /// Least and largest value; `None` where there is none.
+    pub(super) fn value_range(&self) -> Option<[f64; 2]> {
+        let finite = || self.cell_values.iter().copied().filter(|value| value.is_finite());
+        Some([finite().reduce(f64::min)?, finite().reduce(f64::max)?])
+    }
+}

@@ -1,0 +1,92 @@
+//! The program from outside: help, wrong usage, exit codes, closed pipes.
+
+use std::process::{Command, Output, Stdio};
+
+fn foldline(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_foldline"));
+    command.args(arguments);
+    command
+}
+
+fn output(arguments: &[&str]) -> Output {
+    foldline(arguments).output().unwrap()
+}
+
+fn stdout(arguments: &[&str]) -> String {
+    let output = output(arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Standard error of a command that is to end with `code` and print nothing.
+fn refusal(arguments: &[&str], code: i32) -> String {
+    let output = output(arguments);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    assert!(output.stdout.is_empty());
+    text
+}
+
+#[test]
+fn help() {
+    insta::assert_snapshot!("help", stdout(&["--help"]));
+    insta::assert_snapshot!("help_run", stdout(&["help", "run"]));
+    insta::assert_snapshot!("help_inspect", stdout(&["help", "inspect"]));
+    insta::assert_snapshot!("help_plot", stdout(&["help", "plot"]));
+}
+
+#[test]
+fn every_option_stands_in_the_long_help_and_the_short() {
+    for subcommand in ["run", "inspect", "plot", "help"] {
+        let [long, short] = [["help", subcommand], [subcommand, "-h"]].map(|arguments| stdout(&arguments));
+        let options = |text: &str| -> Vec<String> {
+            let words = text.split_whitespace().map(|word| word.trim_end_matches(','));
+            words.filter(|word| word.starts_with("--")).map(str::to_string).collect()
+        };
+        assert_eq!(options(&long), options(&short), "{subcommand}");
+    }
+}
+
+#[test]
+fn wrong_usage() {
+    insta::assert_snapshot!(refusal(&["help", "plto"], 2), @"foldline: no help on `plto`; there is help on run, inspect, plot, help, scene; did you mean `plot`?");
+    insta::assert_snapshot!(refusal(&["run", "nope.toml"], 2), @r"
+    foldline: cannot read nope.toml
+      because: No such file or directory (os error 2)
+    ");
+    insta::assert_snapshot!(refusal(&["run", "a.toml", "--until", "-3"], 2), @r"
+    error: invalid value '-3' for '--until <DEG>': a rotation above 0 degrees is wanted
+
+    For more information, try '--help'.
+    ");
+    insta::assert_snapshot!(refusal(&["plot", "a.mcap", "--view", "north"], 2), @r"
+    error: invalid value 'north' for '--view <AZIMUTH,ELEVATION>': two numbers of degrees are wanted, such as -62,24
+
+    For more information, try '--help'.
+    ");
+    refusal(&["run", "a.toml", "--threads", "0"], 2);
+    refusal(&["run", "a.toml", "--quiet", "--json"], 2);
+    refusal(&["inspect"], 2);
+    refusal(&["inspect", "nope.mcap"], 2);
+    refusal(&["fold"], 2);
+    refusal(&[], 2);
+}
+
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    for arguments in [&["help"][..], &["--help"], &["help", "run"]] {
+        let mut child = foldline(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+    }
+}
+
+#[test]
+fn a_full_disk_is() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = foldline(&["help"]).stdout(full).stderr(Stdio::piped()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write to standard output"));
+}

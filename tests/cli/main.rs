@@ -1,0 +1,9 @@
+//! What a user sees, pinned by snapshots.
+
+mod binary;
+mod folded;
+mod pictures;
+mod progress;
+mod stages;
+mod summary;
+mod synthetic;

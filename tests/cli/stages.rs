@@ -1,0 +1,68 @@
+//! Stages of a log as a table, in full, and as JSON.
+
+use foldline::cli::{json_line, stage_table, step_in_full};
+
+use crate::synthetic;
+
+#[test]
+fn table_of_a_run() {
+    let table = stage_table(&synthetic::records());
+    assert!(table.lines().all(|line| line.chars().count() <= 120));
+    insta::assert_snapshot!(table);
+}
+
+#[test]
+fn table_of_a_large_run_fits() {
+    let mut records = synthetic::records();
+    for record in &mut records {
+        record.commit.ordinal += 1000;
+        record.report.step += 1000;
+        record.report.elements = [256, 32];
+        record.report.unknowns = 27_195;
+        record.report.moment_n_mm += 1000.0;
+        record.report.strain_energy_n_mm += 100.0;
+        record.wall_s += 100.0;
+    }
+    let table = stage_table(&records);
+    let widest = table.lines().map(|line| line.chars().count()).max();
+    assert!(widest <= Some(120), "{widest:?}\n{table}");
+}
+
+#[test]
+fn table_of_an_empty_log_is_its_head() {
+    insta::assert_snapshot!(stage_table(&[]));
+}
+
+#[test]
+fn step_with_a_refinement_in_full() {
+    insta::assert_snapshot!(step_in_full(&synthetic::records(), 3));
+}
+
+#[test]
+fn step_with_a_jump_in_full() {
+    insta::assert_snapshot!(step_in_full(&synthetic::records(), 10));
+}
+
+#[test]
+fn step_that_is_not_there() {
+    assert_eq!(step_in_full(&synthetic::records(), 99), "");
+}
+
+#[test]
+fn json_has_these_fields() {
+    let records = synthetic::records();
+    let line = json_line(&records[4]);
+    assert!(!line.contains('\n'));
+    insta::assert_snapshot!(line.replace(",\"", ",\n\""));
+}
+
+#[test]
+fn json_numbers_come_back_bit_for_bit() {
+    for record in synthetic::records() {
+        let value: serde_json::Value = serde_json::from_str(&json_line(&record)).unwrap();
+        let moment = value["moment_n_mm"].as_f64().unwrap();
+        assert_eq!(moment.to_bits(), record.report.moment_n_mm.to_bits());
+        let report: foldline::pipeline::Report = serde_json::from_value(value).unwrap();
+        assert_eq!(report, record.report);
+    }
+}
