@@ -9,8 +9,8 @@
 
 use rayon::prelude::*;
 
-use crate::equilibrium::kernel::{ElementBuffers, has_fma_kernel, integrate_element};
 pub use crate::equilibrium::kernel::Want;
+use crate::equilibrium::kernel::{ElementBuffers, has_fma_kernel, integrate_element};
 use crate::model::{Discretization, Tables};
 use crate::spline::Mesh;
 
@@ -136,12 +136,7 @@ pub fn neighbour(i: usize, offset: [isize; 2], n2: usize, count: usize) -> Optio
 }
 
 /// Disjoint slices of `height` rows from each of the ascending `starts`.
-fn take_rows<'a, T>(
-    mut data: &'a mut [T],
-    row: usize,
-    height: usize,
-    starts: impl Iterator<Item = usize>,
-) -> Vec<&'a mut [T]> {
+fn take_rows<T>(mut data: &mut [T], row: usize, height: usize, starts: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
     let mut taken = 0;
     let mut slices = Vec::new();
     for start in starts {

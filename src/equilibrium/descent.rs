@@ -98,16 +98,15 @@ impl<'a> Descent<'a> {
             reactions: assembled.residual.iter().map(|force| dot(*force, *force)).sum::<f64>().sqrt(),
             negative_pivots: 0,
             step_length: self.step_length,
+            worst_point: self.discretization.unknowns.home_of(largest(&self.gradient)),
         };
         if !(last.energy.is_finite() && last.residual.is_finite()) {
             return Err(SolveError::NotANumber { last, effort: self.effort });
         }
         self.pattern.fill(self.discretization, &self.placement, assembled, self.values);
         self.effort.factorizations += 1;
-        last.negative_pivots = self
-            .solver
-            .factorize(self.values)
-            .map_err(|cause| SolveError::Factor { cause, effort: self.effort })?;
+        last.negative_pivots =
+            self.solver.factorize(self.values).map_err(|cause| SolveError::Factor { cause, effort: self.effort })?;
         Ok(last)
     }
 
@@ -203,4 +202,9 @@ impl<'a> Descent<'a> {
         self.assembled.assemble(self.discretization, &self.displacement, Want::Stiffness);
         self.assembled.energy
     }
+}
+
+/// Index of the largest magnitude; the first of equals.
+fn largest(vector: &[f64]) -> usize {
+    (0..vector.len()).fold(0, |best, i| if vector[i].abs() > vector[best].abs() { i } else { best })
 }

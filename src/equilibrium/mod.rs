@@ -6,7 +6,9 @@ mod kernel;
 mod newton;
 mod pattern;
 mod sparse;
+mod stability;
 
 pub use assembly::{Assembled, Want, strain_energy};
 pub use newton::{Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
 pub use sparse::FactorError;
+pub use stability::{SoftMode, soft_mode};

@@ -28,6 +28,8 @@ pub struct Iterate {
     pub negative_pivots: usize,
     /// Step length along the last direction; 1 is a full Newton step.
     pub step_length: f64,
+    /// Control point with the largest residual.
+    pub worst_point: usize,
 }
 
 /// A point of equilibrium.
@@ -160,6 +162,24 @@ impl Workspace {
     pub fn energy(&self, displacement: &[[f64; 3]]) -> f64 {
         strain_energy(&self.discretization.mesh, &self.discretization.tables, displacement)
     }
+
+    /// Stiffness and factor at a displacement, unless the last solve left them there; returns the negative pivots. Not
+    /// counted in the effort of a solve, which would then depend on what ran before in the same process.
+    pub(super) fn factorize_at(&mut self, theta: f64, displacement: &[[f64; 3]]) -> Result<usize, SolveError> {
+        if let Some((at, known, negative)) = &self.factored_at
+            && *at == theta
+            && known == displacement
+        {
+            return Ok(*negative);
+        }
+        self.assembled.assemble(&self.discretization, displacement, Want::Stiffness);
+        let placement = self.discretization.unknowns.at(theta);
+        self.pattern.fill(&self.discretization, &placement, &self.assembled, &mut self.values);
+        let effort = Effort::default();
+        let negative = self.solver.factorize(&self.values).map_err(|cause| SolveError::Factor { cause, effort })?;
+        self.factored_at = Some((theta, displacement.to_vec(), negative));
+        Ok(negative)
+    }
 }
 
 /// Equilibrium of a scene on the mesh of a workspace.
@@ -212,7 +232,7 @@ impl<'a> Equilibrium<'a> {
     /// Unknowns at `to`: along the tangent of the path where it is stable, or the old ones, whichever has less energy.
     fn predict(&mut self, displacement: &[[f64; 3]], from: f64, to: f64) -> Result<Vec<f64>, SolveError> {
         let (rate, old) = {
-            let negative = self.factorize_at(from, displacement)?;
+            let negative = self.work.factorize_at(from, displacement)?;
             let Workspace { discretization, solver, assembled, .. } = &mut *self.work;
             let placement = discretization.unknowns.at(from);
             let old = placement.unknowns_of(displacement);
@@ -236,22 +256,6 @@ impl<'a> Equilibrium<'a> {
     fn energy_at(&self, theta: f64, unknowns: &[f64]) -> f64 {
         let displacement = self.work.discretization.unknowns.at(theta).displacement(unknowns);
         self.work.energy(&displacement)
-    }
-
-    /// Stiffness and factor at a displacement, unless the last solve left them there; returns the negative pivots. Not
-    /// counted in the effort of a solve, which would then depend on what ran before in the same process.
-    fn factorize_at(&mut self, theta: f64, displacement: &[[f64; 3]]) -> Result<usize, SolveError> {
-        if let Some((at, known, negative)) = &self.work.factored_at
-            && *at == theta
-            && known == displacement
-        {
-            return Ok(*negative);
-        }
-        let work = &mut *self.work;
-        work.assembled.assemble(&work.discretization, displacement, Want::Stiffness);
-        let placement = work.discretization.unknowns.at(theta);
-        work.pattern.fill(&work.discretization, &placement, &work.assembled, &mut work.values);
-        work.solver.factorize(&work.values).map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })
     }
 
     fn minimize(&mut self, unknowns: Vec<f64>, theta: f64, observer: Observer) -> Result<Solved, SolveError> {

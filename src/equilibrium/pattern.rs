@@ -84,9 +84,12 @@ impl Pattern {
         let stored = |a: usize, b: usize| i != j || a >= b;
         if unknowns.is_regular(i) && unknowns.is_regular(j) {
             let (a, b) = (unknowns.entries_of(i)[0].unknown, unknowns.entries_of(j)[0].unknown);
-            let targets = std::array::from_fn(|k| {
-                if stored(k / 3, k % 3) { self.target(a + k / 3, b + k % 3) } else { NOT_STORED }
-            });
+            let targets =
+                std::array::from_fn(
+                    |k| {
+                        if stored(k / 3, k % 3) { self.target(a + k / 3, b + k % 3) } else { NOT_STORED }
+                    },
+                );
             self.copied.push(CopiedBlock { block, targets });
             return;
         }
@@ -101,7 +104,13 @@ impl Pattern {
     }
 
     /// Fills the values of the matrix.
-    pub fn fill(&self, discretization: &Discretization, placement: &Placement, assembled: &Assembled, values: &mut [f64]) {
+    pub fn fill(
+        &self,
+        discretization: &Discretization,
+        placement: &Placement,
+        assembled: &Assembled,
+        values: &mut [f64],
+    ) {
         values.fill(0.0);
         for copied in &self.copied {
             let block = &assembled.stiffness[copied.block..][..9];

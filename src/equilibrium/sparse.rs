@@ -47,7 +47,12 @@ pub struct SparseSolver {
 
 impl std::fmt::Debug for SparseSolver {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "SparseSolver({} unknowns, {} numbers in the factor)", self.column_starts.len() - 1, self.factor.len())
+        write!(
+            f,
+            "SparseSolver({} unknowns, {} numbers in the factor)",
+            self.column_starts.len() - 1,
+            self.factor.len()
+        )
     }
 }
 

@@ -74,8 +74,7 @@ fn subdivide(mut mesh: Mesh, segments: [usize; 2], elements: [usize; 2]) -> Mesh
     for direction in 0..2 {
         let pieces = elements[direction].div_ceil(segments[direction]);
         let total = pieces * segments[direction];
-        let new: Vec<f64> =
-            (1..total).filter(|k| k % pieces != 0).map(|k| k as f64 / total as f64).collect();
+        let new: Vec<f64> = (1..total).filter(|k| k % pieces != 0).map(|k| k as f64 / total as f64).collect();
         let counts = mesh.control_counts();
         let (knots, net) = insert_knots_into_net(
             &mesh.knots[direction],

@@ -65,16 +65,8 @@ impl Unknowns {
             })
             .collect();
         let eliminated = eliminate(&constraints(scene, mesh, &points));
-        let mut unknowns = Self {
-            count: 0,
-            start: vec![0],
-            entries: Vec::new(),
-            frame,
-            ends,
-            points,
-            home: Vec::new(),
-            slide: None,
-        };
+        let mut unknowns =
+            Self { count: 0, start: vec![0], entries: Vec::new(), frame, ends, points, home: Vec::new(), slide: None };
         unknowns.number(&eliminated);
         unknowns
     }
@@ -82,6 +74,11 @@ impl Unknowns {
     /// Number of free unknowns.
     pub fn count(&self) -> usize {
         self.count
+    }
+
+    /// The control point that an unknown belongs to; of several that share it, the first.
+    pub fn home_of(&self, unknown: usize) -> usize {
+        self.home[unknown].0
     }
 
     /// Entries of a control point.
@@ -95,7 +92,9 @@ impl Unknowns {
         self.frame[point].is_none()
             && entries.len() == 3
             && entries.iter().enumerate().all(|(c, entry)| {
-                entry.unknown == entries[0].unknown + c && entry.direction == unit(c) && self.home[entry.unknown] == (point, c)
+                entry.unknown == entries[0].unknown + c
+                    && entry.direction == unit(c)
+                    && self.home[entry.unknown] == (point, c)
             })
     }
 
@@ -143,7 +142,8 @@ impl Unknowns {
         let mut directions = Vec::with_capacity(self.entries.len());
         let mut direction_rates = Vec::new();
         for point in 0..self.points.len() {
-            let turn = self.frame[point].map(|end| (self.ends[end].rotation(theta), self.ends[end].rotation_rate(theta)));
+            let turn =
+                self.frame[point].map(|end| (self.ends[end].rotation(theta), self.ends[end].rotation_rate(theta)));
             for (index, entry) in (self.start[point]..).zip(self.entries_of(point)) {
                 match turn {
                     Some((rotation, rate)) if entry.turns => {

@@ -67,8 +67,7 @@ impl Run {
         let (state, report) = self.stages.run(stage, &self.state, &mut |_| {})?;
         let wall_s = begin.elapsed().as_secs_f64();
         let state_hash = state.hash();
-        let commit =
-            Commit::next(self.last.as_ref(), stage, report.step, self.scene_hash, self.state_hash, state_hash);
+        let commit = Commit::next(self.last.as_ref(), stage, report.step, self.scene_hash, self.state_hash, state_hash);
         let record = Record { report, commit, wall_s };
         sink.take(&state, &record)?;
         (self.state, self.state_hash, self.last) = (state, state_hash, Some(commit));

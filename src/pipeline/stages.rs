@@ -263,14 +263,14 @@ impl Stages {
             false
         };
         let (scene, work) = self.workspace(&state.mesh, step, Stage::ReEquilibrate)?;
-        let solved = Equilibrium::new(scene, work)
-            .relax(&state.displacement, state.rotation_deg, &mut watch)
-            .map_err(|cause| StageError::NotReEquilibrated {
+        let solved = Equilibrium::new(scene, work).relax(&state.displacement, state.rotation_deg, &mut watch).map_err(
+            |cause| StageError::NotReEquilibrated {
                 step,
                 rotation_deg: state.rotation_deg,
                 elements: state.mesh.element_counts(),
                 cause,
-            })?;
+            },
+        )?;
         let released = state.strain_energy_n_mm - solved.energy;
         let mut next = settle(state, &solved);
         let mut report = self.report(&next, step);

@@ -86,11 +86,9 @@ impl Attempt {
                 jump_seen_at_deg: Some(self.target_deg),
                 rejection: Some(rejection),
             },
-            Rejection::NoEquilibrium => StepControl {
-                halvings: before.halvings + 1,
-                jump_seen_at_deg: None,
-                rejection: Some(rejection),
-            },
+            Rejection::NoEquilibrium => {
+                StepControl { halvings: before.halvings + 1, jump_seen_at_deg: None, rejection: Some(rejection) }
+            }
         }
     }
 }

@@ -233,10 +233,7 @@ fn geometric_part(d: &Deformed, forces: [f64; 3], moments: [f64; 3], hessian: &m
     let apply = |x: [f64; 3]| {
         let tilt = dot(n, x);
         let lean = dot(moment, x);
-        scaled(
-            -inverse,
-            add(add(scaled(lean - 3.0 * along * tilt, n), scaled(tilt, moment)), scaled(along, x)),
-        )
+        scaled(-inverse, add(add(scaled(lean - 3.0 * along * tilt, n), scaled(tilt, moment)), scaled(along, x)))
     };
     for beta in 0..2 {
         for e in 0..3 {
@@ -270,10 +267,8 @@ mod tests {
 
     fn sample() -> (PointReference, [[f64; 3]; 5]) {
         let material = Material::Isotropic { youngs_modulus_mpa: 100.0, poissons_ratio: 0.3, thickness_mm: 0.5 };
-        let reference =
-            [[1.0, 0.1, 0.0], [0.2, 1.3, -0.1], [0.1, 0.0, 0.4], [0.0, 0.2, -0.7], [0.05, -0.1, 0.3]];
-        let u =
-            [[0.1, -0.2, 0.3], [-0.15, 0.05, 0.2], [0.3, 0.1, -0.2], [0.2, 0.4, 0.1], [-0.3, 0.2, 0.25]];
+        let reference = [[1.0, 0.1, 0.0], [0.2, 1.3, -0.1], [0.1, 0.0, 0.4], [0.0, 0.2, -0.7], [0.05, -0.1, 0.3]];
+        let u = [[0.1, -0.2, 0.3], [-0.15, 0.05, 0.2], [0.3, 0.1, -0.2], [0.2, 0.4, 0.1], [-0.3, 0.2, 0.25]];
         (PointReference::new(reference, &material, 0.8), u)
     }
 

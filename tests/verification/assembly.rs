@@ -61,7 +61,8 @@ fn residual_and_stiffness_are_derivatives_of_the_energy() {
         let exact: f64 = gradient(0.0).iter().zip(direction).map(|(g, d)| g * d).sum();
         assert!((slope / exact - 1.0).abs() < 1e-6, "{symmetry:?} {degree:?}: {slope} {exact}");
 
-        let change: Vec<f64> = gradient(step).iter().zip(gradient(-step)).map(|(a, b)| (a - b) / (2.0 * step)).collect();
+        let change: Vec<f64> =
+            gradient(step).iter().zip(gradient(-step)).map(|(a, b)| (a - b) / (2.0 * step)).collect();
         let mut assembled = Assembled::new(&discretization);
         assembled.assemble(&discretization, &placement.displacement(&point), Want::Stiffness);
         // T d: the displacement is affine in the unknowns.

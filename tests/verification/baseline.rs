@@ -11,8 +11,7 @@ use crate::support::{of, run, scene, steps};
 fn initial_stiffness() -> f64 {
     let (length, radius, thickness, modulus) = (300.0_f64, 10.0_f64, 0.1, 131000.0);
     let arc = 110.0_f64.to_radians();
-    let inertia =
-        radius.powi(3) * thickness * ((arc + arc.sin()) / 2.0 - 4.0 * (arc / 2.0).sin().powi(2) / arc);
+    let inertia = radius.powi(3) * thickness * ((arc + arc.sin()) / 2.0 - 4.0 * (arc / 2.0).sin().powi(2) / arc);
     2.0 * modulus * inertia / length
 }
 
@@ -59,7 +58,8 @@ fn check_baseline(stages: &[(State, Record)]) {
     assert!((peak.0.rotation_deg - 9.1).abs() < 0.3, "peak at {}°", peak.0.rotation_deg);
 
     let snap = stages.iter().position(|(_, record)| record.report.jumped).unwrap();
-    let (after, before) = (&stages[snap].0, &settled.iter().rfind(|s| s.0.rotation_deg < stages[snap].0.rotation_deg).unwrap().0);
+    let (after, before) =
+        (&stages[snap].0, &settled.iter().rfind(|s| s.0.rotation_deg < stages[snap].0.rotation_deg).unwrap().0);
     assert!(after.rotation_deg - before.rotation_deg <= 0.01);
     assert!((before.rotation_deg - 9.90).abs() < 0.05, "stable up to {}°", before.rotation_deg);
     assert_eq!(before.negative_pivots, 0);
@@ -112,7 +112,8 @@ fn quarter_model_solves_a_quarter() {
     let full = scene("baseline.toml");
     let quarter = scene("baseline-quarter.toml");
     let unknowns = |scene: &Scene| {
-        let fine = Scene { mesh: foldline::scene::MeshSpec { elements: [128, 16], ..scene.mesh.clone() }, ..scene.clone() };
+        let fine =
+            Scene { mesh: foldline::scene::MeshSpec { elements: [128, 16], ..scene.mesh.clone() }, ..scene.clone() };
         let stages = Stages::new(fine.clone());
         let start = stages.start().unwrap();
         foldline::model::Unknowns::new(&fine, &start.mesh).count()

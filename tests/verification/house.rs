@@ -4,8 +4,23 @@ use std::path::{Path, PathBuf};
 
 /// From the bottom of the stack to its top.
 const ORDER: [&str; 17] = [
-    "units", "error", "digest", "scene", "spline", "shell", "model", "state", "equilibrium", "adapt", "pipeline", "journal",
-    "history", "study", "view", "cli", "main",
+    "units",
+    "error",
+    "digest",
+    "scene",
+    "spline",
+    "shell",
+    "model",
+    "state",
+    "equilibrium",
+    "adapt",
+    "pipeline",
+    "journal",
+    "history",
+    "study",
+    "view",
+    "cli",
+    "main",
 ];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -61,7 +76,8 @@ fn faer_mcap_and_bincode_are_named_in_one_place_each() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = Vec::new();
     sources(&root, &mut files);
-    for (name, home) in [("faer::", "equilibrium/sparse.rs"), ("mcap::", "journal/"), ("bincode::", "journal/codec.rs")] {
+    for (name, home) in [("faer::", "equilibrium/sparse.rs"), ("mcap::", "journal/"), ("bincode::", "journal/codec.rs")]
+    {
         for file in &files {
             let relative = file.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/");
             let text = std::fs::read_to_string(file).unwrap();

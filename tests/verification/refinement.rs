@@ -1,7 +1,7 @@
 //! Refinement is exact: the projected state is the same state.
 
-use foldline::model::Tables;
 use foldline::equilibrium::strain_energy;
+use foldline::model::Tables;
 use foldline::scene::Stage;
 
 use crate::support::{run, scene};

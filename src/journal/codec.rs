@@ -1,0 +1,250 @@
+//! States and meshes as bytes: a version byte, then bincode (little endian, fixed-width integers, no maps).
+//!
+//! Each version has structs of its own, so that a change of [`State`] cannot change how old logs are read. The mesh
+//! lies apart from the states and is named by its content hash. Nothing decoded leaves this file before its content
+//! hash is what the commit says and [`soundness`](super::soundness) has passed it.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::format::CHUNK_BYTES_LIMIT;
+use super::soundness::{Flaw, check_mesh, check_state};
+use crate::scene::Stage;
+use crate::state::{Hash, Mesh, Rejection, State, StepControl};
+
+/// The version that is written, in front of every state and mesh.
+pub const CODEC_VERSION: u8 = 1;
+
+/// Why bytes are not a state or a mesh that can be used.
+#[derive(Debug, thiserror::Error)]
+pub enum CodecError {
+    /// No bytes at all.
+    #[error("the message is empty")]
+    Empty,
+    /// Written by a later version of the program.
+    #[error("the message has encoding version {found}, and this program reads up to {CODEC_VERSION}: use a newer one")]
+    Version {
+        /// Version in the message.
+        found: u8,
+    },
+    /// Not what the encoding says.
+    #[error("the message does not decode")]
+    Decode(#[from] bincode::error::DecodeError),
+    /// Too large, or a failure of the encoder.
+    #[error("the state cannot be encoded")]
+    Encode(#[from] bincode::error::EncodeError),
+    /// Bytes left over after decoding.
+    #[error("the message holds {total} bytes of which only {used} were used")]
+    LeftOver {
+        /// Bytes that decoding used.
+        used: usize,
+        /// Bytes of the message.
+        total: usize,
+    },
+    /// The state names another mesh than the commit.
+    #[error("the state stands on mesh {found}, and its commit says {expected}")]
+    OtherMesh {
+        /// Mesh that the commit names.
+        expected: Hash,
+        /// Mesh that the state names.
+        found: Hash,
+    },
+    /// Decoded, but not the content that was committed.
+    #[error("the {what} hashes to {found}, and its commit says {expected}")]
+    ContentHash {
+        /// "state" or "mesh".
+        what: &'static str,
+        /// Hash in the commit.
+        expected: Hash,
+        /// Hash of what was decoded.
+        found: Hash,
+    },
+    /// The content that was committed, but nothing that a run could go on from.
+    #[error("the content is unusable")]
+    Unsound(#[from] Flaw),
+}
+
+#[derive(Serialize, Deserialize)]
+struct MeshV1<'a> {
+    degree: [u64; 2],
+    knots: [Cow<'a, [f64]>; 2],
+    control_points: Cow<'a, [[f64; 4]]>,
+}
+
+impl<'a> MeshV1<'a> {
+    fn of(mesh: &'a Mesh) -> Self {
+        Self {
+            degree: mesh.degree.map(|degree| degree as u64),
+            knots: [0, 1].map(|way| Cow::from(&mesh.knots[way])),
+            control_points: Cow::from(&mesh.control_points),
+        }
+    }
+
+    fn into_mesh(self) -> Mesh {
+        Mesh {
+            degree: self.degree.map(|degree| usize::try_from(degree).unwrap_or(usize::MAX)),
+            knots: self.knots.map(Cow::into_owned),
+            control_points: self.control_points.into_owned(),
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct StateV1<'a> {
+    mesh: [u8; 32],
+    displacement: Cow<'a, [[f64; 3]]>,
+    marked: [Cow<'a, [f64]>; 2],
+    refined: Option<MeshV1<'a>>,
+    step: u64,
+    stage: Option<StageV1>,
+    rotation_deg: f64,
+    moment_n_mm: f64,
+    strain_energy_n_mm: f64,
+    negative_pivots: u64,
+    halvings: u32,
+    jump_seen_at_deg: Option<f64>,
+    rejection: Option<RejectionV1>,
+}
+
+#[derive(Serialize, Deserialize)]
+enum StageV1 {
+    Solve,
+    EvaluateIndicators,
+    RefineKnots,
+    ProjectDisplacements,
+    ReEquilibrate,
+}
+
+#[derive(Serialize, Deserialize)]
+enum RejectionV1 {
+    NoEquilibrium,
+    Jump,
+}
+
+fn config() -> impl bincode::config::Config {
+    bincode::config::standard().with_little_endian().with_fixed_int_encoding().with_limit::<CHUNK_BYTES_LIMIT>()
+}
+
+fn encode(value: &impl Serialize) -> Result<Vec<u8>, CodecError> {
+    let mut bytes = vec![CODEC_VERSION];
+    bincode::serde::encode_into_std_write(value, &mut bytes, config())?;
+    Ok(bytes)
+}
+
+fn decode<T: for<'de> Deserialize<'de>>(bytes: &[u8]) -> Result<T, CodecError> {
+    match bytes {
+        [] => Err(CodecError::Empty),
+        [CODEC_VERSION, body @ ..] => {
+            let (value, used) = bincode::serde::decode_from_slice(body, config())?;
+            if used == body.len() {
+                Ok(value)
+            } else {
+                Err(CodecError::LeftOver { used: used + 1, total: bytes.len() })
+            }
+        }
+        [found, ..] => Err(CodecError::Version { found: *found }),
+    }
+}
+
+/// A mesh as bytes.
+///
+/// # Errors
+/// Where the mesh is unsound or larger than a log can hold.
+pub fn encode_mesh(mesh: &Mesh) -> Result<Vec<u8>, CodecError> {
+    check_mesh(mesh)?;
+    encode(&MeshV1::of(mesh))
+}
+
+/// The mesh that the bytes hold, if its content hash is `expected` and it is sound.
+///
+/// # Errors
+/// Where the bytes are anything else.
+pub fn decode_mesh(bytes: &[u8], expected: Hash) -> Result<Mesh, CodecError> {
+    let stored: MeshV1 = decode(bytes)?;
+    let mesh = stored.into_mesh();
+    let found = mesh.hash();
+    if found != expected {
+        return Err(CodecError::ContentHash { what: "mesh", expected, found });
+    }
+    check_mesh(&mesh)?;
+    Ok(mesh)
+}
+
+/// A state as bytes, without its mesh, which it names by hash.
+///
+/// # Errors
+/// Where the state is unsound or larger than a log can hold.
+pub fn encode_state(state: &State) -> Result<Vec<u8>, CodecError> {
+    check_state(state)?;
+    encode(&StateV1 {
+        mesh: *state.mesh.hash().as_bytes(),
+        displacement: Cow::from(&state.displacement),
+        marked: [0, 1].map(|way| Cow::from(&state.marked[way])),
+        refined: state.refined.as_deref().map(MeshV1::of),
+        step: state.step,
+        stage: state.stage.map(|stage| match stage {
+            Stage::Solve => StageV1::Solve,
+            Stage::EvaluateIndicators => StageV1::EvaluateIndicators,
+            Stage::RefineKnots => StageV1::RefineKnots,
+            Stage::ProjectDisplacements => StageV1::ProjectDisplacements,
+            Stage::ReEquilibrate => StageV1::ReEquilibrate,
+        }),
+        rotation_deg: state.rotation_deg,
+        moment_n_mm: state.moment_n_mm,
+        strain_energy_n_mm: state.strain_energy_n_mm,
+        negative_pivots: state.negative_pivots,
+        halvings: state.control.halvings,
+        jump_seen_at_deg: state.control.jump_seen_at_deg,
+        rejection: state.control.rejection.map(|rejection| match rejection {
+            Rejection::NoEquilibrium => RejectionV1::NoEquilibrium,
+            Rejection::Jump => RejectionV1::Jump,
+        }),
+    })
+}
+
+/// The state that the bytes hold, if it stands on `mesh` (whose content hash is `mesh_hash`), its content hash is
+/// `expected` and it is sound.
+///
+/// # Errors
+/// Where the bytes are anything else.
+pub fn decode_state(bytes: &[u8], mesh: Arc<Mesh>, mesh_hash: Hash, expected: Hash) -> Result<State, CodecError> {
+    let stored: StateV1 = decode(bytes)?;
+    let found = Hash::from_bytes(stored.mesh);
+    if found != mesh_hash {
+        return Err(CodecError::OtherMesh { expected: mesh_hash, found });
+    }
+    let state = State {
+        mesh,
+        displacement: stored.displacement.into_owned(),
+        marked: stored.marked.map(Cow::into_owned),
+        refined: stored.refined.map(|mesh| Arc::new(mesh.into_mesh())),
+        step: stored.step,
+        stage: stored.stage.map(|stage| match stage {
+            StageV1::Solve => Stage::Solve,
+            StageV1::EvaluateIndicators => Stage::EvaluateIndicators,
+            StageV1::RefineKnots => Stage::RefineKnots,
+            StageV1::ProjectDisplacements => Stage::ProjectDisplacements,
+            StageV1::ReEquilibrate => Stage::ReEquilibrate,
+        }),
+        rotation_deg: stored.rotation_deg,
+        moment_n_mm: stored.moment_n_mm,
+        strain_energy_n_mm: stored.strain_energy_n_mm,
+        negative_pivots: stored.negative_pivots,
+        control: StepControl {
+            halvings: stored.halvings,
+            jump_seen_at_deg: stored.jump_seen_at_deg,
+            rejection: stored.rejection.map(|rejection| match rejection {
+                RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,
+                RejectionV1::Jump => Rejection::Jump,
+            }),
+        },
+    };
+    let found = state.hash();
+    if found != expected {
+        return Err(CodecError::ContentHash { what: "state", expected, found });
+    }
+    check_state(&state)?;
+    Ok(state)
+}

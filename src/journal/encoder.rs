@@ -1,0 +1,252 @@
+//! Commits and manifests as MCAP bytes, in memory; nothing here touches a file, so nothing here can fail halfway.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use mcap::records::{MessageHeader, Metadata, Record as McapRecord};
+use mcap::write::NoSeek;
+use mcap::{McapError, WriteOptions, Writer};
+
+use super::chunk;
+use super::codec::CodecError;
+use super::format::{
+    BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, OWN_TOPICS, PROFILE, REPORT_TOPIC,
+    STATE_TOPIC, log_time_ns, sequence,
+};
+use super::frame::{self, Frame};
+use super::message::{CommitMessage, FinishedMessage, MessageHash, ReportMessage, schema_of, seal};
+use crate::pipeline::{Commit, Record};
+use crate::state::Hash;
+
+/// A topic for viewers beside the log's own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ViewerTopic {
+    /// Name of the topic; none of the log's own.
+    pub topic: String,
+    /// Encoding of its messages, such as `protobuf`.
+    pub message_encoding: String,
+    /// Name of their schema, such as `foxglove.SceneUpdate`.
+    pub schema_name: String,
+    /// Encoding of the schema, such as `protobuf`.
+    pub schema_encoding: String,
+    /// The schema.
+    pub schema: Vec<u8>,
+}
+
+/// A message for viewers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ViewerMessage {
+    /// Where it goes.
+    pub topic: Arc<ViewerTopic>,
+    /// Its bytes, in the topic's encoding.
+    pub data: Vec<u8>,
+}
+
+/// Why a stage cannot be put into a log.
+#[derive(Debug, thiserror::Error)]
+pub enum EncodeError {
+    /// The state has no place in a log.
+    #[error("the state cannot be kept")]
+    State(#[from] CodecError),
+    /// More than a chunk can hold.
+    #[error("the stage takes {bytes} bytes, and a chunk of a log holds {CHUNK_BYTES_LIMIT}: use a coarser mesh{hint}")]
+    TooLarge {
+        /// Bytes that the stage takes.
+        bytes: usize,
+        /// What else would help.
+        hint: &'static str,
+    },
+    /// A message for viewers on a topic of the log's own.
+    #[error("viewers' messages cannot go to {topic}, which is the log's own")]
+    OwnTopic {
+        /// The topic.
+        topic: String,
+    },
+    /// JSON failed.
+    #[error("a report cannot be written as JSON")]
+    Json(#[from] serde_json::Error),
+    /// MCAP refused.
+    #[error("MCAP refused a record")]
+    Mcap(#[from] McapError),
+}
+
+/// Bytes on their way out, shared with MCAP's writer, which would not give them back.
+#[derive(Clone, Debug, Default)]
+struct Outbox(Arc<Mutex<Vec<u8>>>);
+
+impl Outbox {
+    fn bytes(&self) -> MutexGuard<'_, Vec<u8>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Write for Outbox {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.bytes().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Makes the bytes of a log. They are collected until [`Encoder::take`]; those of a record that failed, and the summary
+/// that MCAP's writer makes when it is dropped, go nowhere.
+pub(super) struct Encoder {
+    writer: Writer<NoSeek<Outbox>>,
+    outbox: Outbox,
+}
+
+/// The messages of one stage, encoded.
+pub(super) struct Parts<'a> {
+    pub record: &'a Record,
+    pub mesh_hash: Hash,
+    /// The mesh, where the log does not have it yet.
+    pub mesh: Option<Vec<u8>>,
+    pub state: Vec<u8>,
+    pub viewer: &'a [ViewerMessage],
+}
+
+/// What the header names as the writer.
+pub(super) fn library() -> String {
+    format!("foldline {} {}", env!("CARGO_PKG_VERSION"), mcap::LIBRARY_IDENTIFIER)
+}
+
+impl Encoder {
+    pub(super) fn new(library: &str) -> Result<Self, McapError> {
+        let outbox = Outbox::default();
+        let options = WriteOptions::new()
+            .profile(PROFILE)
+            .library(library)
+            .compression(None)
+            .chunk_size(None)
+            .disable_seeking(true);
+        let writer = options.create(NoSeek::new(outbox.clone()))?;
+        Ok(Self { writer, outbox })
+    }
+
+    /// The bytes made so far, which are then gone from here.
+    pub(super) fn take(&mut self) -> Vec<u8> {
+        std::mem::take(&mut *self.outbox.bytes())
+    }
+
+    pub(super) fn manifest(&mut self, record: &Metadata) -> Result<(), McapError> {
+        self.writer.write_metadata(record)
+    }
+
+    /// One stage as one chunk.
+    pub(super) fn commit(&mut self, parts: &Parts) -> Result<(), EncodeError> {
+        let report = ReportMessage::new(parts.record).to_json()?;
+        let mut messages: Vec<(&ViewerTopic, &[u8])> = Vec::new();
+        messages.extend(parts.mesh.as_deref().map(|mesh| (&OWN.mesh, mesh)));
+        messages.push((&OWN.state, &parts.state));
+        messages.push((&OWN.report, &report));
+        for message in parts.viewer {
+            if OWN_TOPICS.contains(&message.topic.topic.as_str()) {
+                return Err(EncodeError::OwnTopic { topic: message.topic.topic.clone() });
+            }
+            messages.push((&message.topic, &message.data));
+        }
+        let named = messages.iter().map(|(topic, data)| MessageHash::of(&topic.topic, data)).collect();
+        let commit = seal(&CommitMessage::new(&parts.record.commit, parts.mesh_hash, named))?;
+        messages.push((&OWN.commit, &commit));
+
+        const RECORD_OVERHEAD: usize = 256;
+        let bytes = messages.iter().map(|(topic, data)| data.len() + topic.schema.len() + RECORD_OVERHEAD).sum();
+        if bytes > CHUNK_BYTES_LIMIT {
+            let hint = if parts.viewer.is_empty() { "" } else { ", or `mesh_history = false` under [output]" };
+            return Err(EncodeError::TooLarge { bytes, hint });
+        }
+        for (topic, data) in messages {
+            self.message(topic, parts.record.commit.ordinal, data)?;
+        }
+        Ok(self.writer.flush()?)
+    }
+
+    /// The end of the run, as a chunk of its own.
+    pub(super) fn finished(&mut self, last: &Commit) -> Result<(), EncodeError> {
+        let data = seal(&FinishedMessage::after(last))?;
+        self.message(&OWN.finished, last.ordinal, &data)?;
+        Ok(self.writer.flush()?)
+    }
+
+    fn message(&mut self, topic: &ViewerTopic, ordinal: u64, data: &[u8]) -> Result<(), McapError> {
+        let schema = match topic.schema_encoding.as_str() {
+            "" => 0,
+            encoding => self.writer.add_schema(&topic.schema_name, encoding, &topic.schema)?,
+        };
+        let channel = self.writer.add_channel(schema, &topic.topic, &topic.message_encoding, &BTreeMap::new())?;
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let header = MessageHeader {
+            channel_id: channel,
+            sequence: sequence(ordinal),
+            log_time: log_time_ns(ordinal),
+            publish_time: u64::try_from(now.as_nanos()).unwrap_or(u64::MAX),
+        };
+        self.writer.write_to_known_channel(&header, data)
+    }
+
+    /// A chunk of another log again: the same records with the same numbers and times, so that the bytes are the same.
+    pub(super) fn again(&mut self, bytes: &[u8], chunk: &Frame) -> Result<(), McapError> {
+        for record in chunk::records(bytes, chunk).unwrap_or_default() {
+            match frame::parse(record.opcode, &bytes[record.body])? {
+                McapRecord::Schema { header, data } => {
+                    self.writer.add_schema_with_id(header.id, &header.name, &header.encoding, &data)?;
+                }
+                McapRecord::Channel(channel) => {
+                    let (topic, encoding) = (&channel.topic, &channel.message_encoding);
+                    let (id, schema) = (channel.id, channel.schema_id);
+                    self.writer.add_channel_with_id(id, schema, topic, encoding, &channel.metadata)?;
+                }
+                McapRecord::Message { header, data } => self.writer.write_to_known_channel(&header, &data)?,
+                _ => {}
+            }
+        }
+        self.writer.flush()
+    }
+
+    /// MCAP's summary and end.
+    pub(super) fn close(&mut self) -> Result<(), McapError> {
+        self.writer.finish().map(drop)
+    }
+}
+
+/// The log's own topics; their schemas are made once.
+struct OwnTopics {
+    mesh: ViewerTopic,
+    state: ViewerTopic,
+    report: ViewerTopic,
+    commit: ViewerTopic,
+    finished: ViewerTopic,
+}
+
+static OWN: LazyLock<OwnTopics> = LazyLock::new(|| OwnTopics {
+    mesh: binary_topic(MESH_TOPIC),
+    state: binary_topic(STATE_TOPIC),
+    report: json_topic::<ReportMessage>(REPORT_TOPIC, "foldline.Report"),
+    commit: json_topic::<CommitMessage>(COMMIT_TOPIC, "foldline.Commit"),
+    finished: json_topic::<FinishedMessage>(FINISHED_TOPIC, "foldline.Finished"),
+});
+
+fn binary_topic(topic: &str) -> ViewerTopic {
+    ViewerTopic {
+        topic: topic.to_owned(),
+        message_encoding: BINARY_ENCODING.to_owned(),
+        schema_name: String::new(),
+        schema_encoding: String::new(),
+        schema: Vec::new(),
+    }
+}
+
+fn json_topic<M: schemars::JsonSchema>(topic: &str, schema_name: &str) -> ViewerTopic {
+    ViewerTopic {
+        topic: topic.to_owned(),
+        message_encoding: "json".to_owned(),
+        schema_name: schema_name.to_owned(),
+        schema_encoding: "jsonschema".to_owned(),
+        schema: schema_of::<M>(schema_name),
+    }
+}

@@ -1,0 +1,60 @@
+//! What a log looks like: topics, encodings, versions, limits and times.
+//!
+//! | topic | encoding | schema | one message |
+//! |---|---|---|---|
+//! | `/foldline/mesh` | `foldline-bincode-v1` | none | per mesh, the first time that a state uses it |
+//! | `/foldline/state` | `foldline-bincode-v1` | none | per stage |
+//! | `/foldline/report` | `json` | `foldline.Report` | per stage |
+//! | `/foldline/commit` | `json` | `foldline.Commit` | per stage, the last of its chunk |
+//! | `/foldline/finished` | `json` | `foldline.Finished` | at the end of a run that reached its end |
+//!
+//! Before the first chunk, and again wherever a run was taken up again, stands a metadata record `foldline.manifest`.
+//!
+//! # Times
+//! `log_time` is the place in the run, not the clock: stage k stands at (k + 1) · 100 ms after 1970. A viewer then plays
+//! ten stages a second, whatever a stage cost and however many nights lie between an interruption and the resume, and
+//! equal runs have equal times. The clock goes into `publish_time` (nanoseconds since 1970), which nothing reads back.
+//! No hash covers either.
+
+/// Version of the layout that this module describes. A reader refuses a newer one.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// Profile in the header of the file.
+pub const PROFILE: &str = "foldline";
+
+/// Name of the metadata records that hold a manifest.
+pub const MANIFEST: &str = "foldline.manifest";
+
+/// Encoding of states and meshes: a version byte, then bincode (little endian, fixed-width integers).
+pub const BINARY_ENCODING: &str = "foldline-bincode-v1";
+
+/// Topic of the meshes.
+pub const MESH_TOPIC: &str = "/foldline/mesh";
+/// Topic of the states.
+pub const STATE_TOPIC: &str = "/foldline/state";
+/// Topic of the reports.
+pub const REPORT_TOPIC: &str = "/foldline/report";
+/// Topic of the commits.
+pub const COMMIT_TOPIC: &str = "/foldline/commit";
+/// Topic of the record that ends a finished run.
+pub const FINISHED_TOPIC: &str = "/foldline/finished";
+
+/// Topics that no viewer may write to.
+pub const OWN_TOPICS: [&str; 5] = [MESH_TOPIC, STATE_TOPIC, REPORT_TOPIC, COMMIT_TOPIC, FINISHED_TOPIC];
+
+/// Largest chunk that is written or read, bytes. Bounds what a damaged length can make a reader allocate; a state
+/// with its mesh takes 56 bytes for each control point, so this is room for half a million of them.
+pub const CHUNK_BYTES_LIMIT: usize = 32 << 20;
+
+/// Distance of two stages in `log_time`.
+const NANOSECONDS_PER_STAGE: u64 = 100_000_000;
+
+/// `log_time` of the stage with this ordinal, nanoseconds.
+pub fn log_time_ns(ordinal: u64) -> u64 {
+    ordinal.saturating_add(1).saturating_mul(NANOSECONDS_PER_STAGE)
+}
+
+/// `sequence` of the messages of the stage with this ordinal; stays at its largest value once it got there.
+pub(super) fn sequence(ordinal: u64) -> u32 {
+    u32::try_from(ordinal).unwrap_or(u32::MAX)
+}

@@ -1,0 +1,139 @@
+//! The outermost layer of MCAP, walked on bytes in memory: one byte that says what a record is, eight that say how
+//! long, then the record. Allocates nothing, whatever the lengths claim.
+
+use std::fmt;
+use std::ops::Range;
+
+pub(super) use mcap::records::op;
+
+/// Bytes in front of a record.
+pub(super) const PREFIX_LEN: usize = 1 + 8;
+
+/// One record where it lies.
+#[derive(Clone, Debug)]
+pub(super) struct Frame {
+    /// First byte, that of the prefix.
+    pub at: usize,
+    /// What the record is.
+    pub opcode: u8,
+    /// The record without its prefix.
+    pub body: Range<usize>,
+}
+
+/// A record that goes on beyond the bytes there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Cut {
+    /// What the record is and how long it says that it is, where that much is left.
+    pub claim: Option<(u8, u64)>,
+    /// Bytes that are left, with the prefix.
+    pub left: usize,
+}
+
+/// The record at `at`; `None` at the end.
+pub(super) fn next(bytes: &[u8], at: usize) -> Option<Result<Frame, Cut>> {
+    let rest = bytes.get(at..).filter(|rest| !rest.is_empty())?;
+    let left = rest.len();
+    let Some(([opcode], rest)) = rest.split_first_chunk::<1>() else { return Some(Err(Cut { claim: None, left })) };
+    let Some((length, rest)) = rest.split_first_chunk::<8>() else { return Some(Err(Cut { claim: None, left })) };
+    let length = u64::from_le_bytes(*length);
+    let start = at + PREFIX_LEN;
+    Some(match usize::try_from(length) {
+        Ok(len) if len <= rest.len() => Ok(Frame { at, opcode: *opcode, body: start..start + len }),
+        _ => Err(Cut { claim: Some((*opcode, length)), left }),
+    })
+}
+
+/// Chunk header of an uncompressed chunk: two times, size, checksum, an empty name, size.
+const CHUNK_HEADER_LEN: usize = 8 + 8 + 8 + 4 + 4 + 8;
+
+/// Where the records of an uncompressed chunk lie, if the lengths in its header agree with its own.
+pub(super) fn chunk_records(bytes: &[u8], frame: &Frame) -> Option<Range<usize>> {
+    let header = bytes.get(frame.body.clone())?.get(..CHUNK_HEADER_LEN)?;
+    let number = |at: usize| header[at..at + 8].iter().rev().fold(0_u64, |sum, byte| (sum << 8) | u64::from(*byte));
+    let len = frame.body.len() - CHUNK_HEADER_LEN;
+    let agree = number(16) == len as u64 && header[28..32] == [0; 4] && number(32) == len as u64;
+    agree.then(|| frame.body.start + CHUNK_HEADER_LEN..frame.body.end)
+}
+
+/// The next place at or after `from` that looks like an uncompressed chunk: its three lengths agree.
+pub(super) fn find_chunk(bytes: &[u8], from: usize) -> Option<usize> {
+    let candidates = bytes.get(from..)?.iter().enumerate().filter(|(_, byte)| **byte == op::CHUNK);
+    candidates.map(|(offset, _)| from + offset).find(|&at| {
+        matches!(next(bytes, at), Some(Ok(frame)) if frame.opcode == op::CHUNK && chunk_records(bytes, &frame).is_some())
+    })
+}
+
+/// A record parsed by MCAP, once no text in it claims to be longer than the record: the parser reserves what a length
+/// claims before it looks whether that much is there.
+pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<mcap::records::Record<'_>, mcap::McapError> {
+    let mut rest = body;
+    let mut texts_fit = || match opcode {
+        op::HEADER => text(&mut rest).and_then(|()| text(&mut rest)),
+        op::METADATA => text(&mut rest).and_then(|()| texts(&mut rest)),
+        op::SCHEMA => take(&mut rest, 2).and_then(|_| text(&mut rest)).and_then(|()| text(&mut rest)),
+        op::CHANNEL => {
+            take(&mut rest, 4)?;
+            text(&mut rest)?;
+            text(&mut rest)?;
+            texts(&mut rest)
+        }
+        _ => Some(()),
+    };
+    match texts_fit() {
+        Some(()) => mcap::parse_record(opcode, body),
+        None => Err(mcap::McapError::UnexpectedEof),
+    }
+}
+
+fn take<'a>(rest: &mut &'a [u8], len: usize) -> Option<&'a [u8]> {
+    let (taken, left) = rest.split_at_checked(len)?;
+    *rest = left;
+    Some(taken)
+}
+
+fn length(rest: &mut &[u8]) -> Option<usize> {
+    let bytes = take(rest, 4)?.try_into().ok()?;
+    usize::try_from(u32::from_le_bytes(bytes)).ok()
+}
+
+/// Passes over one text: its length, then its bytes.
+fn text(rest: &mut &[u8]) -> Option<()> {
+    let len = length(rest)?;
+    take(rest, len).map(drop)
+}
+
+/// Passes over a map of texts: its length in bytes, then names and values.
+fn texts(rest: &mut &[u8]) -> Option<()> {
+    let len = length(rest)?;
+    let mut map = take(rest, len)?;
+    while !map.is_empty() {
+        text(&mut map)?;
+    }
+    Some(())
+}
+
+/// A kind of record, in words.
+pub(super) struct Kind(pub u8);
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self.0 {
+            op::HEADER => "header",
+            op::FOOTER => "footer",
+            op::SCHEMA => "schema",
+            op::CHANNEL => "channel",
+            op::MESSAGE => "message",
+            op::CHUNK => "chunk",
+            op::MESSAGE_INDEX => "message index",
+            op::CHUNK_INDEX => "chunk index",
+            op::ATTACHMENT => "attachment",
+            op::ATTACHMENT_INDEX => "attachment index",
+            op::STATISTICS => "statistics",
+            op::METADATA => "metadata",
+            op::METADATA_INDEX => "metadata index",
+            op::SUMMARY_OFFSET => "summary offset",
+            op::DATA_END => "data end",
+            other => return write!(f, "record of unknown kind {other:#04x}"),
+        })
+    }
+}

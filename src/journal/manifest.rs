@@ -1,0 +1,160 @@
+//! Who wrote this part of a log, with what and where: a metadata record at the start and at every resume.
+//!
+//! A metadata record lies outside the chunks and has no checksum in MCAP, so it carries one of its own over all its
+//! entries. A manifest that does not check is left out, never guessed at: states do not depend on it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use super::format::{FORMAT_VERSION, MANIFEST};
+use crate::state::Hash;
+
+/// What stood at the start of one stretch of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Manifest {
+    /// Version of the log's layout.
+    pub format_version: u32,
+    /// Version of the program.
+    pub program_version: String,
+    /// Name of the scene file as the user gave it; empty where there was none.
+    pub scene_file: String,
+    /// The scene as the user wrote it.
+    pub scene_text: String,
+    /// Processor family, such as `x86_64`.
+    pub cpu: String,
+    /// Vector instructions that the processor has.
+    pub cpu_features: Vec<String>,
+    /// Threads that the run used.
+    pub threads: usize,
+    /// Name of the machine; empty where it is not known.
+    pub host: String,
+    /// When this stretch began, seconds since 1970.
+    pub started_unix_s: u64,
+    /// Ordinal of the first stage of this stretch.
+    pub first_ordinal: u64,
+}
+
+/// Why a metadata record is not a manifest.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ManifestError {
+    /// An entry is not there.
+    #[error("the manifest has no entry `{key}`")]
+    Missing {
+        /// Name of the entry.
+        key: &'static str,
+    },
+    /// An entry is not what it should be.
+    #[error("the manifest's entry `{key}` is `{value}`, which is not a number")]
+    NotANumber {
+        /// Name of the entry.
+        key: &'static str,
+        /// What it holds.
+        value: String,
+    },
+    /// Some entry has changed since it was written.
+    #[error("the manifest's entries do not have the hash that it carries")]
+    Check,
+}
+
+impl Manifest {
+    /// A manifest of this program on this machine, now.
+    pub fn here(scene_file: &Path, scene_text: &str, threads: usize) -> Self {
+        Self {
+            format_version: FORMAT_VERSION,
+            program_version: env!("CARGO_PKG_VERSION").to_owned(),
+            scene_file: scene_file.display().to_string(),
+            scene_text: scene_text.to_owned(),
+            cpu: std::env::consts::ARCH.to_owned(),
+            cpu_features: cpu_features().iter().map(|&name| name.to_owned()).collect(),
+            threads,
+            host: host(),
+            started_unix_s: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
+            first_ordinal: 0,
+        }
+    }
+
+    /// Whether both were written by machines that compute alike as far as a manifest can tell.
+    pub fn same_machine(&self, other: &Self) -> bool {
+        (&self.host, &self.cpu, &self.cpu_features) == (&other.host, &other.cpu, &other.cpu_features)
+    }
+
+    pub(super) fn to_record(&self) -> mcap::records::Metadata {
+        let mut entries = BTreeMap::from(
+            [
+                ("format_version", self.format_version.to_string()),
+                ("program", "foldline".to_owned()),
+                ("program_version", self.program_version.clone()),
+                ("scene_file", self.scene_file.clone()),
+                ("scene", self.scene_text.clone()),
+                ("cpu", self.cpu.clone()),
+                ("cpu_features", self.cpu_features.join(" ")),
+                ("threads", self.threads.to_string()),
+                ("host", self.host.clone()),
+                ("started_unix_s", self.started_unix_s.to_string()),
+                ("first_ordinal", self.first_ordinal.to_string()),
+            ]
+            .map(|(key, value)| (key.to_owned(), value)),
+        );
+        let check = check(&entries);
+        entries.insert(CHECK.to_owned(), check.to_string());
+        mcap::records::Metadata { name: MANIFEST.to_owned(), metadata: entries }
+    }
+
+    pub(super) fn from_record(record: &mcap::records::Metadata) -> Result<Self, ManifestError> {
+        let text = |key: &'static str| record.metadata.get(key).cloned().ok_or(ManifestError::Missing { key });
+        fn number<N: std::str::FromStr>(key: &'static str, value: String) -> Result<N, ManifestError> {
+            value.parse().map_err(|_| ManifestError::NotANumber { key, value })
+        }
+        if text(CHECK)? != check(&record.metadata).to_string() {
+            return Err(ManifestError::Check);
+        }
+        Ok(Self {
+            format_version: number("format_version", text("format_version")?)?,
+            program_version: text("program_version")?,
+            scene_file: text("scene_file")?,
+            scene_text: text("scene")?,
+            cpu: text("cpu")?,
+            cpu_features: text("cpu_features")?.split_whitespace().map(str::to_owned).collect(),
+            threads: number("threads", text("threads")?)?,
+            host: text("host")?,
+            started_unix_s: number("started_unix_s", text("started_unix_s")?)?,
+            first_ordinal: number("first_ordinal", text("first_ordinal")?)?,
+        })
+    }
+}
+
+const CHECK: &str = "check";
+
+/// Hash over all entries but the hash itself, in the order of their names, each text with its length in front.
+fn check(entries: &BTreeMap<String, String>) -> Hash {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(MANIFEST.as_bytes());
+    for (key, value) in entries.iter().filter(|(key, _)| *key != CHECK) {
+        for text in [key, value] {
+            hasher.update(&(text.len() as u64).to_le_bytes());
+            hasher.update(text.as_bytes());
+        }
+    }
+    hasher.finalize()
+}
+
+fn cpu_features() -> Vec<&'static str> {
+    #[cfg(target_arch = "x86_64")]
+    let known = [
+        ("sse4.2", std::arch::is_x86_feature_detected!("sse4.2")),
+        ("avx", std::arch::is_x86_feature_detected!("avx")),
+        ("avx2", std::arch::is_x86_feature_detected!("avx2")),
+        ("fma", std::arch::is_x86_feature_detected!("fma")),
+        ("avx512f", std::arch::is_x86_feature_detected!("avx512f")),
+    ];
+    #[cfg(not(target_arch = "x86_64"))]
+    let known: [(&str, bool); 0] = [];
+    known.into_iter().filter(|(_, present)| *present).map(|(name, _)| name).collect()
+}
+
+pub(super) fn host() -> String {
+    let from_system = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
+    let name = from_system.or_else(|| std::env::var("HOSTNAME").ok()).or_else(|| std::env::var("COMPUTERNAME").ok());
+    name.unwrap_or_default().trim().to_owned()
+}

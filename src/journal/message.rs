@@ -1,0 +1,345 @@
+//! The messages in JSON: the report that viewers plot, the commit that binds a chunk together, and the end of a run.
+//!
+//! Commit and end carry a *seal*: their last entry is the hash of every byte before it. The commit in turn holds the
+//! hash of every other message of its chunk, so one good seal vouches for the whole chunk, byte for byte.
+
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::Value;
+
+use super::format::FORMAT_VERSION;
+use crate::pipeline::{Commit, Record, Report};
+use crate::scene::Stage;
+use crate::state::Hash;
+
+/// A hash as 64 lower-case hexadecimal digits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HexHash(pub Hash);
+
+impl fmt::Display for HexHash {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.to_hex())
+    }
+}
+
+impl Serialize for HexHash {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.0.to_hex())
+    }
+}
+
+impl<'de> Deserialize<'de> for HexHash {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        Hash::from_hex(&text).map(Self).map_err(D::Error::custom)
+    }
+}
+
+impl JsonSchema for HexHash {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Hash".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "string", "pattern": "^[0-9a-f]{64}$" })
+    }
+}
+
+/// One message of a chunk, as its commit names it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct MessageHash {
+    /// Topic of the message.
+    pub topic: String,
+    /// Length of its data, bytes.
+    pub bytes: u64,
+    /// BLAKE3 of its data.
+    pub blake3: HexHash,
+}
+
+impl MessageHash {
+    /// The name of this data on this topic.
+    pub fn of(topic: &str, data: &[u8]) -> Self {
+        Self { topic: topic.to_owned(), bytes: data.len() as u64, blake3: HexHash(blake3::hash(data)) }
+    }
+}
+
+/// The message on `/foldline/commit`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct CommitMessage {
+    /// Version of the log's layout.
+    pub format: u32,
+    /// 0 for the first stage of the run.
+    pub ordinal: u64,
+    /// The stage that ran.
+    pub stage: Stage,
+    /// Load step.
+    pub step: u64,
+    /// Hash of the state that the stage started from.
+    pub parent_hash: HexHash,
+    /// Hash of the state that the stage made.
+    pub state_hash: HexHash,
+    /// Hash of the parts of the scene that decide states.
+    pub scene_hash: HexHash,
+    /// Hash of (chain so far, scene hash, stage, state hash).
+    pub chain_hash: HexHash,
+    /// Hash of the mesh that the state stands on, which this chunk or an earlier one holds.
+    pub mesh_hash: HexHash,
+    /// The other messages of this chunk, in their order.
+    pub messages: Vec<MessageHash>,
+    /// Hash of all bytes before this entry.
+    check: HexHash,
+}
+
+impl CommitMessage {
+    /// The message for a commit whose chunk holds `messages`.
+    pub fn new(commit: &Commit, mesh_hash: Hash, messages: Vec<MessageHash>) -> Self {
+        Self {
+            format: FORMAT_VERSION,
+            ordinal: commit.ordinal,
+            stage: commit.stage,
+            step: commit.step,
+            parent_hash: HexHash(commit.parent_hash),
+            state_hash: HexHash(commit.state_hash),
+            scene_hash: HexHash(commit.scene_hash),
+            chain_hash: HexHash(commit.chain_hash),
+            mesh_hash: HexHash(mesh_hash),
+            messages,
+            check: UNSEALED,
+        }
+    }
+
+    /// The commit that the message stands for; its chain hash is as written, not yet recomputed.
+    pub fn commit(&self) -> Commit {
+        Commit {
+            ordinal: self.ordinal,
+            stage: self.stage,
+            step: self.step,
+            parent_hash: self.parent_hash.0,
+            state_hash: self.state_hash.0,
+            scene_hash: self.scene_hash.0,
+            chain_hash: self.chain_hash.0,
+        }
+    }
+}
+
+/// The message on `/foldline/finished`: the run reached its end.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FinishedMessage {
+    /// Version of the log's layout.
+    pub format: u32,
+    /// Commits in the log.
+    pub commits: u64,
+    /// Chain hash of the last commit.
+    pub chain_hash: HexHash,
+    /// Hash of all bytes before this entry.
+    check: HexHash,
+}
+
+impl FinishedMessage {
+    /// The end of a run whose last commit is this.
+    pub fn after(last: &Commit) -> Self {
+        Self {
+            format: FORMAT_VERSION,
+            commits: last.ordinal + 1,
+            chain_hash: HexHash(last.chain_hash),
+            check: UNSEALED,
+        }
+    }
+}
+
+/// The message on `/foldline/report`: the report as it is, and what binds it to its state.
+///
+/// JSON has no NaN and no infinities; such a number is `null` in its place and spelt out in `not_finite`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ReportMessage {
+    /// What the stage reported.
+    #[serde(flatten)]
+    pub report: Report,
+    /// Hash of the state that the stage made.
+    pub state_hash: HexHash,
+    /// Chain hash of its commit.
+    pub chain_hash: HexHash,
+    /// Wall time of the stage, seconds.
+    pub wall_s: f64,
+    /// Numbers above that JSON cannot hold, as (entry, value); seldom there.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    not_finite: Vec<NotFinite>,
+}
+
+/// A number that JSON cannot hold.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+struct NotFinite {
+    /// The entry that should hold it.
+    entry: String,
+    /// `NaN`, `inf` or `-inf`.
+    value: String,
+}
+
+impl ReportMessage {
+    /// The message for a finished stage.
+    pub fn new(record: &Record) -> Self {
+        let mut message = Self {
+            report: record.report.clone(),
+            state_hash: HexHash(record.commit.state_hash),
+            chain_hash: HexHash(record.commit.chain_hash),
+            wall_s: record.wall_s,
+            not_finite: Vec::new(),
+        };
+        let found = message.numbers().into_iter().filter(|(_, value)| !value.is_finite());
+        message.not_finite =
+            found.map(|(entry, value)| NotFinite { entry: entry.to_owned(), value: value.to_string() }).collect();
+        message
+    }
+
+    /// Every number of the message that is not an integer, by name.
+    fn numbers(&mut self) -> [(&'static str, &mut f64); 9] {
+        let [along_length, along_arc] = &mut self.report.largest_indicator;
+        [
+            ("rotation_deg", &mut self.report.rotation_deg),
+            ("attempted_rotation_deg", &mut self.report.attempted_rotation_deg),
+            ("moment_n_mm", &mut self.report.moment_n_mm),
+            ("strain_energy_n_mm", &mut self.report.strain_energy_n_mm),
+            ("residual", &mut self.report.residual),
+            ("energy_released_n_mm", &mut self.report.energy_released_n_mm),
+            ("largest_indicator[0]", along_length),
+            ("largest_indicator[1]", along_arc),
+            ("wall_s", &mut self.wall_s),
+        ]
+    }
+
+    /// The message as JSON.
+    ///
+    /// # Errors
+    /// None that a report can cause; serde has no infallible way.
+    pub fn to_json(&self) -> Result<Vec<u8>, serde_json::Error> {
+        serde_json::to_vec(self)
+    }
+
+    /// The message that the JSON holds, bit for bit as it was.
+    ///
+    /// # Errors
+    /// Where the JSON is not a report.
+    pub fn from_json(json: &[u8]) -> Result<Self, serde_json::Error> {
+        let mut value: Value = serde_json::from_slice(json)?;
+        if value.get("not_finite").is_some() {
+            fill_nulls(&mut value);
+        }
+        let mut message: Self = serde_json::from_value(value)?;
+        for NotFinite { entry, value } in message.not_finite.clone() {
+            let number: f64 = value.parse().map_err(|_| serde_json::Error::custom(format!("{entry}: {value}")))?;
+            if let Some((_, place)) = message.numbers().into_iter().find(|(name, _)| *name == entry) {
+                *place = number;
+            }
+        }
+        Ok(message)
+    }
+}
+
+/// Puts a number where `null` stands for one that JSON cannot hold; the caller then sets the right one.
+fn fill_nulls(value: &mut Value) {
+    match value {
+        Value::Null => *value = Value::from(0.0),
+        Value::Array(items) => items.iter_mut().for_each(fill_nulls),
+        Value::Object(entries) => entries.values_mut().for_each(fill_nulls),
+        _ => {}
+    }
+}
+
+/// Stands where the seal will be.
+const UNSEALED: HexHash = HexHash(Hash::from_bytes([0; 32]));
+
+/// The seal's 64 digits and the two characters that end the JSON.
+const SEAL_LEN: usize = 64 + 2;
+
+/// Why a sealed message cannot be trusted.
+#[derive(Debug, thiserror::Error)]
+pub enum SealError {
+    /// Too short to hold a seal.
+    #[error("{bytes} bytes are too few for a sealed message")]
+    Short {
+        /// Length of the message.
+        bytes: usize,
+    },
+    /// The bytes before the seal do not have the hash that it holds.
+    #[error("the bytes before the seal hash to {found}, and the seal says otherwise")]
+    Broken {
+        /// Hash of the bytes.
+        found: Hash,
+    },
+    /// Sealed, but not the message that was looked for.
+    #[error("the message is sealed and yet not what it should be: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+fn seal_of(body: &[u8]) -> Hash {
+    blake3::Hasher::new().update(b"foldline seal").update(body).finalize()
+}
+
+/// A message as JSON with its seal.
+///
+/// # Errors
+/// None that a message can cause; serde has no infallible way.
+pub fn seal(message: &impl Sealed) -> Result<Vec<u8>, serde_json::Error> {
+    let mut json = serde_json::to_vec(message)?;
+    let body_len = json.len() - SEAL_LEN;
+    let seal = seal_of(&json[..body_len]).to_hex();
+    json[body_len..body_len + 64].copy_from_slice(seal.as_bytes());
+    Ok(json)
+}
+
+/// The message that the sealed JSON holds.
+///
+/// # Errors
+/// Where any byte is not as it was sealed.
+pub fn unseal<M: Sealed>(json: &[u8]) -> Result<M, SealError> {
+    let Some(body_len) = json.len().checked_sub(SEAL_LEN) else {
+        return Err(SealError::Short { bytes: json.len() });
+    };
+    let (body, seal) = json.split_at(body_len);
+    let found = seal_of(body);
+    if &seal[..64] != found.to_hex().as_bytes() || &seal[64..] != b"\"}" {
+        return Err(SealError::Broken { found });
+    }
+    Ok(serde_json::from_slice(json)?)
+}
+
+/// A message whose last entry is its seal.
+pub trait Sealed: Serialize + for<'de> Deserialize<'de> {}
+impl Sealed for CommitMessage {}
+impl Sealed for FinishedMessage {}
+
+/// The JSON schema of a message, in the subset that viewers read: no references, and a choice of words as `enum`.
+pub fn schema_of<M: JsonSchema>(title: &str) -> Vec<u8> {
+    let settings = schemars::generate::SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
+    let mut schema = settings.into_generator().into_root_schema_for::<M>().to_value();
+    plain_choices(&mut schema);
+    schema["title"] = Value::from(title);
+    schema.to_string().into_bytes()
+}
+
+/// Turns `oneOf` constants into one `enum` of words.
+fn plain_choices(schema: &mut Value) {
+    let words: Option<Vec<Value>> = schema.get("oneOf").and_then(Value::as_array).and_then(|choices| {
+        let constant = |choice: &Value| choice.get("const").filter(|word| word.is_string()).cloned();
+        choices.iter().map(constant).collect()
+    });
+    match schema {
+        Value::Object(entries) => {
+            if let Some(words) = words {
+                entries.remove("oneOf");
+                entries.insert("type".to_owned(), Value::from("string"));
+                entries.insert("enum".to_owned(), Value::from(words));
+            }
+            entries.values_mut().for_each(plain_choices);
+        }
+        Value::Array(items) => items.iter_mut().for_each(plain_choices),
+        _ => {}
+    }
+}

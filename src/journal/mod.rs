@@ -1,0 +1,86 @@
+//! The journal: a run as an MCAP log, stage by stage, that survives what happens to processes, disks and files.
+//!
+//! A log is an ordinary MCAP file, so that viewers can open it, and three things more:
+//!
+//! 1. **One chunk is one commit.** A chunk holds the state that a stage made (and its mesh, where the log does not have
+//!    it yet), the stage's report, and at its end a commit message. It reaches the file in one write. A process that
+//!    dies loses the stage in flight and nothing else.
+//! 2. **Every commit vouches for its chunk.** The commit message is sealed with the hash of its own bytes and names the
+//!    hash of every other message in the chunk; its chain hash follows from the commit before it. A log that was cut or
+//!    changed anywhere is read up to the last commit for which all of that holds, and [`Log::completeness`] says what
+//!    lies behind. States are decoded only when they are asked for, and held against their content hash.
+//! 3. **The end is explicit.** MCAP's footer proves nothing (its writer adds one even while a panic unwinds), so a run
+//!    that reached its end says so in a message of its own.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `format` | topics, encodings, versions, limits, times |
+//! | `codec`, `soundness` | states and meshes as bytes, and what they must satisfy |
+//! | `message`, `manifest` | reports, commits, the end, who wrote it |
+//! | `encoder`, `backend`, `writer` | from a stage to bytes in a file |
+//! | `frame`, `chunk`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
+//! | `recovery` | going on with a log, copying what is good of one |
+//! | `lock` | one writer at a time |
+//! | `verify` | all that can be checked, all of it |
+//!
+//! # Writing, stopping, going on
+//!
+//! [`JournalWriter::create`] begins a log and never overwrites one. It is a [`Sink`](crate::pipeline::Sink): the loop
+//! hands it every stage. At the end [`JournalWriter::finish`]; where a run is stopped on purpose
+//! [`JournalWriter::close`], which leaves the end open but adds what viewers look for. [`Resume`] claims a log, reads
+//! it, and goes on behind its last good commit.
+//!
+//! # Checking that other programs can read a log
+//!
+//! With the MCAP project's own reader for Python (`pip install mcap`), which shares no code with this one:
+//!
+//! ```text
+//! python3 -c '
+//! import json, sys
+//! from mcap.reader import make_reader
+//! reader = make_reader(open(sys.argv[1], "rb"), validate_crcs=True)
+//! for schema, channel, message in reader.iter_messages(topics=["/foldline/report"]):
+//!     report = json.loads(message.data)
+//!     print(report["step"], report["stage"], report["rotation_deg"], report["moment_n_mm"])
+//! ' run.mcap
+//! ```
+//!
+//! A log that was neither finished nor closed has no summary; readers that go by the summary then need
+//! `foldline recover run.mcap copy.mcap` first, those that read front to back (`NonSeekingReader` in Python) do not.
+//!
+//! # Old logs
+//!
+//! `checkpoints/golden/` holds one small finished log for each layout that was ever released, named
+//! `v<format>-<program version>.mcap`, which a test reads to the last state. A change of what is written takes these
+//! steps: raise [`format::FORMAT_VERSION`] (or [`CODEC_VERSION`], where only states or meshes change); keep the old
+//! structs and decode both; write a small log with the last program before the change (a coarse mesh, one refinement, a
+//! dozen stages: some 100 kB) and add it to the folder. A golden log is never written again.
+mod backend;
+mod chunk;
+mod codec;
+mod damage;
+mod encoder;
+pub mod format;
+mod frame;
+mod lock;
+mod log;
+mod manifest;
+pub mod message;
+mod reader;
+mod recovery;
+mod soundness;
+mod verify;
+mod writer;
+
+pub use backend::{Backend, FileBackend};
+pub use codec::{CODEC_VERSION, CodecError, decode_mesh, decode_state, encode_mesh, encode_state};
+pub use damage::{Completeness, Damage, LaterCommit, Problem};
+pub use encoder::{EncodeError, ViewerMessage, ViewerTopic};
+pub use lock::{LockError, LogLock};
+pub use log::{Entry, Log, Note, StateError};
+pub use manifest::{Manifest, ManifestError};
+pub use reader::ReadError;
+pub use recovery::{RecoverOutcome, Resume, ResumeError, Resumed, recover};
+pub use soundness::{Flaw, check_mesh, check_state};
+pub use verify::{Finding, Level, verify, verify_log};
+pub use writer::{JournalWriter, ViewerTopics, WriteError};

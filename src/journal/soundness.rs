@@ -1,0 +1,162 @@
+//! What a mesh and a state must hold so that no later code can stumble over them, whoever wrote them.
+
+use crate::state::{Mesh, State};
+
+/// Highest degree that a log may hold.
+const LARGEST_DEGREE: usize = 16;
+
+/// What is wrong with a mesh or a state.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Flaw {
+    /// A degree outside 1 to 16.
+    #[error("degree {degree} in direction {} (it must be 1 to {LARGEST_DEGREE})", way + 1)]
+    Degree {
+        /// Parametric direction, 0 or 1.
+        way: usize,
+        /// The degree.
+        degree: usize,
+    },
+    /// Too few knots for the degree.
+    #[error("{found} knots in direction {} for degree {degree} (it takes at least {})", way + 1, 2 * (degree + 1))]
+    FewKnots {
+        /// Parametric direction, 0 or 1.
+        way: usize,
+        /// The degree.
+        degree: usize,
+        /// Knots there are.
+        found: usize,
+    },
+    /// A knot smaller than the one before it.
+    #[error("knot {index} in direction {} is {value}, smaller than the one before it", way + 1)]
+    KnotOrder {
+        /// Parametric direction, 0 or 1.
+        way: usize,
+        /// Place in the knot vector.
+        index: usize,
+        /// The knot.
+        value: f64,
+    },
+    /// A knot repeated so often that the surface falls apart, or a knot vector that is not open.
+    #[error("knot {value} in direction {} stands {found} times for degree {degree}", way + 1)]
+    KnotMultiplicity {
+        /// Parametric direction, 0 or 1.
+        way: usize,
+        /// The degree.
+        degree: usize,
+        /// The knot.
+        value: f64,
+        /// How often it stands.
+        found: usize,
+    },
+    /// A sequence of the wrong length.
+    #[error("{found} {what} where the knots ask for {expected}")]
+    Length {
+        /// What there is too much or too little of.
+        what: &'static str,
+        /// Length that fits the knots and degrees.
+        expected: usize,
+        /// Length there is.
+        found: usize,
+    },
+    /// NaN or an infinity.
+    #[error("{what} {index} is {value}")]
+    NotFinite {
+        /// Which quantity.
+        what: &'static str,
+        /// Place in its sequence, flattened; 0 for a single number.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A marked knot that the mesh cannot have, or one that the refined mesh lacks.
+    #[error("{what} knot {value} in direction {} is not a knot that this mesh can have", way + 1)]
+    ForeignKnot {
+        /// "marked" or "the mesh's".
+        what: &'static str,
+        /// Parametric direction, 0 or 1.
+        way: usize,
+        /// The knot.
+        value: f64,
+    },
+}
+
+fn finite(what: &'static str, values: impl IntoIterator<Item = f64>) -> Result<(), Flaw> {
+    match values.into_iter().enumerate().find(|(_, value)| !value.is_finite()) {
+        Some((index, value)) => Err(Flaw::NotFinite { what, index, value }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that a mesh is a tensor-product spline surface with finite numbers: open, nondecreasing knots, interior
+/// multiplicities up to the degree, and as many control points as the knots ask for.
+///
+/// # Errors
+/// The first flaw.
+pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
+    let mut expected = 1_usize;
+    for way in 0..2 {
+        let (degree, knots) = (mesh.degree[way], &mesh.knots[way]);
+        if !(1..=LARGEST_DEGREE).contains(&degree) {
+            return Err(Flaw::Degree { way, degree });
+        }
+        if knots.len() < 2 * (degree + 1) {
+            return Err(Flaw::FewKnots { way, degree, found: knots.len() });
+        }
+        finite("knot", knots.iter().copied())?;
+        if let Some(index) = (1..knots.len()).find(|&index| knots[index] < knots[index - 1]) {
+            return Err(Flaw::KnotOrder { way, index, value: knots[index] });
+        }
+        let (first, last) = (knots[0], knots[knots.len() - 1]);
+        for group in knots.chunk_by(|left, right| left == right) {
+            let value = group[0];
+            let at_end = value == first || value == last;
+            let allowed = if at_end { degree + 1..=degree + 1 } else { 1..=degree };
+            if !allowed.contains(&group.len()) {
+                return Err(Flaw::KnotMultiplicity { way, degree, value, found: group.len() });
+            }
+        }
+        expected = expected.saturating_mul(knots.len() - degree - 1);
+    }
+    if mesh.control_points.len() != expected {
+        return Err(Flaw::Length { what: "control points", expected, found: mesh.control_points.len() });
+    }
+    finite("control point coordinate", mesh.control_points.iter().flatten().copied())
+}
+
+/// Checks that a state fits its mesh and holds finite numbers; the mesh is checked too.
+///
+/// # Errors
+/// The first flaw.
+pub fn check_state(state: &State) -> Result<(), Flaw> {
+    check_mesh(&state.mesh)?;
+    if let Some(refined) = &state.refined {
+        check_mesh(refined)?;
+        for way in 0..2 {
+            if refined.degree[way] != state.mesh.degree[way] {
+                return Err(Flaw::Degree { way, degree: refined.degree[way] });
+            }
+            // The refined mesh has every knot of the mesh, and more.
+            let mut finer = refined.knots[way].iter();
+            if let Some(&value) = state.mesh.knots[way].iter().find(|&knot| !finer.any(|other| other == knot)) {
+                return Err(Flaw::ForeignKnot { what: "the mesh's", way, value });
+            }
+        }
+    }
+    for way in 0..2 {
+        let knots = &state.mesh.knots[way];
+        for &value in &state.marked[way] {
+            if !(value > knots[0] && value < knots[knots.len() - 1]) {
+                return Err(Flaw::ForeignKnot { what: "marked", way, value });
+            }
+        }
+    }
+    let expected = state.mesh.control_points.len();
+    if state.displacement.len() != expected {
+        return Err(Flaw::Length { what: "displacements", expected, found: state.displacement.len() });
+    }
+    finite("displacement component", state.displacement.iter().flatten().copied())?;
+    finite("rotation", [state.rotation_deg])?;
+    finite("moment", [state.moment_n_mm])?;
+    finite("strain energy", [state.strain_energy_n_mm])?;
+    finite("rotation of a known jump", state.control.jump_seen_at_deg)
+}

@@ -1,0 +1,162 @@
+//! Everything that can be checked about a log, all of it, not only up to the first flaw.
+
+use std::path::Path;
+
+use super::damage::Completeness;
+use super::encoder::{EncodeError, Encoder};
+use super::log::{Entry, Log};
+use super::recovery::again;
+
+/// How much a finding matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Good to know.
+    Info,
+    /// Costs no state, and yet is not as it should be.
+    Warning,
+    /// A state or a commit is lost or cannot be trusted.
+    Error,
+}
+
+/// Something that was found out about a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// How much it matters.
+    pub level: Level,
+    /// What it is about: the log, a byte, or a commit.
+    pub place: String,
+    /// What it is.
+    pub text: String,
+}
+
+/// Checks a log: framing, checksums, seals, the hash of every message, the chain, the content hash and soundness of
+/// every state and mesh, manifests, completeness, and that the bytes between are those that the writer would write.
+pub fn verify(path: &Path) -> Vec<Finding> {
+    match Log::read(path) {
+        Ok(log) => verify_log(&log),
+        Err(error) => {
+            let mut text = error.to_string();
+            let mut cause = std::error::Error::source(&error);
+            while let Some(error) = cause {
+                text = format!("{text}: {error}");
+                cause = error.source();
+            }
+            vec![finding(Level::Error, "log", text)]
+        }
+    }
+}
+
+/// Checks a log that was read; see [`verify`].
+pub fn verify_log(log: &Log) -> Vec<Finding> {
+    let mut findings = vec![completeness(log)];
+    for problem in log.problems() {
+        // What the chain reaches across costs no commit, nor does anything behind the record of the end.
+        // What a cut costs is the stage that was in flight.
+        let costly = problem.at >= log.good_end() && matches!(log.completeness(), Completeness::Damaged { .. });
+        let level = if costly { Level::Error } else { Level::Warning };
+        findings.push(finding(level, format!("byte {}", problem.at), problem.damage.to_string()));
+    }
+    findings.extend(log.notes().iter().map(|note| {
+        finding(Level::Warning, format!("byte {}", note.at), note.text.clone()) //
+    }));
+    for commit in log.later_commits() {
+        let place = format!("commit {} (step {}, {})", commit.ordinal, commit.step, commit.stage);
+        let text = format!("whole at byte {}, but what it follows on is lost: it is not used", commit.at);
+        findings.push(finding(Level::Warning, place, text));
+    }
+    findings.extend(manifests(log));
+    for index in 0..log.entries().len() {
+        if let Err(error) = log.state(index) {
+            let cause = std::error::Error::source(&error).map(ToString::to_string).unwrap_or_default();
+            findings.push(finding(Level::Error, place(&log.entries()[index]), format!("{error}: {cause}")));
+        }
+    }
+    findings.extend(bytes_between(log));
+    findings
+}
+
+fn finding(level: Level, place: impl Into<String>, text: impl Into<String>) -> Finding {
+    Finding { level, place: place.into(), text: text.into() }
+}
+
+fn place(entry: &Entry) -> String {
+    let commit = &entry.record.commit;
+    format!("commit {} (step {}, {})", commit.ordinal, commit.step, commit.stage)
+}
+
+fn completeness(log: &Log) -> Finding {
+    let commits = log.entries().len();
+    let (level, text) = match log.completeness() {
+        Completeness::Finished => (Level::Info, format!("{commits} commits, finished")),
+        Completeness::Unfinished => (Level::Info, format!("{commits} commits, not finished")),
+        Completeness::Truncated { at, dropped } => {
+            let text = format!("{commits} commits; the {dropped} bytes from byte {at} on are of one that was cut off");
+            (Level::Warning, text)
+        }
+        Completeness::Damaged { at, dropped, later_commits } => {
+            let text = format!(
+                "{commits} commits; {dropped} bytes from byte {at} on are lost, with {later_commits} whole commits"
+            );
+            (Level::Error, text)
+        }
+    };
+    finding(level, "log", text)
+}
+
+fn manifests(log: &Log) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let manifests = log.manifests();
+    if manifests.first().is_none_or(|first| first.first_ordinal != 0) {
+        let text = "no manifest of the beginning: the scene has to come from its file".to_owned();
+        findings.push(finding(Level::Warning, "log", text));
+    }
+    for pair in manifests.windows(2) {
+        let place = format!("commit {}", pair[1].first_ordinal);
+        if !pair[0].same_machine(&pair[1]) {
+            let text = format!("from here on computed on another machine: {} after {}", pair[1].host, pair[0].host);
+            findings.push(finding(Level::Info, place.clone(), text));
+        }
+        if pair[0].scene_text != pair[1].scene_text {
+            findings.push(finding(Level::Info, place, "from here on the scene reads differently"));
+        }
+    }
+    findings
+}
+
+/// Writes the log again and compares: a byte that no hash covers (a time, an index, the summary) shows here.
+fn bytes_between(log: &Log) -> Option<Finding> {
+    if !log.problems().is_empty() || !log.notes().is_empty() {
+        return None;
+    }
+    let mut written = 0;
+    let mut differs = None;
+    let mut compare = |ours: &[u8]| {
+        let theirs = log.bytes.get(written..).unwrap_or_default();
+        let same = ours.iter().zip(theirs).take_while(|(ours, theirs)| ours == theirs).count();
+        if same < ours.len() && differs.is_none() {
+            differs = Some(written + same);
+        }
+        written += ours.len();
+    };
+    let outcome = write_again(log, &mut compare);
+    if let Err(error) = outcome {
+        return Some(finding(Level::Warning, "log", format!("it cannot be written again: {error}")));
+    }
+    let at = differs.or((written < log.bytes.len()).then_some(written))?;
+    let text = "not the byte that would be written here; no state depends on it, but viewers may. \
+                `foldline recover` writes the log anew";
+    Some(finding(Level::Warning, format!("byte {at}"), text))
+}
+
+fn write_again(log: &Log, compare: &mut impl FnMut(&[u8])) -> Result<(), EncodeError> {
+    let mut encoder = Encoder::new(&log.library)?;
+    again(log, true, &mut encoder, |bytes| {
+        compare(&bytes);
+        Ok::<(), EncodeError>(())
+    })?;
+    if log.closed {
+        encoder.close()?;
+        compare(&encoder.take());
+    }
+    Ok(())
+}

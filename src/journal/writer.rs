@@ -1,0 +1,347 @@
+//! The sink that keeps a run: every stage a commit, every commit one write.
+
+use std::collections::HashSet;
+use std::fmt;
+use std::io;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use super::backend::{Backend, FileBackend};
+use super::codec::{encode_mesh, encode_state};
+use super::encoder::{EncodeError, Encoder, Parts, ViewerMessage, library};
+use super::lock::{LockError, LogLock};
+use super::manifest::Manifest;
+use crate::pipeline::{Commit, Record, Sink, SinkError};
+use crate::scene::SyncPolicy;
+use crate::state::{Hash, State};
+
+/// How often [`SyncPolicy::EachSecond`] forces the log to disk at most.
+const SYNC_INTERVAL: Duration = Duration::from_secs(1);
+
+/// Makes messages for viewers out of a stage. They go into the stage's commit, and into none of the hashes that states
+/// and runs are told apart by.
+pub trait ViewerTopics: Send {
+    /// The messages about this stage; none where it changed nothing to look at.
+    fn messages(&mut self, state: &State, record: &Record) -> Vec<ViewerMessage>;
+}
+
+/// Why a stage could not be kept, or a log not be begun.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// There is a file of that name.
+    #[error(
+        "{log} exists and is not overwritten: `foldline resume {log}` goes on with it, `-o OTHER` writes elsewhere"
+    )]
+    Exists {
+        /// The log.
+        log: String,
+    },
+    /// The folder that the log should lie in is not there.
+    #[error("there is no folder {folder} for {log}: make it, or choose another place with `-o OTHER`")]
+    NoFolder {
+        /// The folder.
+        folder: String,
+        /// The log.
+        log: String,
+    },
+    /// The right to write is another's.
+    #[error(transparent)]
+    Lock(#[from] LockError),
+    /// The disk is full.
+    #[error(
+        "no space left to {action} {log}; it holds {commits} stages, all good. Make space, then `foldline resume {log}`"
+    )]
+    DiskFull {
+        /// "write", "sync" or "begin".
+        action: &'static str,
+        /// The log.
+        log: String,
+        /// Stages that are in the log.
+        commits: u64,
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
+    /// The system would not.
+    #[error(
+        "cannot {action} {log}; it holds {commits} stages. `foldline resume {log}` goes on behind the last good one"
+    )]
+    Io {
+        /// "write", "sync" or "begin".
+        action: &'static str,
+        /// The log.
+        log: String,
+        /// Stages that are in the log.
+        commits: u64,
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
+    /// The stage cannot be put into a log.
+    #[error("stage {ordinal} cannot be written to {log}, which holds all before it")]
+    Encode {
+        /// Ordinal of the stage.
+        ordinal: u64,
+        /// The log.
+        log: String,
+        /// Why.
+        #[source]
+        source: EncodeError,
+    },
+    /// A stage that does not follow from the last one in the log.
+    #[error("commit {found} does not follow on the {commits} that {log} holds: it was not made from its last state")]
+    NotNext {
+        /// Ordinal of the stage.
+        found: u64,
+        /// Stages that are in the log.
+        commits: u64,
+        /// The log.
+        log: String,
+    },
+    /// A state that is not the one its commit names.
+    #[error("the state of commit {ordinal} hashes to {found}, and the commit says {expected}")]
+    StateHash {
+        /// Ordinal of the stage.
+        ordinal: u64,
+        /// Hash in the commit.
+        expected: Hash,
+        /// Hash of the state.
+        found: Hash,
+    },
+    /// A stage after one that failed.
+    #[error("{log} was given up after an earlier error; `foldline resume {log}` goes on behind its {commits} stages")]
+    GivenUp {
+        /// The log.
+        log: String,
+        /// Stages that are in the log.
+        commits: u64,
+    },
+}
+
+impl From<WriteError> for SinkError {
+    fn from(error: WriteError) -> Self {
+        let context = error.to_string();
+        // The error itself is the context; what is below it is the cause.
+        let source: Option<Box<dyn std::error::Error + Send + Sync>> = match error {
+            WriteError::DiskFull { source, .. } | WriteError::Io { source, .. } => Some(Box::new(source)),
+            WriteError::Encode { source, .. } => Some(Box::new(source)),
+            WriteError::Lock(LockError::Io { source, .. }) => Some(Box::new(source)),
+            _ => None,
+        };
+        SinkError { context, source }
+    }
+}
+
+/// Writes a run to a log, one commit a stage. Dropped without [`JournalWriter::finish`] or [`JournalWriter::close`] it
+/// leaves what a killed process leaves: every commit, and no summary.
+pub struct JournalWriter {
+    pub(super) encoder: Encoder,
+    pub(super) backend: Box<dyn Backend>,
+    pub(super) lock: Option<LogLock>,
+    /// The log's name in messages.
+    pub(super) log: String,
+    pub(super) sync: SyncPolicy,
+    pub(super) viewer: Option<Box<dyn ViewerTopics>>,
+    /// Content hashes of the meshes that the log holds.
+    pub(super) meshes: HashSet<Hash>,
+    pub(super) last: Option<Commit>,
+    /// Bytes of the log that are good.
+    pub(super) length: u64,
+    pub(super) synced: Instant,
+    pub(super) given_up: bool,
+}
+
+impl fmt::Debug for JournalWriter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("JournalWriter").field("log", &self.log).field("last", &self.last).finish_non_exhaustive()
+    }
+}
+
+impl JournalWriter {
+    /// Begins a log. Never touches a file that is there already.
+    ///
+    /// # Errors
+    /// Where there is one, where another process writes it, or where it cannot be written.
+    pub fn create(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
+        let log = path.display().to_string();
+        if path.exists() {
+            return Err(WriteError::Exists { log });
+        }
+        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+            return Err(WriteError::NoFolder { folder: folder.display().to_string(), log });
+        }
+        let lock = LogLock::take(path)?;
+        let backend = FileBackend::create_new(path).map_err(|source| match source.kind() {
+            io::ErrorKind::AlreadyExists => WriteError::Exists { log: log.clone() },
+            _ => WriteError::Io { action: "begin", log: log.clone(), commits: 0, source },
+        })?;
+        let begun = Self::on(Box::new(backend), &log, manifest, sync);
+        if begun.is_err() {
+            let _ = std::fs::remove_file(path);
+        }
+        begun.map(|writer| Self { lock: Some(lock), ..writer })
+    }
+
+    /// Begins a log on a backend, which is empty; `log` is its name in messages. Takes no lock.
+    ///
+    /// # Errors
+    /// Where the backend cannot be written.
+    pub fn on(backend: Box<dyn Backend>, log: &str, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
+        let encode = |source: mcap::McapError| WriteError::Encode {
+            ordinal: 0,
+            log: log.to_owned(),
+            source: EncodeError::Mcap(source),
+        };
+        let mut writer = Self {
+            encoder: Encoder::new(&library()).map_err(encode)?,
+            backend,
+            lock: None,
+            log: log.to_owned(),
+            sync,
+            viewer: None,
+            meshes: HashSet::new(),
+            last: None,
+            length: 0,
+            synced: Instant::now(),
+            given_up: false,
+        };
+        writer.encoder.manifest(&manifest.to_record()).map_err(encode)?;
+        writer.append()?;
+        Ok(writer)
+    }
+
+    /// The same writer, with messages for viewers in every commit from here on.
+    pub fn with_viewer(self, topics: Box<dyn ViewerTopics>) -> Self {
+        Self { viewer: Some(topics), ..self }
+    }
+
+    /// The last commit in the log.
+    pub fn last_commit(&self) -> Option<&Commit> {
+        self.last.as_ref()
+    }
+
+    /// Bytes of the log so far.
+    pub fn len(&self) -> u64 {
+        self.length
+    }
+
+    /// Whether the log holds no commit.
+    pub fn is_empty(&self) -> bool {
+        self.last.is_none()
+    }
+
+    /// Keeps a stage: one commit, one write, and a sync where the policy asks for it.
+    ///
+    /// # Errors
+    /// Where it could not be kept. The log is good up to the last commit, and takes no more.
+    pub fn commit(&mut self, state: &State, record: &Record) -> Result<(), WriteError> {
+        if self.given_up {
+            return Err(WriteError::GivenUp { log: self.log.clone(), commits: self.commits() });
+        }
+        let kept = self.keep(state, record);
+        self.given_up = kept.is_err();
+        kept
+    }
+
+    /// Ends the log of a run that reached its end: a record that says so, MCAP's summary, and a sync. Where there is no
+    /// commit there is no such record either.
+    ///
+    /// # Errors
+    /// Where it could not be written; the commits stand.
+    pub fn finish(mut self) -> Result<(), WriteError> {
+        if let Some(last) = self.last {
+            self.encoder.finished(&last).map_err(|source| self.encode_error(last.ordinal, source))?;
+        }
+        self.close()
+    }
+
+    /// Ends the log of a run that was stopped: MCAP's summary, so that viewers open it at once, and a sync. It can be
+    /// resumed.
+    ///
+    /// # Errors
+    /// Where it could not be written; the commits stand.
+    pub fn close(mut self) -> Result<(), WriteError> {
+        if self.given_up {
+            return Err(WriteError::GivenUp { log: self.log.clone(), commits: self.commits() });
+        }
+        let ordinal = self.commits();
+        self.encoder.close().map_err(|source| self.encode_error(ordinal, EncodeError::Mcap(source)))?;
+        self.append()?;
+        self.backend.sync().map_err(|source| self.io_error("sync", source))
+    }
+
+    fn commits(&self) -> u64 {
+        self.last.map_or(0, |last| last.ordinal + 1)
+    }
+
+    fn keep(&mut self, state: &State, record: &Record) -> Result<(), WriteError> {
+        let commit = &record.commit;
+        let ordinal = commit.ordinal;
+        let parent = self.last.map_or(commit.parent_hash, |last| last.state_hash);
+        let (stage, step, scene) = (commit.stage, commit.step, commit.scene_hash);
+        if *commit != Commit::next(self.last.as_ref(), stage, step, scene, parent, commit.state_hash) {
+            return Err(WriteError::NotNext { found: ordinal, commits: self.commits(), log: self.log.clone() });
+        }
+        let found = state.hash();
+        if found != commit.state_hash {
+            return Err(WriteError::StateHash { ordinal, expected: commit.state_hash, found });
+        }
+        let mesh_hash = state.mesh.hash();
+        let is_new = !self.meshes.contains(&mesh_hash);
+        let viewer = self.viewer.as_mut().map(|topics| topics.messages(state, record)).unwrap_or_default();
+        let encoded = (|| {
+            let mesh = if is_new { Some(encode_mesh(&state.mesh)?) } else { None };
+            let parts = Parts { record, mesh_hash, mesh, state: encode_state(state)?, viewer: &viewer };
+            self.encoder.commit(&parts)
+        })();
+        encoded.map_err(|source| self.encode_error(ordinal, source))?;
+        self.append()?;
+        self.meshes.insert(mesh_hash);
+        self.last = Some(*commit);
+        let due = match self.sync {
+            SyncPolicy::EachStage => true,
+            SyncPolicy::EachSecond => self.synced.elapsed() >= SYNC_INTERVAL,
+            SyncPolicy::AtEnd => false,
+        };
+        if due {
+            self.backend.sync().map_err(|source| self.io_error("sync", source))?;
+            self.synced = Instant::now();
+        }
+        Ok(())
+    }
+
+    /// Hands on what the encoder has made, if the log is still ours.
+    pub(super) fn append(&mut self) -> Result<(), WriteError> {
+        if let Some(lock) = &self.lock {
+            lock.check()?;
+        }
+        let bytes = self.encoder.take();
+        if let Err(source) = self.backend.append(&bytes) {
+            // What was half written would only be dropped by the next reader.
+            let _ = self.backend.cut(self.length);
+            return Err(self.io_error("write", source));
+        }
+        self.length += bytes.len() as u64;
+        Ok(())
+    }
+
+    fn encode_error(&self, ordinal: u64, source: EncodeError) -> WriteError {
+        WriteError::Encode { ordinal, log: self.log.clone(), source }
+    }
+
+    fn io_error(&self, action: &'static str, source: io::Error) -> WriteError {
+        let (log, commits) = (self.log.clone(), self.commits());
+        match source.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                WriteError::DiskFull { action, log, commits, source }
+            }
+            _ => WriteError::Io { action, log, commits, source },
+        }
+    }
+}
+
+impl Sink for JournalWriter {
+    fn take(&mut self, state: &State, record: &Record) -> Result<(), SinkError> {
+        Ok(self.commit(state, record)?)
+    }
+}

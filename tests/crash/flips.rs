@@ -1,0 +1,171 @@
+//! Logs with bits flipped: read to a verified prefix or refused, quickly, without much memory, and never silently.
+
+use std::time::{Duration, Instant};
+
+use foldline::journal::{Completeness, Log};
+use foldline::pipeline::Record;
+use foldline::state::State;
+
+use crate::memory::peak;
+use crate::support::{assert_prefix, finished_log};
+use crate::synthetic;
+
+/// What reading may take beyond the file itself.
+const MEMORY_LIMIT: isize = 64 << 20;
+
+/// A small generator of numbers that a seed decides (splitmix64).
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        println!("seed {seed:#018x}");
+        Self(seed)
+    }
+
+    pub fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((mixed ^ (mixed >> 31)) % bound as u64) as usize
+    }
+}
+
+/// A seed from the clock, or the one in `FOLDLINE_SEED`.
+fn seed() -> u64 {
+    let clock = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_nanos() as u64;
+    std::env::var("FOLDLINE_SEED").map_or(clock, |text| u64::from_str_radix(text.trim_start_matches("0x"), 16).unwrap())
+}
+
+#[derive(Default, Debug)]
+struct Tally {
+    refused: usize,
+    whole: usize,
+    shorter: usize,
+    longest: Duration,
+    most_memory: isize,
+}
+
+fn read_damaged(bytes: Vec<u8>, run: &[(State, Record)], tally: &mut Tally) {
+    let began = Instant::now();
+    let (log, memory) = peak(|| Log::from_bytes(bytes));
+    tally.longest = tally.longest.max(began.elapsed());
+    tally.most_memory = tally.most_memory.max(memory);
+    let Ok(log) = log else {
+        tally.refused += 1;
+        return;
+    };
+    let ((), memory) = peak(|| assert_prefix(&log, run));
+    tally.most_memory = tally.most_memory.max(memory);
+    if log.entries().len() == run.len() {
+        tally.whole += 1;
+    } else {
+        tally.shorter += 1;
+        let told = matches!(log.completeness(), Completeness::Truncated { .. } | Completeness::Damaged { .. });
+        assert!(told && log.loss().is_some(), "lost commits and did not say so: {:?}", log.completeness());
+    }
+}
+
+fn check(tally: &Tally) {
+    println!("{tally:?}");
+    assert!(tally.longest < Duration::from_secs(1), "{tally:?}");
+    assert!(tally.most_memory < MEMORY_LIMIT, "{tally:?}");
+}
+
+#[test]
+fn ten_thousand_flipped_bits() {
+    let run = synthetic::run(3, 12);
+    let bytes = finished_log(&run);
+    let mut random = Random::new(seed());
+    let mut tally = Tally::default();
+    for _ in 0..10_000 {
+        let mut damaged = bytes.clone();
+        damaged[random.below(bytes.len())] ^= 1 << random.below(8);
+        read_damaged(damaged, &run, &mut tally);
+    }
+    check(&tally);
+    assert_eq!(tally.refused, 0, "one bit costs no more than the commits behind it");
+}
+
+/// Every bit in front of the first commit and around the first index, where lengths and kinds of records stand.
+#[test]
+fn every_bit_of_the_framing() {
+    let run = synthetic::run(2, 3);
+    let bytes = finished_log(&run);
+    let whole = Log::from_bytes(bytes.clone()).unwrap();
+    let (first, second) = (whole.entries()[0].bytes.clone(), whole.entries()[1].bytes.clone());
+    let mut tally = Tally::default();
+    let places = (0..first.start as usize + 60).chain(first.end as usize..second.start as usize + 60);
+    for place in places {
+        for bit in 0..8 {
+            let mut damaged = bytes.clone();
+            damaged[place] ^= 1 << bit;
+            read_damaged(damaged, &run, &mut tally);
+        }
+    }
+    check(&tally);
+}
+
+/// A log of 12 MB: lengths that claim gigabytes, or most of the file, buy no memory.
+#[test]
+fn flipped_bits_in_a_large_log() {
+    let run = synthetic::run(120, 24);
+    let bytes = finished_log(&run);
+    assert!(bytes.len() > 8 << 20);
+    let whole = Log::from_bytes(bytes.clone()).unwrap();
+    let mut random = Random::new(seed());
+    let mut tally = Tally::default();
+    for round in 0..60 {
+        let mut damaged = bytes.clone();
+        // Every other time in the nine bytes in front of a chunk or in its header.
+        let place = match round % 2 {
+            0 => random.below(bytes.len()),
+            _ => whole.entries()[random.below(run.len())].bytes.start as usize + random.below(50),
+        };
+        damaged[place] ^= 1 << random.below(8);
+        read_damaged(damaged, &run, &mut tally);
+    }
+    check(&tally);
+}
+
+/// The largest stage that a chunk holds: half a million control points.
+#[test]
+fn memory_for_the_largest_stage() {
+    let run = synthetic::run(750, 1);
+    let bytes = finished_log(&run);
+    let mut tally = Tally::default();
+    assert!(bytes.len() > 30 << 20);
+    read_damaged(bytes, &run, &mut tally);
+    check(&tally);
+    let (mut writer, _) = crate::support::writer(foldline::scene::SyncPolicy::AtEnd);
+    let (state, record) = synthetic::run(800, 1).remove(0);
+    let error = writer.commit(&state, &record).unwrap_err();
+    let cause = std::error::Error::source(&error).unwrap().to_string();
+    insta::assert_snapshot!(cause, @"the stage takes 36040520 bytes, and a chunk of a log holds 33554432: use a coarser mesh");
+}
+
+/// Records swapped, repeated and left out, each whole in itself.
+#[test]
+fn chunks_out_of_place() {
+    let run = synthetic::run(2, 5);
+    let bytes = finished_log(&run);
+    let log = Log::from_bytes(bytes.clone()).unwrap();
+    let starts: Vec<usize> = log.entries().iter().map(|entry| entry.bytes.start as usize).collect();
+    let piece = |index: usize| &bytes[starts[index]..starts[index + 1]];
+    let build = |order: &[usize]| {
+        let mut built = bytes[..starts[0]].to_vec();
+        order.iter().for_each(|index| built.extend_from_slice(piece(*index)));
+        Log::from_bytes(built).unwrap()
+    };
+    for (order, good, later) in [
+        (&[0, 1, 2, 3][..], 4, 0),
+        (&[0, 2, 1, 3], 2, 2),
+        (&[0, 1, 1, 2, 3], 4, 0),
+        (&[0, 1, 3], 2, 1),
+        (&[1, 2, 3], 0, 0),
+        (&[0, 3, 2], 1, 2),
+    ] {
+        let log = build(order);
+        assert_eq!((log.entries().len(), log.later_commits().len()), (good, later), "{order:?}");
+        assert_prefix(&log, &run);
+    }
+}

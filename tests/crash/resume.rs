@@ -1,0 +1,323 @@
+//! Going on with logs in files: at any stage, after any end, with damage, and with a rival.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use foldline::journal::{
+    Completeness, JournalWriter, Level, LockError, Log, RecoverOutcome, ResumeError, WriteError, recover, verify,
+};
+use foldline::pipeline::Record;
+use foldline::scene::SyncPolicy;
+use foldline::state::State;
+
+use crate::support::assert_prefix;
+use crate::synthetic;
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn names(&self) -> Vec<String> {
+        let names = fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<String> = names.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+enum End {
+    Dropped,
+    Closed,
+    Finished,
+}
+
+fn write(path: &Path, run: &[(State, Record)], end: End) {
+    let mut writer = JournalWriter::create(path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap();
+    run.iter().for_each(|(state, record)| writer.commit(state, record).unwrap());
+    match end {
+        End::Dropped => drop(writer),
+        End::Closed => writer.close().unwrap(),
+        End::Finished => writer.finish().unwrap(),
+    }
+}
+
+/// Resumes, runs the stages that are missing from `run`'s length, and finishes.
+fn resume_and_finish(path: &Path, stages: usize) {
+    let resumed = JournalWriter::resume(path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap();
+    let (mut writer, log) = (resumed.writer, resumed.log);
+    let done = log.entries().len();
+    let state = if done == 0 { synthetic::start(3) } else { log.state(done - 1).unwrap() };
+    for (state, record) in synthetic::go_on(&state, log.last_commit(), stages - done) {
+        writer.commit(&state, &record).unwrap();
+    }
+    writer.finish().unwrap();
+}
+
+fn assert_faultless(path: &Path) {
+    let faults: Vec<_> = verify(path).into_iter().filter(|finding| finding.level > Level::Info).collect();
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+#[test]
+fn a_run_stopped_at_any_stage_ends_the_same() {
+    let folder = Folder::new();
+    let run = synthetic::run(3, 11);
+    for stages in 0..=run.len() {
+        for (name, end) in [("dropped", End::Dropped), ("closed", End::Closed), ("finished", End::Finished)] {
+            let path = folder.file(&format!("{name}-{stages}.mcap"));
+            write(&path, &run[..stages], end);
+            resume_and_finish(&path, run.len());
+            let log = Log::read(&path).unwrap();
+            assert_eq!(log.completeness(), Completeness::Finished);
+            assert_eq!(log.entries().len(), run.len());
+            assert_eq!(log.manifests().len(), 2);
+            assert_eq!(log.manifests()[1].first_ordinal, stages as u64);
+            assert_prefix(&log, &run);
+            assert_faultless(&path);
+            fs::remove_file(&path).unwrap();
+            assert_eq!(folder.names(), Vec::<String>::new(), "nothing is left beside the log");
+        }
+    }
+}
+
+#[test]
+fn resuming_and_doing_nothing_changes_nothing() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    write(&path, &synthetic::run(3, 4), End::Finished);
+    let before = fs::read(&path).unwrap();
+    drop(JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::EachStage).unwrap());
+    assert_eq!(fs::read(&path).unwrap(), before);
+    assert_eq!(folder.names(), ["run.mcap"]);
+}
+
+#[test]
+fn a_log_is_never_overwritten() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    fs::write(&path, "not even a log").unwrap();
+    let error = JournalWriter::create(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap_err();
+    let text = error.to_string().replace(&path.display().to_string(), "run.mcap");
+    insta::assert_snapshot!(text, @"run.mcap exists and is not overwritten: `foldline resume run.mcap` goes on with it, `-o OTHER` writes elsewhere");
+    let error = JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap_err();
+    let source = std::error::Error::source(&error).unwrap().to_string();
+    insta::assert_snapshot!(source, @"this is not a log: it does not begin like an MCAP file, and no commit of a run is in it");
+    assert_eq!(fs::read(&path).unwrap(), b"not even a log");
+    assert!(matches!(recover(&path, &folder.file("new.mcap")), Ok(RecoverOutcome::Hopeless { .. })));
+    assert_eq!(folder.names(), ["run.mcap"]);
+    let nowhere = JournalWriter::create(&folder.file("no/run.mcap"), &synthetic::manifest(), SyncPolicy::AtEnd);
+    assert!(matches!(nowhere, Err(WriteError::NoFolder { .. })));
+    let missing = JournalWriter::resume(&folder.file("none"), &synthetic::manifest(), SyncPolicy::AtEnd);
+    assert!(matches!(missing, Err(ResumeError::NoLog { .. })));
+}
+
+#[test]
+fn what_damage_costs_is_kept_beside_the_log() {
+    let folder = Folder::new();
+    let (path, copy) = (folder.file("run.mcap"), folder.file("copy.mcap"));
+    let run = synthetic::run(3, 9);
+    write(&path, &run, End::Finished);
+    let entries: Vec<_> = Log::read(&path).unwrap().entries().iter().map(|entry| entry.bytes.clone()).collect();
+    let mut bytes = fs::read(&path).unwrap();
+    bytes[entries[4].start as usize + 300] ^= 4;
+    fs::write(&path, &bytes).unwrap();
+    let log = Log::read(&path).unwrap();
+    let at = log.good_end();
+    assert_eq!(log.completeness(), Completeness::Damaged { at, dropped: bytes.len() as u64 - at, later_commits: 4 });
+    assert!(at <= entries[4].start);
+
+    let outcome = recover(&path, &copy).unwrap();
+    assert!(matches!(outcome, RecoverOutcome::Lossy { commits: 4, later_commits: 4, .. }), "{outcome:?}");
+    assert_faultless(&copy);
+    assert_prefix(&Log::read(&copy).unwrap(), &run);
+    assert!(matches!(recover(&path, &copy), Err(WriteError::Exists { .. })));
+
+    let resumed = JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap();
+    let dropped = fs::read(resumed.dropped.as_ref().unwrap()).unwrap();
+    assert_eq!(dropped, bytes[at as usize..]);
+    drop(resumed);
+    resume_and_finish(&path, run.len());
+    assert_prefix(&Log::read(&path).unwrap(), &run);
+    assert_faultless(&path);
+    assert_eq!(folder.names(), ["copy.mcap", "run.mcap", "run.mcap.dropped-1", "run.mcap.dropped-2"]);
+}
+
+/// Bytes that no commit needs may go wrong anywhere: the chain reaches across, and the next resume heals them.
+#[test]
+fn damage_between_commits_costs_nothing() {
+    let folder = Folder::new();
+    let (path, copy) = (folder.file("run.mcap"), folder.file("copy.mcap"));
+    let run = synthetic::run(3, 6);
+    write(&path, &run, End::Finished);
+    let good = fs::read(&path).unwrap();
+    let entries: Vec<_> = Log::read(&path).unwrap().entries().iter().map(|entry| entry.bytes.clone()).collect();
+    let index = entries[2].end as usize;
+    for (place, what) in [(2, "magic"), (11, "header"), (120, "manifest"), (index, "kind"), (index + 3, "length")] {
+        let mut bytes = good.clone();
+        bytes[place] ^= 1;
+        fs::write(&path, &bytes).unwrap();
+        let log = Log::read(&path).unwrap();
+        assert_eq!((log.completeness(), log.entries().len()), (Completeness::Finished, run.len()), "{what}");
+        let findings = verify(&path);
+        assert!(findings.iter().any(|finding| finding.level == Level::Warning), "{what}: {findings:?}");
+        assert!(findings.iter().all(|finding| finding.level < Level::Error), "{what}: {findings:?}");
+        assert_eq!(recover(&path, &copy).unwrap(), RecoverOutcome::Lossless { commits: 6 }, "{what}");
+        assert_prefix(&Log::read(&copy).unwrap(), &run);
+        fs::remove_file(&copy).unwrap();
+    }
+}
+
+/// No hash covers a time, an index or the summary, and still `verify` finds any byte of them that changes.
+#[test]
+fn verify_finds_every_changed_byte() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    write(&path, &synthetic::run(2, 2), End::Finished);
+    assert_faultless(&path);
+    let good = fs::read(&path).unwrap();
+    for place in (0..good.len()).step_by(7) {
+        let mut bytes = good.clone();
+        bytes[place] ^= 0x10;
+        fs::write(&path, &bytes).unwrap();
+        let findings = verify(&path);
+        assert!(findings.iter().any(|finding| finding.level > Level::Info), "byte {place}: {findings:?}");
+    }
+}
+
+#[test]
+fn two_writers_do_not_meet() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    let run = synthetic::run(3, 6);
+    let mut first = JournalWriter::create(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap();
+    first.commit(&run[0].0, &run[0].1).unwrap();
+    let second = JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd);
+    let Err(ResumeError::Lock(error @ LockError::Busy { .. })) = second else { panic!("{second:?}") };
+    assert!(error.to_string().contains(&format!("process {}", std::process::id())), "{error}");
+    first.commit(&run[1].0, &run[1].1).unwrap();
+
+    // A file system without locks: a rival comes in all the same, and leaves its token.
+    fs::write(folder.file("run.mcap.lease"), "another token\nprocess 1 (elsewhere)\n").unwrap();
+    let before = fs::read(&path).unwrap();
+    let error = first.commit(&run[2].0, &run[2].1).unwrap_err();
+    assert!(matches!(error, WriteError::Lock(LockError::Lost { .. })), "{error}");
+    assert!(error.to_string().contains("taken over by process 1 (elsewhere)"), "{error}");
+    assert!(matches!(first.finish(), Err(WriteError::GivenUp { .. })));
+    assert_eq!(fs::read(&path).unwrap(), before);
+    assert_eq!(Log::read(&path).unwrap().entries().len(), 2);
+
+    // The rival is gone too; neither left anything that keeps the next one out.
+    resume_and_finish(&path, run.len());
+    assert_faultless(&path);
+    assert_eq!(folder.names(), ["run.mcap"]);
+}
+
+/// A process that dies while it copies leaves a copy that the next one does not stumble over.
+#[test]
+fn an_abandoned_copy_is_no_obstacle() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    write(&path, &synthetic::run(3, 2), End::Dropped);
+    fs::write(folder.file("run.mcap.new"), "half a copy").unwrap();
+    fs::write(folder.file("run.mcap.lease"), "token of a dead process\n").unwrap();
+    fs::write(folder.file("run.mcap.lock"), "").unwrap();
+    resume_and_finish(&path, 5);
+    assert_faultless(&path);
+    assert_eq!(folder.names(), ["run.mcap"]);
+}
+
+/// Even between the look at the lease and the write the loser does no harm: it writes to a file without a name.
+#[test]
+fn a_taken_over_log_is_another_file() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    let run = synthetic::run(3, 6);
+    write(&path, &run[..2], End::Dropped);
+    let old = fs::OpenOptions::new().append(true).open(&path).unwrap();
+    resume_and_finish(&path, run.len());
+    std::io::Write::write_all(&mut &old, b"what the loser still had in hand").unwrap();
+    assert_faultless(&path);
+    assert_prefix(&Log::read(&path).unwrap(), &run);
+}
+
+const CHILD: &str = "FOLDLINE_TEST_CHILD_LOG";
+
+/// Not a test by itself: the process that the next one kills.
+#[test]
+fn child_that_is_killed() {
+    let Some(path) = std::env::var_os(CHILD) else { return };
+    let path = PathBuf::from(path);
+    let (mut writer, mut state, mut last) = if path.exists() {
+        let resumed = JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap();
+        let state = resumed.log.entries().len().checked_sub(1).map(|last| resumed.log.state(last).unwrap());
+        (resumed.writer, state.unwrap_or_else(|| synthetic::start(3)), resumed.log.last_commit().copied())
+    } else {
+        let writer = JournalWriter::create(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap();
+        (writer, synthetic::start(3), None)
+    };
+    loop {
+        let (next, record) = synthetic::go_on(&state, last.as_ref(), 1).remove(0);
+        writer.commit(&next, &record).unwrap();
+        (state, last) = (next, Some(record.commit));
+    }
+}
+
+#[test]
+fn a_killed_process_leaves_a_log_to_go_on_with() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    let mut known = 0;
+    for round in 0..6 {
+        let mut child = std::process::Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "resume::child_that_is_killed"])
+            .env(CHILD, &path)
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        let began = Instant::now();
+        let commits = || Log::read(&path).map_or(0, |log| log.entries().len());
+        while commits() <= known + round && began.elapsed() < Duration::from_secs(20) {
+            std::thread::sleep(Duration::from_millis(3));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let log = Log::read(&path).unwrap();
+        assert!(log.entries().len() > known + round);
+        assert!(!matches!(log.completeness(), Completeness::Damaged { .. } | Completeness::Finished));
+        known = log.entries().len();
+    }
+    resume_and_finish(&path, known + 3);
+    assert_prefix(&Log::read(&path).unwrap(), &synthetic::run(3, known + 3));
+    assert_faultless(&path);
+    assert_eq!(folder.names(), ["run.mcap"]);
+}
+
+/// Forty megabytes: the promise is milliseconds. Other work on the machine may slow any single try.
+#[test]
+fn resuming_forty_megabytes_takes_milliseconds() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    let run = synthetic::run(120, 125);
+    write(&path, &run, End::Dropped);
+    let length = fs::metadata(&path).unwrap().len();
+    assert!(length > 40 << 20, "{length}");
+    let best = (0..5).map(|_| {
+        let began = Instant::now();
+        let resumed = JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap();
+        let state = resumed.log.state(run.len() - 1).unwrap();
+        let took = began.elapsed();
+        assert_eq!(state, run[run.len() - 1].0);
+        took
+    });
+    let best = best.min().unwrap();
+    println!("{length} bytes resumed in {best:?}");
+    assert!(best < Duration::from_millis(300), "{best:?}");
+}
