@@ -4,6 +4,7 @@ pub mod adapt;
 pub mod cli;
 mod digest;
 pub mod equilibrium;
+pub mod history;
 pub mod journal;
 pub mod model;
 pub mod pipeline;

@@ -3,8 +3,13 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::scene::Scene;
+use crate::history::{ConditionError, NothingStands, ReplayError, SnapError};
+use crate::model::ModelError;
+use crate::scene::{Scene, Stage};
 use crate::view::{PlotError, SamplesError};
+
+/// Stopped by a signal; nothing is wrong.
+pub(super) const INTERRUPTED: u8 = 75;
 
 /// Below the options in `--help`.
 pub(super) const EXIT_CODES: &str = "\
@@ -15,7 +20,6 @@ Exit codes:
   75  interrupted; `foldline resume LOG` goes on where it stopped";
 
 /// Why a command did not do what it was asked to.
-#[expect(dead_code, reason = "some are built only where `wiring` reaches the parser, the log and the run loop")]
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Failure {
     #[error("cannot read {}", path.display())]
@@ -27,7 +31,7 @@ pub(super) enum Failure {
     /// Everything that is wrong with a scene, rendered with its lines.
     #[error("{rendered}")]
     WrongScene { rendered: String },
-    #[error("--until {until_deg} is beyond the {}° that the scene asks for; raise `rotation-deg` there", scene.load.rotation_deg)]
+    #[error("--until {until_deg} is beyond the {}° that the scene asks for; raise `load.rotation_deg` there", scene.load.rotation_deg)]
     UntilBeyondScene { until_deg: f64, scene: Box<Scene> },
     #[error("cannot use the log {}", log.display())]
     WrongLog { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
@@ -43,8 +47,26 @@ pub(super) enum Failure {
     Samples(#[from] SamplesError),
     #[error("no help on `{topic}`; there is help on {}{}", known.join(", "), did_you_mean(topic, known))]
     NoSuchTopic { topic: String, known: Vec<String> },
-    #[error("{what} is not yet wired")]
-    NotYetWired { what: &'static str },
+    #[error("cannot watch for signals")]
+    Signals { source: io::Error },
+    #[error("{} holds no scene", log.display())]
+    NoScene { log: PathBuf },
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    #[error(transparent)]
+    NothingStands(#[from] NothingStands),
+    #[error("the log {} cannot be resumed", log.display())]
+    Resume { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
+    #[error("load step {step} of {} has no {stage}; it has {}", log.display(), known.join(", "))]
+    NoSuchStage { log: PathBuf, step: u64, stage: Stage, known: Vec<String> },
+    #[error("stage {ordinal} ({stage} of step {step}) cannot be run again")]
+    Replay { ordinal: u64, stage: Stage, step: u64, source: Box<ReplayError> },
+    #[error(transparent)]
+    Condition(#[from] ConditionError),
+    #[error(transparent)]
+    Snap(#[from] Box<SnapError>),
+    #[error("no stage of {} meets the condition `{condition}`", log.display())]
+    NeverHolds { log: PathBuf, condition: String },
 }
 
 impl Failure {
@@ -55,8 +77,11 @@ impl Failure {
             | Failure::WrongScene { .. }
             | Failure::UntilBeyondScene { .. }
             | Failure::NoSuchStep { .. }
+            | Failure::NoSuchStage { .. }
+            | Failure::Model(_)
+            | Failure::Condition(_)
             | Failure::NoSuchTopic { .. } => 2,
-            Failure::Interrupted { .. } => 75,
+            Failure::Interrupted { .. } => INTERRUPTED,
             _ => 1,
         }
     }

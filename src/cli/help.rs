@@ -4,7 +4,7 @@ use clap::{Args, CommandFactory};
 
 use super::failure::Failure;
 use super::output::print;
-use super::wiring;
+use crate::scene::help_text;
 
 /// Help on a subcommand, or on the keys of a scene file: `help scene`
 #[derive(Args, Debug)]
@@ -23,7 +23,7 @@ impl Arguments {
         command.build();
         match self.topic.as_deref() {
             None => print(&command.render_long_help().to_string()),
-            Some(SCENE) => print(&wiring::scene_help()?),
+            Some(SCENE) => print(&help_text()),
             Some(topic) => match command.find_subcommand_mut(topic) {
                 Some(subcommand) => print(&subcommand.render_long_help().to_string()),
                 None => {

@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::json_line::json_line;
+use super::log_file::read_log;
 use super::output::{print, say};
 use super::stage_table::{stage_table, step_in_full};
-use super::wiring::{self, ReadLog};
 use crate::pipeline::Record;
 use crate::study::Summary;
 
@@ -29,15 +29,15 @@ impl Arguments {
     /// Reads the log and shows it.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, step, json } = self;
-        let ReadLog { scene, records, finished, warnings } = wiring::read_log(&log)?;
-        for warning in &warnings {
+        let read = read_log(&log)?;
+        let records = read.records();
+        for warning in &read.warnings() {
             say(&format!("foldline: {}: {warning}", log.display()));
         }
         let wanted: Vec<Record> =
             records.iter().filter(|record| step.is_none_or(|step| record.report.step == step)).cloned().collect();
         if let (Some(step), true) = (step, wanted.is_empty()) {
-            let steps = || records.iter().map(|record| record.report.step);
-            return Err(Failure::NoSuchStep { known: steps().min().zip(steps().max()), step, log });
+            return Err(Failure::NoSuchStep { known: read.steps(), step, log });
         }
         if json {
             return print(&wanted.iter().map(|record| json_line(record) + "\n").collect::<String>());
@@ -45,8 +45,8 @@ impl Arguments {
         if let Some(step) = step {
             return print(&step_in_full(&wanted, step));
         }
-        let mut text = format!("{}\n{}", stage_table(&records), Summary::new(&scene, &records));
-        if !finished {
+        let mut text = format!("{}\n{}", stage_table(&records), Summary::new(&read.scene, &records));
+        if !read.is_finished() {
             text.push_str(&format!("\nunfinished; go on with: foldline resume {}\n", log.display()));
         }
         print(&text)

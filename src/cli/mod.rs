@@ -3,17 +3,25 @@
 //! Everything that can be wrong with the arguments and the scene is found before anything starts. What a program would
 //! read goes to standard output, what a person would watch to standard error.
 
+mod bisect;
 mod failure;
 mod help;
 mod inspect;
 mod json_line;
 mod load_step;
+mod log_file;
 mod output;
 mod plot;
 mod progress;
+mod recover;
+mod replay;
+mod resume;
 mod run;
+mod scene_file;
+mod session;
 mod stage_table;
-mod wiring;
+mod trace;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -36,18 +44,29 @@ struct Arguments {
 #[derive(Subcommand, Debug)]
 enum Command {
     Run(run::Arguments),
+    Resume(resume::Arguments),
     Inspect(inspect::Arguments),
     Plot(plot::Arguments),
+    Replay(replay::Arguments),
+    Bisect(bisect::Arguments),
+    Verify(verify::Arguments),
+    Recover(recover::Arguments),
     Help(help::Arguments),
 }
 
 impl Command {
-    fn run(self) -> Result<(), Failure> {
+    /// The exit code of a command that did what it was asked to.
+    fn run(self) -> Result<u8, Failure> {
         match self {
-            Command::Run(arguments) => arguments.prepare()?.run(),
-            Command::Inspect(arguments) => arguments.run(),
-            Command::Plot(arguments) => arguments.run(),
-            Command::Help(arguments) => arguments.run(),
+            Command::Run(arguments) => arguments.prepare()?.run().map(|()| 0),
+            Command::Resume(arguments) => arguments.run().map(|()| 0),
+            Command::Inspect(arguments) => arguments.run().map(|()| 0),
+            Command::Plot(arguments) => arguments.run().map(|()| 0),
+            Command::Replay(arguments) => arguments.run(),
+            Command::Bisect(arguments) => arguments.run(),
+            Command::Verify(arguments) => arguments.run(),
+            Command::Recover(arguments) => arguments.run(),
+            Command::Help(arguments) => arguments.run().map(|()| 0),
         }
     }
 }
@@ -63,7 +82,7 @@ pub fn main() -> ExitCode {
         }
     };
     match arguments.command.run() {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => ExitCode::from(code),
         Err(failure) => {
             output::say(&failure.in_full());
             ExitCode::from(failure.exit_code())

@@ -5,11 +5,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::Failure;
+use super::log_file::read_log;
 use super::output::{print, write_file};
-use super::wiring::{self, ReadLog};
 use crate::pipeline::Report;
+use crate::spline::Mesh;
 use crate::units::rounded;
-use crate::view::{Picture, ViewDirection, mesh_picture, moment_rotation_plot, vtu};
+use crate::view::{Picture, ViewDirection, deformed_surface, mesh_picture, moment_rotation_plot, vtu};
+
+/// Cells along a picture that look smooth.
+const SMOOTH: usize = 120;
 
 /// Draw the moment–rotation curve and the deformed mesh of a log
 #[derive(Args, Debug)]
@@ -31,21 +35,23 @@ impl Arguments {
     /// Reads the log, draws, and names the files.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, output, step, view } = self;
-        let ReadLog { scene, records, .. } = wiring::read_log(&log)?;
+        let read = read_log(&log)?;
+        let (scene, records) = (&read.scene, read.records());
         let folder = output.unwrap_or_else(|| log.with_extension(""));
         let name = log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let last = records.iter().rev().find(|record| step.is_none_or(|step| record.report.step == step));
-        let Some(record) = last else {
-            let steps = || records.iter().map(|record| record.report.step);
-            let known = steps().min().zip(steps().max());
+        let last = records.iter().rposition(|record| step.is_none_or(|step| record.report.step == step));
+        let Some(last) = last else {
             return Err(match step {
-                Some(step) => Failure::NoSuchStep { log, step, known },
+                Some(step) => Failure::NoSuchStep { log, step, known: read.steps() },
                 None => crate::view::PlotError::NoEquilibrium.into(),
             });
         };
         // Everything is drawn before anything is written.
-        let curve = moment_rotation_plot(&scene, &records, &name)?;
-        let samples = wiring::surface(&log, &scene, record)?;
+        let curve = moment_rotation_plot(scene, &records, &name)?;
+        let record = &records[last];
+        let unusable = |source| Failure::WrongLog { log: log.clone(), source: Box::new(source) };
+        let state = read.log.state(last).map_err(unusable)?;
+        let samples = deformed_surface(scene, &state.mesh, &state.displacement, cells_per_element(&state.mesh))?;
         let picture = Picture {
             direction: view.unwrap_or_default(),
             title: format!("{name}, load step {}", record.report.step),
@@ -63,6 +69,12 @@ impl Arguments {
         };
         print(&files.into_iter().map(write).collect::<Result<String, Failure>>()?)
     }
+}
+
+/// Cells that make a coarse mesh look smooth and a fine one no larger than need be.
+fn cells_per_element(mesh: &Mesh) -> usize {
+    let [n1, n2] = mesh.element_counts();
+    SMOOTH.div_ceil(n1.max(n2)).clamp(2, 12)
 }
 
 /// The numbers of the state that a picture shows.

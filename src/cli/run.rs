@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{print, say};
+use super::output::say;
 use super::progress::Manner;
-use super::wiring::{self, RunOptions};
-use crate::scene::Scene;
+use super::resume::{self, OldLog};
+use super::scene_file::{SceneFile, read_scene};
+use super::session::{RunOptions, drive, watch_signals};
+use crate::journal::{JournalWriter, Manifest};
+use crate::pipeline::{Run, Stages};
 use crate::study::Summary;
 use crate::units::rounded;
 
@@ -26,6 +29,9 @@ pub(super) struct Arguments {
     /// Stop at this rotation of each end, in degrees; `resume` goes on from there
     #[arg(long, value_name = "DEG", value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
+    /// Go on with the log if there is one, as far as it stands for this scene
+    #[arg(long)]
+    resume: bool,
     /// Show no progress, only the summary
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
@@ -36,16 +42,18 @@ pub(super) struct Arguments {
 
 /// A run that has been checked and can start.
 pub(super) struct Job {
-    scene: Scene,
+    file: PathBuf,
+    scene: SceneFile,
     options: RunOptions,
+    resume: bool,
 }
 
 impl Arguments {
     /// Checks everything that can be checked before the run.
     pub(super) fn prepare(self) -> Result<Job, Failure> {
-        let scene = wiring::read_scene(&self.scene)?;
-        if let Some(until_deg) = self.until.filter(|until| *until > scene.load.rotation_deg) {
-            return Err(Failure::UntilBeyondScene { until_deg, scene: Box::new(scene) });
+        let scene = read_scene(&self.scene)?;
+        if let Some(until_deg) = self.until.filter(|until| *until > scene.scene.load.rotation_deg) {
+            return Err(Failure::UntilBeyondScene { until_deg, scene: Box::new(scene.scene) });
         }
         let options = RunOptions {
             log: self.output.unwrap_or_else(|| default_log(&self.scene)),
@@ -53,27 +61,41 @@ impl Arguments {
             until_deg: self.until,
             manner: Manner::of(self.quiet, self.json),
         };
-        Ok(Job { scene, options })
+        Ok(Job { file: self.scene, scene, options, resume: self.resume })
     }
 }
 
 impl Job {
     /// Runs, and sums up.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Job { scene, options } = self;
-        let shown = matches!(options.manner, Manner::Live | Manner::Lines);
-        if shown {
+        let Job { file, scene: SceneFile { scene, text }, options, resume } = self;
+        if resume && options.log.exists() {
+            let manifest = Manifest::here(&file, &text, options.use_threads());
+            return resume::go_on(OldLog::open(&options.log)?, scene, manifest, &options);
+        }
+        let stages = Stages::new(scene.clone());
+        let start = stages.start()?;
+        let raised = watch_signals()?;
+        let manifest = Manifest::here(&file, &text, options.use_threads());
+        make_default_folder(&options.log)?;
+        let writer = JournalWriter::create(&options.log, &manifest, scene.output.sync)
+            .map_err(|source| Failure::WrongLog { log: options.log.clone(), source: Box::new(source) })?;
+        if options.is_shown() {
             let to = options.until_deg.unwrap_or(scene.load.rotation_deg);
             say(&format!("to {}° → {}", rounded(to), options.log.display()));
         }
-        let records = wiring::run(&scene, &options)?;
-        if options.manner != Manner::Json {
-            print(&Summary::new(&scene, &records).to_string())?;
+        let records = drive(Run::new(stages, start, None), &scene, writer, &options, &raised)?;
+        options.sum_up(&Summary::new(&scene, &records))
+    }
+}
+
+/// `checkpoints/` is made where it is the default; any other folder has to be there.
+fn make_default_folder(log: &Path) -> Result<(), Failure> {
+    match log.parent() {
+        Some(folder) if folder == Path::new("checkpoints") => {
+            std::fs::create_dir_all(folder).map_err(|source| Failure::Write { path: folder.to_path_buf(), source })
         }
-        if shown {
-            say(&format!("every stage: foldline inspect {}", options.log.display()));
-        }
-        Ok(())
+        _ => Ok(()),
     }
 }
 
@@ -86,7 +108,7 @@ fn default_log(scene: &Path) -> PathBuf {
 }
 
 /// A rotation that somebody could mean.
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         Ok(_) => Err("a rotation above 0 degrees is wanted".to_string()),

@@ -98,6 +98,7 @@ impl<'a> Descent<'a> {
             reactions: assembled.residual.iter().map(|force| dot(*force, *force)).sum::<f64>().sqrt(),
             negative_pivots: 0,
             step_length: self.step_length,
+            shift: 0.0,
             worst_point: self.discretization.unknowns.home_of(largest(&self.gradient)),
         };
         if !(last.energy.is_finite() && last.residual.is_finite()) {
@@ -105,8 +106,10 @@ impl<'a> Descent<'a> {
         }
         self.pattern.fill(self.discretization, &self.placement, assembled, self.values);
         self.effort.factorizations += 1;
-        last.negative_pivots =
+        let negative =
             self.solver.factorize(self.values).map_err(|cause| SolveError::Factor { cause, effort: self.effort })?;
+        last.negative_pivots = negative.count;
+        last.shift = 2.0 * negative.largest;
         Ok(last)
     }
 

@@ -28,6 +28,8 @@ pub struct Iterate {
     pub negative_pivots: usize,
     /// Step length along the last direction; 1 is a full Newton step.
     pub step_length: f64,
+    /// Twice the largest magnitude of a negative pivot: what turning it positive adds, N/mm; 0 where there is none.
+    pub shift: f64,
     /// Control point with the largest residual.
     pub worst_point: usize,
 }
@@ -176,7 +178,7 @@ impl Workspace {
         let placement = self.discretization.unknowns.at(theta);
         self.pattern.fill(&self.discretization, &placement, &self.assembled, &mut self.values);
         let effort = Effort::default();
-        let negative = self.solver.factorize(&self.values).map_err(|cause| SolveError::Factor { cause, effort })?;
+        let negative = self.solver.factorize(&self.values).map_err(|cause| SolveError::Factor { cause, effort })?.count;
         self.factored_at = Some((theta, displacement.to_vec(), negative));
         Ok(negative)
     }

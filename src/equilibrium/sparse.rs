@@ -36,6 +36,15 @@ pub enum FactorError {
     },
 }
 
+/// The negative part of D.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NegativePivots {
+    /// How many.
+    pub count: usize,
+    /// Largest magnitude among them; 0 where there are none.
+    pub largest: f64,
+}
+
 /// Symbolic factor of one structure with room for the numeric one.
 pub struct SparseSolver {
     symbolic: SymbolicCholesky<usize>,
@@ -82,11 +91,11 @@ impl SparseSolver {
         Ok(Self { symbolic, column_starts, rows, factor, scratch })
     }
 
-    /// Numeric L D Lᵀ; returns the number of negative pivots.
+    /// Numeric L D Lᵀ; returns its negative pivots.
     ///
     /// # Errors
     /// Where a pivot is zero or not a number; the factor is then of no use.
-    pub fn factorize(&mut self, values: &[f64]) -> Result<usize, FactorError> {
+    pub fn factorize(&mut self, values: &[f64]) -> Result<NegativePivots, FactorError> {
         let size = self.column_starts.len() - 1;
         let structure = SymbolicSparseColMatRef::new_checked(size, size, &self.column_starts, None, &self.rows);
         let matrix = SparseColMatRef::new(structure, values);
@@ -101,13 +110,14 @@ impl SparseSolver {
                 Default::default(),
             )
             .map_err(|LdltError::ZeroPivot { index }| FactorError::BadPivot { index, size })?;
-        let mut negative = 0;
+        let mut negative = NegativePivots::default();
         let mut bad = None;
         self.for_each_pivot(|index, pivot| {
             if !pivot.is_finite() || *pivot == 0.0 {
                 bad.get_or_insert(index);
             } else if *pivot < 0.0 {
-                negative += 1;
+                negative.count += 1;
+                negative.largest = negative.largest.max(-*pivot);
             }
         });
         match bad {
@@ -177,7 +187,7 @@ mod tests {
                 .filter(|k| shift - 2.0 * (*k as f64 * std::f64::consts::PI / (size + 1) as f64).cos() < 0.0)
                 .count();
             let mut solver = SparseSolver::new(starts, rows).unwrap();
-            assert_eq!(solver.factorize(&values), Ok(negative), "shift {shift}");
+            assert_eq!(solver.factorize(&values).unwrap().count, negative, "shift {shift}");
             let mut x = vec![1.0; size];
             solver.solve(&mut x);
             for i in 0..size {

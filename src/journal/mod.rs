@@ -69,6 +69,7 @@ pub mod message;
 mod reader;
 mod recovery;
 mod soundness;
+mod trace;
 mod verify;
 mod writer;
 
@@ -82,5 +83,6 @@ pub use manifest::{Manifest, ManifestError};
 pub use reader::ReadError;
 pub use recovery::{RecoverOutcome, Resume, ResumeError, Resumed, recover};
 pub use soundness::{Flaw, check_mesh, check_state};
+pub use trace::{ITERATE_TOPIC, TraceRow, write_trace};
 pub use verify::{Finding, Level, verify, verify_log};
 pub use writer::{JournalWriter, ViewerTopics, WriteError};

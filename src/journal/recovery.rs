@@ -120,9 +120,19 @@ impl Resume {
     /// # Errors
     /// Where the copy cannot be made; the log is then as it was.
     pub fn start(self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
+        let all = self.log.entries().len();
+        self.start_after(all, manifest, sync)
+    }
+
+    /// The same behind the first `keep` commits; those after them go.
+    ///
+    /// # Errors
+    /// Where the copy cannot be made; the log is then as it was.
+    pub fn start_after(self, keep: usize, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
         let Self { path, name, lock, log } = self;
         let begin = |source| ResumeError::Begin { log: name.clone(), source };
-        let dropped = keep_dropped(&path, &log)?;
+        let keep = keep.min(log.entries().len());
+        let dropped = if keep < log.entries().len() { Some(keep_whole(&path)?) } else { keep_dropped(&path, &log)? };
         let new = beside(&path, ".new");
         let failed = |source| ResumeError::Copy { log: name.clone(), path: new.display().to_string(), source };
         // Left by a process that died while it did this; the lock says that it is nobody's.
@@ -132,9 +142,8 @@ impl Resume {
         }
         let mut backend = FileBackend::create_new(&new).map_err(failed)?;
         let mut encoder = Encoder::new(&library()).map_err(|source| begin(source.into()))?;
-        let commits = log.entries().len() as u64;
-        let manifest = Manifest { first_ordinal: commits, ..manifest.clone() };
-        let copied = copy(&log, false, &mut encoder, &mut backend).and_then(|length| {
+        let manifest = Manifest { first_ordinal: keep as u64, ..manifest.clone() };
+        let copied = copy(&log, Some(keep), &mut encoder, &mut backend).and_then(|length| {
             encoder.manifest(&manifest.to_record()).map_err(EncodeError::Mcap)?;
             let bytes = encoder.take();
             backend.append(&bytes)?;
@@ -158,8 +167,8 @@ impl Resume {
             log: name,
             sync,
             viewer: None,
-            meshes: log.meshes.keys().copied().collect(),
-            last: log.last_commit().copied(),
+            meshes: log.entries()[..keep].iter().map(|entry| entry.mesh_hash).collect(),
+            last: keep.checked_sub(1).map(|last| log.entries()[last].record.commit),
             length,
             synced: Instant::now(),
             given_up: false,
@@ -195,15 +204,23 @@ impl From<EncodeError> for CopyError {
     }
 }
 
-/// Puts the good records of a log through an encoder; `emit` gets the bytes in pieces of about a mebibyte.
+/// Puts the good records of a log through an encoder, all of them or those up to the first `keep` commits without the
+/// record of the end; `emit` gets the bytes in pieces of about a mebibyte.
 pub(super) fn again<E: From<EncodeError>>(
     log: &Log,
-    finished: bool,
+    keep: Option<usize>,
     encoder: &mut Encoder,
     mut emit: impl FnMut(Vec<u8>) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut pending = 0;
-    for part in log.parts.iter().filter(|part| finished || part.kept != Kept::Finished) {
+    let mut commits = 0;
+    for part in &log.parts {
+        commits += usize::from(part.kept == Kept::Commit);
+        match keep {
+            Some(keep) if commits > keep => break,
+            Some(_) if part.kept == Kept::Finished => continue,
+            _ => {}
+        }
         let Some(Ok(frame)) = frame::next(&log.bytes, part.at) else { continue };
         let made = match part.kept {
             Kept::Manifest => match frame::parse(frame.opcode, &log.bytes[frame.body]) {
@@ -223,13 +240,31 @@ pub(super) fn again<E: From<EncodeError>>(
     emit(encoder.take())
 }
 
-fn copy(log: &Log, finished: bool, encoder: &mut Encoder, backend: &mut dyn Backend) -> Result<u64, CopyError> {
+fn copy(log: &Log, keep: Option<usize>, encoder: &mut Encoder, backend: &mut dyn Backend) -> Result<u64, CopyError> {
     let mut length = 0;
-    again(log, finished, encoder, |bytes| {
+    again(log, keep, encoder, |bytes| {
         length += bytes.len() as u64;
         Ok::<(), CopyError>(backend.append(&bytes)?)
     })?;
     Ok(length)
+}
+
+/// Keeps a log that goes on from an earlier stage than its last as `LOG.replaced-N`.
+fn keep_whole(path: &Path) -> Result<PathBuf, ResumeError> {
+    for number in 1_u32.. {
+        let kept = beside(path, &format!(".replaced-{number}"));
+        // The log itself is replaced by renaming, so another name for it is as good as a copy, and costs nothing.
+        match fs::hard_link(path, &kept) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+            Err(_) => {
+                let log = path.display().to_string();
+                let failed = |source| ResumeError::Copy { log, path: kept.display().to_string(), source };
+                return fs::copy(path, &kept).map(|_| kept.clone()).map_err(failed);
+            }
+            Ok(()) => return Ok(kept),
+        }
+    }
+    Ok(path.to_path_buf())
 }
 
 /// Writes what a damaged log loses to `LOG.dropped-N`, if it might still be worth something.
@@ -311,7 +346,8 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, WriteError> {
     let encode = |source| WriteError::Encode { ordinal: commits, log: target.clone(), source };
     let written =
         Encoder::new(&log.library).map_err(|source| CopyError::Encode(source.into())).and_then(|mut encoder| {
-            copy(&log, log.completeness() == Completeness::Finished, &mut encoder, &mut backend)?;
+            let keep = if log.completeness() == Completeness::Finished { None } else { Some(log.entries().len()) };
+            copy(&log, keep, &mut encoder, &mut backend)?;
             encoder.close().map_err(EncodeError::Mcap)?;
             backend.append(&encoder.take())?;
             Ok(backend.sync()?)

@@ -150,7 +150,7 @@ fn bytes_between(log: &Log) -> Option<Finding> {
 
 fn write_again(log: &Log, compare: &mut impl FnMut(&[u8])) -> Result<(), EncodeError> {
     let mut encoder = Encoder::new(&log.library)?;
-    again(log, true, &mut encoder, |bytes| {
+    again(log, None, &mut encoder, |bytes| {
         compare(&bytes);
         Ok::<(), EncodeError>(())
     })?;

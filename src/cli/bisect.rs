@@ -1,0 +1,140 @@
+//! `foldline bisect`: where two runs part, where a run jumps, where a condition first holds.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::log_file::{ReadLog, read_log};
+use super::output::print;
+use super::replay::place;
+use super::stage_table::stage_table;
+use crate::history::{Comparison, Condition, SnapReport, find_parting, find_snap, shown_value};
+
+/// Find where two logs part, where a log jumps (--snap), or where a condition first holds (--when)
+#[derive(Args, Debug)]
+#[command(group(clap::ArgGroup::new("question").required(true).args(["other", "snap", "when"])))]
+pub(super) struct Arguments {
+    /// Log to read (MCAP)
+    log: PathBuf,
+    /// A second log: find the first stage at which the two differ; exit code 1 if they do
+    other: Option<PathBuf>,
+    /// Locate the first jump: go back to the last stable state before it and halve the load
+    #[arg(long)]
+    snap: bool,
+    /// How well the jump is to be located, in degrees
+    #[arg(long, value_name = "DEG", default_value_t = 1e-4, requires = "snap", value_parser = super::run::positive)]
+    tolerance: f64,
+    /// Find the first stage whose report meets a condition, such as 'moment_n_mm < 100 and step > 3'
+    #[arg(long, value_name = "CONDITION")]
+    when: Option<String>,
+}
+
+impl Arguments {
+    /// Answers the question.
+    pub(super) fn run(self) -> Result<u8, Failure> {
+        let read = read_log(&self.log)?;
+        match (&self.other, &self.when) {
+            (Some(other), _) => self.part(&read, &read_log(other)?, other),
+            (None, Some(condition)) => self.first(&read, condition),
+            (None, None) => self.jump(&read),
+        }
+    }
+
+    fn part(&self, a: &ReadLog, b: &ReadLog, other: &std::path::Path) -> Result<u8, Failure> {
+        let unusable = |source| Failure::WrongLog { log: self.log.clone(), source: Box::new(source) };
+        let lengths = [a, b].map(|read| read.log.entries().len());
+        let mut text = String::new();
+        let found = find_parting(&a.log, &b.log).map_err(unusable)?;
+        match &found {
+            None if lengths[0] == lengths[1] => text.push_str(&format!("the same: all {} stages\n", lengths[0])),
+            None => text.push_str(&format!(
+                "the same as far as both go: {} holds {} stages, {} holds {}\n",
+                self.log.display(),
+                lengths[0],
+                other.display(),
+                lengths[1]
+            )),
+            Some(parting) => {
+                let report = &a.log.entries()[parting.index].record.report;
+                text.push_str(&format!(
+                    "part at stage {}: step {} {} at {}° (found in {} looks)\n",
+                    parting.index, report.step, report.stage, report.attempted_rotation_deg, parting.looks
+                ));
+                text.push_str(&compared(&parting.comparison));
+            }
+        }
+        for difference in a.scene.differences(&b.scene) {
+            let (x, y) = (shown_value(&difference.a), shown_value(&difference.b));
+            text.push_str(&format!("  scene: {} is {x} and {y}\n", difference.path));
+        }
+        if let (Some(x), Some(y)) = (a.log.manifests().first(), b.log.manifests().first()) {
+            let mut differs = |what: &str, p: String, q: String| {
+                if p != q {
+                    text.push_str(&format!("  {what}: {p} and {q}\n"));
+                }
+            };
+            differs("machine", x.host.clone(), y.host.clone());
+            differs(
+                "processor",
+                format!("{} {}", x.cpu, x.cpu_features.join(" ")),
+                format!("{} {}", y.cpu, y.cpu_features.join(" ")),
+            );
+            differs("program", x.program_version.clone(), y.program_version.clone());
+            differs("threads", x.threads.to_string(), y.threads.to_string());
+        }
+        print(&text)?;
+        Ok(u8::from(found.is_some()))
+    }
+
+    fn first(&self, read: &ReadLog, text: &str) -> Result<u8, Failure> {
+        let records = read.records();
+        let never = || Failure::NeverHolds { log: self.log.clone(), condition: text.to_string() };
+        let sample = records.first().ok_or_else(never)?;
+        let condition = Condition::parse(text, &sample.report)?;
+        let found = records.iter().position(|record| condition.holds(&record.report)).ok_or_else(never)?;
+        print(&stage_table(&records[found.saturating_sub(1)..=found]))?;
+        Ok(0)
+    }
+
+    fn jump(&self, read: &ReadLog) -> Result<u8, Failure> {
+        let report = find_snap(&read.log, &read.scene, self.tolerance).map_err(Box::new)?;
+        print(&told(&report)).map(|()| 0)
+    }
+}
+
+fn compared(comparison: &Comparison) -> String {
+    match comparison {
+        Comparison::Identical => "  the states are the same; the scenes that made them are not\n".to_string(),
+        Comparison::Structure(what) => format!("  {what}\n"),
+        Comparison::Numbers(differences) => differences
+            .iter()
+            .map(|difference| {
+                let [a, b] = difference.values;
+                format!(
+                    "  {}: {a} and {b}, {:.1} bits agree{}\n",
+                    difference.field,
+                    difference.agreeing_bits,
+                    place(difference.place)
+                )
+            })
+            .collect(),
+    }
+}
+
+fn told(report: &SnapReport) -> String {
+    let [below, beyond] = report.bracket_deg;
+    let [before, after] = report.moment_n_mm;
+    let [stable, most, end] = report.negative_pivots;
+    let [x, y, z] = report.mode_at;
+    let [u, v, w] = report.mode.shape[report.mode.largest_at];
+    let [n1, n2] = report.stable.mesh.element_counts();
+    format!(
+        "critical rotation    {below:.6}° to {beyond:.6}°, on {n1} × {n2} elements, {} solves\n\
+         moment               {before:.3} N·mm before, {after:.3} N·mm after\n\
+         energy released      {:.4} N·mm of {:.4} N·mm\n\
+         negative pivots      {stable} before, up to {most} on the way, {end} after\n\
+         soft mode            eigenvalue {:.4e} N/mm at {below:.6}°; moves most at ({x:.1}, {y:.1}, {z:.1}) mm, towards ({u:.2}, {v:.2}, {w:.2})\n",
+        report.solves, report.energy_released_n_mm, report.stable.strain_energy_n_mm, report.mode.eigenvalue
+    )
+}

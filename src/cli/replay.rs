@@ -1,0 +1,134 @@
+//! `foldline replay`: runs stages of a log again and holds the outcome against the log.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::log_file::{ReadLog, read_log, scene_of};
+use super::output::print;
+use super::scene_file::stage_named;
+use super::trace;
+use crate::history::{Replayed, Verdict, replay_stage, verdict};
+use crate::journal::TraceRow;
+use crate::pipeline::Stages;
+use crate::scene::Stage;
+
+/// Run stages of a log again, from the state before each; exit code 0 if every bit is the same, 1 if within tolerance, 2 if not
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Log to read (MCAP)
+    log: PathBuf,
+    /// Load step
+    #[arg(long, value_name = "K", required_unless_present = "from_scratch")]
+    step: Option<u64>,
+    /// One stage of the step, such as solve or re-equilibrate [default: all of them]
+    #[arg(long, value_name = "S", value_parser = stage_named, requires = "step")]
+    stage: Option<Stage>,
+    /// Every stage of the log
+    #[arg(long, conflicts_with = "step")]
+    from_scratch: bool,
+    /// Lay a setting over the scene, such as solver.max_iterations=200; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Write every Newton iterate to FILE.mcap and FILE.csv
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// Threads; the result is the same on any number of them [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl Arguments {
+    /// Replays; the worst verdict is the exit code.
+    pub(super) fn run(self) -> Result<u8, Failure> {
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
+        let read = read_log(&self.log)?;
+        let scene = scene_of(&read.log, &self.log, &self.set)?;
+        let mut stages = Stages::new(scene);
+        let mut rows: Vec<TraceRow> = Vec::new();
+        let mut worst = 0;
+        for index in self.chosen(&read)? {
+            let entry = &read.log.entries()[index];
+            let commit = entry.record.commit;
+            let mesh = read.log.mesh(index).ok();
+            let mut observer = |iterate: &crate::equilibrium::Iterate| {
+                if let (true, Some(mesh)) = (self.trace.is_some(), &mesh) {
+                    rows.push(trace::row(&commit, mesh, iterate));
+                }
+            };
+            let replayed = replay_stage(&read.log, index, &mut stages, &mut observer).map_err(|source| {
+                let (ordinal, stage, step) = (commit.ordinal, commit.stage, commit.step);
+                Failure::Replay { ordinal, stage, step, source: Box::new(source) }
+            });
+            let replayed = match replayed {
+                Ok(replayed) => replayed,
+                Err(failure) => {
+                    // What led there is what the trace is for.
+                    self.write_trace(&rows)?;
+                    return Err(failure);
+                }
+            };
+            let verdict = verdict(&replayed.comparison);
+            print(&line(&verdict, &replayed, commit.ordinal))?;
+            worst = worst.max(code(&verdict));
+        }
+        self.write_trace(&rows)?;
+        Ok(worst)
+    }
+
+    fn write_trace(&self, rows: &[TraceRow]) -> Result<(), Failure> {
+        match &self.trace {
+            Some(file) => print(&trace::write(file, rows)?),
+            None => Ok(()),
+        }
+    }
+
+    /// Indices of the stages to run again.
+    fn chosen(&self, read: &ReadLog) -> Result<Vec<usize>, Failure> {
+        let entries = read.log.entries();
+        let Some(step) = self.step else { return Ok((0..entries.len()).collect()) };
+        let of_step: Vec<usize> =
+            (0..entries.len()).filter(|index| entries[*index].record.commit.step == step).collect();
+        if of_step.is_empty() {
+            return Err(Failure::NoSuchStep { log: self.log.clone(), step, known: read.steps() });
+        }
+        let Some(stage) = self.stage else { return Ok(of_step) };
+        let stage_of = |index: &usize| entries[*index].record.commit.stage;
+        let of_stage: Vec<usize> = of_step.iter().copied().filter(|index| stage_of(index) == stage).collect();
+        if of_stage.is_empty() {
+            let mut known: Vec<String> = of_step.iter().map(|index| stage_of(index).name().to_string()).collect();
+            known.dedup();
+            return Err(Failure::NoSuchStage { log: self.log.clone(), step, stage, known });
+        }
+        Ok(of_stage)
+    }
+}
+
+fn code(verdict: &Verdict) -> u8 {
+    match verdict {
+        Verdict::BitIdentical => 0,
+        Verdict::WithinTolerance(_) => 1,
+        Verdict::Different(_) => 2,
+    }
+}
+
+fn line(verdict: &Verdict, replayed: &Replayed, ordinal: u64) -> String {
+    let report = &replayed.report;
+    let what = match verdict {
+        Verdict::BitIdentical => "bit-identical".to_string(),
+        Verdict::WithinTolerance(worst) => {
+            format!("within tolerance: {} agrees to {:.1} bits{}", worst.field, worst.agreeing_bits, place(worst.place))
+        }
+        Verdict::Different(what) => format!("different: {what}"),
+    };
+    let iterations = if report.iterations > 0 { format!(", {} iterations", report.iterations) } else { String::new() };
+    format!("{ordinal:>5}  step {} {}{iterations}: {what}\n", report.step, report.stage)
+}
+
+/// Where on the surface.
+pub(super) fn place(place: Option<([usize; 2], [f64; 3])>) -> String {
+    place.map_or_else(String::new, |([i, j], [x, y, z])| {
+        format!(" at control point ({i}, {j}), undeformed at ({x:.2}, {y:.2}, {z:.2}) mm")
+    })
+}

@@ -1,0 +1,135 @@
+//! `foldline resume`: goes on with a log from its last good stage.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::log_file::{ReadLog, scene_of};
+use super::output::say;
+use super::progress::Manner;
+use super::session::{RunOptions, drive, watch_signals};
+use crate::history::{basis, plan};
+use crate::journal::{Completeness, Log, Manifest, Resume};
+use crate::pipeline::{Record, Run, Stages};
+use crate::scene::Scene;
+use crate::study::Summary;
+
+/// Go on with a log from its last good stage, as if it had never stopped
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Log to go on with (MCAP)
+    log: PathBuf,
+    /// Stop at this rotation of each end, in degrees
+    #[arg(long, value_name = "DEG", value_parser = super::run::positive, allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Threads; the result is the same on any number of them [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Show no progress, only the summary
+    #[arg(short, long, conflicts_with = "json")]
+    quiet: bool,
+    /// Print a JSON object for each stage to standard output, and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+impl Arguments {
+    /// Goes on with the scene that is in the log.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let old = OldLog::open(&self.log)?;
+        let scene = scene_of(old.claim.log(), &self.log, &[])?;
+        if let Some(until_deg) = self.until.filter(|until| *until > scene.load.rotation_deg) {
+            return Err(Failure::UntilBeyondScene { until_deg, scene: Box::new(scene) });
+        }
+        let options = RunOptions {
+            log: self.log,
+            threads: self.threads.map(usize::from),
+            until_deg: self.until,
+            manner: Manner::of(self.quiet, self.json),
+        };
+        let last = old.claim.log().manifests().last();
+        let (file, text) = last.map_or_else(Default::default, |m| (m.scene_file.clone(), m.scene_text.clone()));
+        let manifest = Manifest::here(Path::new(&file), &text, options.use_threads());
+        go_on(old, scene, manifest, &options)
+    }
+}
+
+/// A log that this process alone may write.
+pub(super) struct OldLog {
+    claim: Resume,
+}
+
+impl OldLog {
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        let failed = |source| Failure::Resume { log: path.to_path_buf(), source: Box::new(source) };
+        Ok(Self { claim: Resume::open(path).map_err(failed)? })
+    }
+}
+
+/// Goes on with a log as far as it stands for `scene`.
+pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &RunOptions) -> Result<(), Failure> {
+    let raised = watch_signals()?;
+    let path = &options.log;
+    let unusable = |source: Box<dyn std::error::Error + Send + Sync>| Failure::Resume { log: path.clone(), source };
+    let log = old.claim.log();
+    let was = scene_of(log, path, &[])?;
+    let plan = plan(log, &was, &scene).map_err(|source| unusable(Box::new(source)))??;
+    let mut findings = found(log, plan.keep);
+    findings.extend(plan.changes);
+    findings.extend(other_machine(log, &manifest));
+    let stages = Stages::new(scene.clone());
+    let basis = basis(log, plan.keep, &stages).map_err(|source| unusable(Box::new(source)))?;
+    let before: Vec<Record> = log.entries()[..plan.keep].iter().map(|entry| entry.record.clone()).collect();
+    let run = Run::new(stages, basis.state, basis.commit);
+    let reached = run.state().rotation_deg;
+    let until_deg = options.until_deg;
+    let next = run.next_stage().filter(|_| until_deg.is_none_or(|until| reached < until));
+    match next {
+        Some(stage) => findings.push(format!("goes on from {reached}° with {stage}")),
+        None => findings.push(format!("nothing to do: the log has reached {reached}°")),
+    }
+    if options.is_shown() {
+        findings.iter().for_each(|line| say(line));
+    }
+    let finished = log.completeness() == Completeness::Finished && plan.keep == log.entries().len();
+    if next.is_none() && finished {
+        return options.sum_up(&Summary::new(&scene, &before));
+    }
+    let resumed =
+        old.claim.start_after(plan.keep, &manifest, scene.output.sync).map_err(|source| unusable(Box::new(source)))?;
+    if let (true, Some(dropped)) = (options.is_shown(), &resumed.dropped) {
+        say(&format!("what was dropped is kept in {}", dropped.display()));
+    }
+    let records = drive(run, &scene, resumed.writer, options, &raised)?;
+    options.sum_up(&Summary::new(&scene, &[before, records].concat()))
+}
+
+/// What a log holds and what of it is used.
+fn found(log: &Log, keep: usize) -> Vec<String> {
+    let all = log.entries().len();
+    let mut lines = vec![match (all, keep) {
+        (0, _) => "the log holds no stage".to_string(),
+        _ if keep == all => format!("the log holds {all} stages, all good"),
+        _ => format!("the log holds {all} good stages; the first {keep} stand"),
+    }];
+    lines.extend(ReadLog::warnings_of(log));
+    lines
+}
+
+/// Another machine may round differently: it is allowed, said, and recorded in the log.
+fn other_machine(log: &Log, manifest: &Manifest) -> Option<String> {
+    let last = log.manifests().last()?;
+    (!last.same_machine(manifest)).then(|| {
+        let feature = |list: &[String]| list.join(" ");
+        format!(
+            "another machine: written on {} ({} {}), goes on on {} ({} {}); the log records it",
+            last.host,
+            last.cpu,
+            feature(&last.cpu_features),
+            manifest.host,
+            manifest.cpu,
+            feature(&manifest.cpu_features)
+        )
+    })
+}

@@ -1,0 +1,64 @@
+//! Iterates of replayed stages, for `replay --trace`: one MCAP and one CSV beside it.
+
+use std::path::Path;
+
+use super::failure::Failure;
+use super::output::write_file;
+use crate::equilibrium::Iterate;
+use crate::journal::{TraceRow, write_trace};
+use crate::pipeline::Commit;
+use crate::spline::Mesh;
+
+/// An iterate with where it belongs.
+pub(super) fn row(commit: &Commit, mesh: &Mesh, iterate: &Iterate) -> TraceRow {
+    let n2 = mesh.control_counts()[1];
+    let point = iterate.worst_point;
+    let [x, y, z, w] = mesh.control_points[point];
+    TraceRow {
+        ordinal: commit.ordinal,
+        step: commit.step,
+        stage: commit.stage.name().to_string(),
+        iteration: iterate.iteration,
+        energy_n_mm: iterate.energy,
+        residual_n: iterate.residual,
+        relative_residual: iterate.residual / iterate.reactions,
+        step_length: iterate.step_length,
+        shift_n_per_mm: iterate.shift,
+        negative_pivots: iterate.negative_pivots,
+        worst_point: [point / n2, point % n2],
+        worst_point_mm: [x / w, y / w, z / w],
+    }
+}
+
+/// Writes FILE with the ending .mcap and .csv. Returns what was written.
+pub(super) fn write(file: &Path, rows: &[TraceRow]) -> Result<String, Failure> {
+    let (mcap, csv) = (file.with_extension("mcap"), file.with_extension("csv"));
+    write_trace(&mcap, rows).map_err(|source| Failure::WrongLog { log: mcap.clone(), source: Box::new(source) })?;
+    write_file(&csv, &table(rows))?;
+    Ok(format!("{} iterates: {}, {}\n", rows.len(), mcap.display(), csv.display()))
+}
+
+fn table(rows: &[TraceRow]) -> String {
+    let mut text = String::from(
+        "ordinal,step,stage,iteration,energy_n_mm,residual_n,relative_residual,step_length,shift_n_per_mm,\
+         negative_pivots,worst_point_1,worst_point_2,worst_x_mm,worst_y_mm,worst_z_mm\n",
+    );
+    for row in rows {
+        let [p1, p2] = row.worst_point;
+        let [x, y, z] = row.worst_point_mm;
+        text.push_str(&format!(
+            "{},{},{},{},{:e},{:e},{:e},{},{:e},{},{p1},{p2},{x},{y},{z}\n",
+            row.ordinal,
+            row.step,
+            row.stage,
+            row.iteration,
+            row.energy_n_mm,
+            row.residual_n,
+            row.relative_residual,
+            row.step_length,
+            row.shift_n_per_mm,
+            row.negative_pivots
+        ));
+    }
+    text
+}

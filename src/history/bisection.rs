@@ -1,0 +1,106 @@
+//! Bisection as pure state machines: they say what to look at next and are told what was seen; they look at nothing
+//! themselves.
+
+/// Finds the first index in `0..len` at which something holds that, once it holds, holds to the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IndexBisection {
+    /// Everything before does not hold.
+    low: usize,
+    /// This one, and all after, hold (`len`: perhaps none does).
+    high: usize,
+}
+
+impl IndexBisection {
+    /// Nothing is known yet of `len` items.
+    pub fn new(len: usize) -> Self {
+        Self { low: 0, high: len }
+    }
+
+    /// The index to look at next; `None` where the answer is known.
+    pub fn next(&self) -> Option<usize> {
+        (self.low < self.high).then_some(self.low + (self.high - self.low) / 2)
+    }
+
+    /// What was seen at `index`.
+    #[must_use]
+    pub fn told(self, index: usize, holds: bool) -> Self {
+        if holds {
+            Self { high: index.min(self.high), ..self }
+        } else {
+            Self { low: (index + 1).max(self.low), ..self }
+        }
+    }
+
+    /// First index at which it holds, or `len`; valid when [`Self::next`] has nothing to ask.
+    pub fn answer(&self) -> usize {
+        self.high
+    }
+}
+
+/// Narrows a bracket of loads: below it the shell is where it was, beyond it has jumped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadBisection {
+    below_deg: f64,
+    beyond_deg: f64,
+    tolerance_deg: f64,
+}
+
+impl LoadBisection {
+    /// A bracket to be narrowed to `tolerance_deg`.
+    pub fn new(below_deg: f64, beyond_deg: f64, tolerance_deg: f64) -> Self {
+        Self { below_deg, beyond_deg, tolerance_deg }
+    }
+
+    /// The load to try next; `None` where the bracket is narrow enough, or no number lies within it.
+    pub fn next(&self) -> Option<f64> {
+        let middle = 0.5 * (self.below_deg + self.beyond_deg);
+        let within = middle > self.below_deg && middle < self.beyond_deg;
+        (within && self.beyond_deg - self.below_deg > self.tolerance_deg).then_some(middle)
+    }
+
+    /// What a try showed.
+    #[must_use]
+    pub fn told(self, rotation_deg: f64, jumped: bool) -> Self {
+        if jumped { Self { beyond_deg: rotation_deg, ..self } } else { Self { below_deg: rotation_deg, ..self } }
+    }
+
+    /// (last load below, first load beyond), degrees.
+    pub fn bracket(&self) -> [f64; 2] {
+        [self.below_deg, self.beyond_deg]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_every_first_index_in_logarithmic_looks() {
+        for len in 0..70 {
+            for first in 0..=len {
+                let mut search = IndexBisection::new(len);
+                let mut looks = 0;
+                while let Some(index) = search.next() {
+                    search = search.told(index, index >= first);
+                    looks += 1;
+                }
+                assert_eq!(search.answer(), first);
+                assert!(looks <= usize::BITS - len.leading_zeros(), "{looks} looks at {len}");
+            }
+        }
+    }
+
+    #[test]
+    fn narrows_a_bracket_and_stops() {
+        let mut search = LoadBisection::new(9.0, 10.0, 1e-4);
+        let mut tries = 0;
+        while let Some(load) = search.next() {
+            search = search.told(load, load > 9.876_543);
+            tries += 1;
+        }
+        let [below, beyond] = search.bracket();
+        assert!(below <= 9.876_543 && 9.876_543 < beyond && beyond - below <= 1e-4);
+        assert_eq!(tries, 14);
+        assert_eq!(LoadBisection::new(1.0, 1.0, 0.0).next(), None);
+    }
+}

@@ -1,0 +1,122 @@
+//! Two states side by side: which field differs most, by how much, and where on the surface.
+
+use crate::spline::Mesh;
+use crate::state::State;
+
+/// Two values of a field that are not the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// Name of the field.
+    pub field: &'static str,
+    /// Where in it: control point (i₁, i₂) and its undeformed place, mm.
+    pub place: Option<([usize; 2], [f64; 3])>,
+    /// The two values there; for vectors the component that differs most.
+    pub values: [f64; 2],
+    /// Bits that agree, relative to the largest magnitude in the field: −log₂(|a − b| / max).
+    pub agreeing_bits: f64,
+}
+
+/// All fields of two states.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Comparison {
+    /// Every bit agrees.
+    Identical,
+    /// Numbers differ; a difference for each field that does, worst first.
+    Numbers(Vec<Difference>),
+    /// The states are not of one kind (another mesh, another stage, other marks), in words.
+    Structure(String),
+}
+
+/// Compares two states field by field.
+pub fn compare(a: &State, b: &State) -> Comparison {
+    if a.hash() == b.hash() {
+        return Comparison::Identical;
+    }
+    if let Some(what) = structure(a, b) {
+        return Comparison::Structure(what);
+    }
+    let mut differences: Vec<Difference> = [
+        ("rotation_deg", a.rotation_deg, b.rotation_deg),
+        ("moment_n_mm", a.moment_n_mm, b.moment_n_mm),
+        ("strain_energy_n_mm", a.strain_energy_n_mm, b.strain_energy_n_mm),
+    ]
+    .into_iter()
+    .filter_map(|(field, x, y)| number(field, x, y))
+    .collect();
+    differences.extend(displacement(a, b));
+    differences.extend(control_points(&a.mesh, &b.mesh));
+    differences.sort_by(|x, y| x.agreeing_bits.total_cmp(&y.agreeing_bits));
+    if differences.is_empty() {
+        return Comparison::Structure("knots or step control differ".to_string());
+    }
+    Comparison::Numbers(differences)
+}
+
+/// Why two states cannot be compared number by number.
+fn structure(a: &State, b: &State) -> Option<String> {
+    let elements = |state: &State| state.mesh.element_counts();
+    if a.stage != b.stage || a.step != b.step {
+        let name = |state: &State| state.stage.map_or("start", |stage| stage.name());
+        return Some(format!("step {} {} against step {} {}", a.step, name(a), b.step, name(b)));
+    }
+    if a.mesh.degree != b.mesh.degree || a.mesh.control_counts() != b.mesh.control_counts() {
+        let ([a1, a2], [b1, b2]) = (elements(a), elements(b));
+        return Some(format!("a mesh of {a1} × {a2} elements against {b1} × {b2}"));
+    }
+    if a.marked != b.marked {
+        let counts = |state: &State| [state.marked[0].len(), state.marked[1].len()];
+        return Some(format!("{:?} knot spans marked against {:?}", counts(a), counts(b)));
+    }
+    if a.negative_pivots != b.negative_pivots {
+        return Some(format!("{} negative pivots against {}", a.negative_pivots, b.negative_pivots));
+    }
+    if a.control != b.control {
+        return Some(format!("step control {:?} against {:?}", a.control, b.control));
+    }
+    None
+}
+
+fn number(field: &'static str, a: f64, b: f64) -> Option<Difference> {
+    (a.to_bits() != b.to_bits()).then(|| Difference {
+        field,
+        place: None,
+        values: [a, b],
+        agreeing_bits: agreeing_bits(a, b, a.abs().max(b.abs())),
+    })
+}
+
+fn agreeing_bits(a: f64, b: f64, scale: f64) -> f64 {
+    let share = (a - b).abs() / scale;
+    if share.is_nan() { 0.0 } else { -share.log2() }
+}
+
+/// The component of a vector field on control points that differs most.
+fn worst<const N: usize>(field: &'static str, mesh: &Mesh, a: &[[f64; N]], b: &[[f64; N]]) -> Option<Difference> {
+    let scale = a.iter().chain(b).flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let mut found: Option<(usize, [f64; 2])> = None;
+    for (i, (x, y)) in a.iter().zip(b).enumerate() {
+        for c in 0..N {
+            let larger = found.is_none_or(|(_, [p, q])| (x[c] - y[c]).abs() > (p - q).abs());
+            if x[c].to_bits() != y[c].to_bits() && larger {
+                found = Some((i, [x[c], y[c]]));
+            }
+        }
+    }
+    let (index, values) = found?;
+    let n2 = mesh.control_counts()[1];
+    let [x, y, z, w] = mesh.control_points[index];
+    Some(Difference {
+        field,
+        place: Some(([index / n2, index % n2], [x / w, y / w, z / w])),
+        values,
+        agreeing_bits: agreeing_bits(values[0], values[1], scale),
+    })
+}
+
+fn displacement(a: &State, b: &State) -> Option<Difference> {
+    worst("displacement", &a.mesh, &a.displacement, &b.displacement)
+}
+
+fn control_points(a: &Mesh, b: &Mesh) -> Option<Difference> {
+    worst("control points", a, &a.control_points, &b.control_points)
+}

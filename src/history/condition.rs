@@ -1,0 +1,162 @@
+//! Conditions on reports, such as `moment_n_mm < 100` or `step > 20 and elements >= 500`.
+
+use serde_json::Value;
+
+use crate::pipeline::Report;
+
+/// Comparisons that must all hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    terms: Vec<Term>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Term {
+    field: String,
+    operator: Operator,
+    value: Operand,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Operand {
+    Number(f64),
+    Word(String),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Operator {
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+    Equal,
+    NotEqual,
+}
+
+/// Longer spellings first, so that `<=` is not read as `<`.
+const OPERATORS: [(&str, Operator); 6] = [
+    ("<=", Operator::LessOrEqual),
+    (">=", Operator::GreaterOrEqual),
+    ("==", Operator::Equal),
+    ("!=", Operator::NotEqual),
+    ("<", Operator::Less),
+    (">", Operator::Greater),
+];
+
+/// Why a condition cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ConditionError {
+    /// No operator.
+    #[error(
+        "`{term}` compares nothing; write FIELD OPERATOR VALUE with one of < <= > >= == !=, such as moment_n_mm < 100"
+    )]
+    NoOperator {
+        /// The part of the condition.
+        term: String,
+    },
+    /// No such field.
+    #[error("reports have no field `{field}`; they have {}", known.join(", "))]
+    NoSuchField {
+        /// What was written.
+        field: String,
+        /// Fields of a report.
+        known: Vec<String>,
+    },
+    /// A word compared by size, or with a field that holds numbers.
+    #[error("`{value}` is not a number, and {field} {problem}")]
+    NotANumber {
+        /// The field.
+        field: String,
+        /// What was written.
+        value: String,
+        /// Why a word does not do.
+        problem: &'static str,
+    },
+}
+
+impl Condition {
+    /// Reads `FIELD OPERATOR VALUE`, several joined by `and`. Fields are those of a report in JSON; `elements`, `marked` stand for the
+    /// product or sum of their two numbers, `elements_1` and `elements_2` for one of them.
+    ///
+    /// # Errors
+    /// Where it has another form or names a field that reports do not have.
+    pub fn parse(text: &str, sample: &Report) -> Result<Self, ConditionError> {
+        let fields = fields_of(sample);
+        let terms = text.split(" and ").map(|term| parse_term(term.trim(), &fields)).collect::<Result<_, _>>()?;
+        Ok(Self { terms })
+    }
+
+    /// Whether it holds for a report. What is not a number (a residual after a failed solve) meets no condition but `!=`.
+    pub fn holds(&self, report: &Report) -> bool {
+        let fields = fields_of(report);
+        self.terms.iter().all(|term| {
+            let value = fields.iter().find(|(name, _)| *name == term.field).map(|(_, value)| value);
+            match (value, &term.value) {
+                (Some(Value::String(word)), Operand::Word(other)) => match term.operator {
+                    Operator::Equal => word == other,
+                    _ => word != other,
+                },
+                (Some(value), Operand::Number(number)) => as_number(value).is_some_and(|found| match term.operator {
+                    Operator::Less => found < *number,
+                    Operator::LessOrEqual => found <= *number,
+                    Operator::Greater => found > *number,
+                    Operator::GreaterOrEqual => found >= *number,
+                    Operator::Equal => found == *number,
+                    Operator::NotEqual => found != *number,
+                }),
+                _ => false,
+            }
+        })
+    }
+}
+
+fn parse_term(term: &str, fields: &[(String, Value)]) -> Result<Term, ConditionError> {
+    let found = OPERATORS.iter().find_map(|(text, operator)| term.split_once(text).map(|(a, b)| (a, *operator, b)));
+    let Some((field, operator, value)) = found else {
+        return Err(ConditionError::NoOperator { term: term.to_string() });
+    };
+    let (field, value) = (field.trim().to_string(), value.trim().trim_matches(['"', '\'']).to_string());
+    let Some((_, sample)) = fields.iter().find(|(name, _)| *name == field) else {
+        let known = fields.iter().map(|(name, _)| name.clone()).collect();
+        return Err(ConditionError::NoSuchField { field, known });
+    };
+    let equality = matches!(operator, Operator::Equal | Operator::NotEqual);
+    let value = match (value.parse::<f64>(), sample) {
+        (_, Value::String(_)) if equality => Operand::Word(value),
+        (_, Value::String(_)) => {
+            return Err(ConditionError::NotANumber { field, value, problem: "holds a word: compare it with == or !=" });
+        }
+        (Ok(number), _) => Operand::Number(number),
+        (Err(_), _) if value == "true" => Operand::Number(1.0),
+        (Err(_), _) if value == "false" => Operand::Number(0.0),
+        (Err(_), _) => return Err(ConditionError::NotANumber { field, value, problem: "holds a number" }),
+    };
+    Ok(Term { field, operator, value })
+}
+
+/// Fields of a report by name, pairs also one by one.
+fn fields_of(report: &Report) -> Vec<(String, Value)> {
+    let Ok(Value::Object(object)) = serde_json::to_value(report) else { return Vec::new() };
+    let mut fields = Vec::new();
+    for (name, value) in object {
+        if let Value::Array(pair) = &value {
+            for (index, part) in pair.iter().enumerate() {
+                fields.push((format!("{name}_{}", index + 1), part.clone()));
+            }
+            let numbers: Vec<f64> = pair.iter().filter_map(as_number).collect();
+            let whole = match name.as_str() {
+                "elements" => numbers.iter().product(),
+                "marked" => numbers.iter().sum(),
+                _ => numbers.iter().copied().fold(f64::MIN, f64::max),
+            };
+            fields.push((name, Value::from(whole)));
+        } else {
+            fields.push((name, value));
+        }
+    }
+    fields
+}
+
+fn as_number(value: &Value) -> Option<f64> {
+    value.as_f64().or_else(|| value.as_bool().map(|truth| if truth { 1.0 } else { 0.0 }))
+}

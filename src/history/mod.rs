@@ -1,0 +1,17 @@
+//! What a log can be asked: go on with it, run its stages again, find where two runs part, where a run jumped.
+
+mod bisection;
+mod compare;
+mod condition;
+mod part;
+mod replay;
+mod resume;
+mod snap;
+
+pub use bisection::{IndexBisection, LoadBisection};
+pub use compare::{Comparison, Difference, compare};
+pub use condition::{Condition, ConditionError};
+pub use part::{Parting, find_parting};
+pub use replay::{ReplayError, Replayed, Verdict, replay_stage, verdict};
+pub use resume::{Basis, BasisError, NothingStands, ResumePlan, basis, plan, shown_value};
+pub use snap::{SnapError, SnapReport, find_snap};

@@ -1,0 +1,84 @@
+//! Running a stage of a log again, from the state before it.
+
+use crate::equilibrium::Iterate;
+use crate::history::compare::{Comparison, Difference, compare};
+use crate::history::resume::{BasisError, basis};
+use crate::journal::{Log, StateError};
+use crate::pipeline::{Report, StageError, Stages};
+use crate::state::State;
+
+/// States that agree to this many bits are the same within what another processor or another kernel may do to rounding. The
+/// solver's default tolerance of 1e-7 leaves some 23 bits.
+pub const TOLERATED_BITS: f64 = 20.0;
+
+/// A stage that ran again.
+#[derive(Clone, Debug)]
+pub struct Replayed {
+    /// The state that it made now.
+    pub state: State,
+    /// What it said now.
+    pub report: Report,
+    /// Beside the state in the log.
+    pub comparison: Comparison,
+}
+
+/// What a replay showed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Every bit is the same.
+    BitIdentical,
+    /// Numbers differ by no more than rounding can explain; the largest difference.
+    WithinTolerance(Difference),
+    /// Something else came out, in words.
+    Different(String),
+}
+
+/// Why a stage could not be run again.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayError {
+    /// The state before it cannot be had.
+    #[error("the state before the stage cannot be had")]
+    Before(#[from] BasisError),
+    /// The state that the log holds cannot be had.
+    #[error("the stage's own state cannot be had")]
+    Logged(#[from] StateError),
+    /// The stage failed.
+    #[error("the stage fails when it is run again")]
+    Stage(#[from] StageError),
+}
+
+/// Runs stage `index` of a log again with `stages`, whose scene may differ from the log's in settings.
+///
+/// # Errors
+/// Where a state cannot be read or the stage fails.
+pub fn replay_stage(
+    log: &Log,
+    index: usize,
+    stages: &mut Stages,
+    observer: &mut dyn FnMut(&Iterate),
+) -> Result<Replayed, ReplayError> {
+    let logged = log.state(index)?;
+    let before = basis(log, index, stages)?;
+    let (state, report) = stages.run(log.entries()[index].record.report.stage, &before.state, observer)?;
+    let comparison = compare(&logged, &state);
+    Ok(Replayed { state, report, comparison })
+}
+
+/// What a comparison means.
+pub fn verdict(comparison: &Comparison) -> Verdict {
+    match comparison {
+        Comparison::Identical => Verdict::BitIdentical,
+        Comparison::Structure(what) => Verdict::Different(what.clone()),
+        Comparison::Numbers(differences) => match differences.first() {
+            Some(worst) if worst.agreeing_bits >= TOLERATED_BITS => Verdict::WithinTolerance(worst.clone()),
+            Some(worst) => {
+                let [a, b] = worst.values;
+                Verdict::Different(format!(
+                    "{}: {a} in the log, {b} now ({:.1} bits agree)",
+                    worst.field, worst.agreeing_bits
+                ))
+            }
+            None => Verdict::BitIdentical,
+        },
+    }
+}

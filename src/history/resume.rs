@@ -1,0 +1,130 @@
+//! From a log to the state that a run goes on from, and what a changed scene does to it.
+
+use crate::journal::{Log, StateError};
+use crate::model::ModelError;
+use crate::pipeline::{Commit, Stages, next_attempt, next_stage};
+use crate::scene::{Difference, Reach, Scene, Stage};
+use crate::state::State;
+
+/// What a run goes on from.
+#[derive(Clone, Debug)]
+pub struct Basis {
+    /// The state.
+    pub state: State,
+    /// The commit that made it; `None` for the scene's start.
+    pub commit: Option<Commit>,
+}
+
+/// Why there is nothing to go on from.
+#[derive(Debug, thiserror::Error)]
+pub enum BasisError {
+    /// The log's own state cannot be used.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// The scene's start cannot be built.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+/// The state after the first `keep` stages of a log.
+///
+/// # Errors
+/// Where the state cannot be read, or, for `keep` = 0, the scene cannot be made discrete.
+pub fn basis(log: &Log, keep: usize, stages: &Stages) -> Result<Basis, BasisError> {
+    match keep.checked_sub(1) {
+        None => Ok(Basis { state: stages.start()?, commit: None }),
+        Some(last) => Ok(Basis { state: log.state(last)?, commit: Some(log.entries()[last].record.commit) }),
+    }
+}
+
+/// How much of a log a scene can go on from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResumePlan {
+    /// Stages that stand, counted from the start of the log.
+    pub keep: usize,
+    /// What changed and what that means, a line each; empty where the scene is the same.
+    pub changes: Vec<String>,
+}
+
+/// A change of the scene that no state of the log survives.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{} changed ({from} in the log, {to} now): nothing can be kept; write to another log with -o", path)]
+pub struct NothingStands {
+    /// Key of the scene file.
+    pub path: String,
+    /// Value in the log.
+    pub from: String,
+    /// Value now.
+    pub to: String,
+}
+
+/// What stands of a log written for `old` when it goes on with `new`.
+///
+/// Output may change freely. The target may: the steps that were cut short at the old target go. A change of what steps are made with
+/// keeps every complete step and drops a step in hand. A change of geometry, material, mesh, symmetry or sense keeps
+/// nothing.
+///
+/// # Errors
+/// [`NothingStands`] in the last case; [`StateError`] where a state that decides it cannot be read.
+pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, NothingStands>, StateError> {
+    let differences = old.differences(new);
+    let shown = |difference: &Difference| {
+        format!("{} changed ({} → {})", difference.path, shown_value(&difference.a), shown_value(&difference.b))
+    };
+    if let Some(first) = differences.iter().find(|difference| difference.reach == Reach::Everything) {
+        let (from, to) = (shown_value(&first.a), shown_value(&first.b));
+        return Ok(Err(NothingStands { path: first.path.to_string(), from, to }));
+    }
+    let mut keep = log.entries().len();
+    let mut changes = Vec::new();
+    if old.load.rotation_deg != new.load.rotation_deg {
+        keep = keep.min(before_clipped_step(log, old, new)?);
+    }
+    let steps: Vec<&Difference> = differences.iter().filter(|difference| difference.reach == Reach::Steps).collect();
+    if !steps.is_empty() {
+        keep = keep.min(complete_steps(log, old)?);
+    }
+    let last_step = keep.checked_sub(1).map_or(0, |last| log.entries()[last].record.report.step);
+    for difference in &differences {
+        let what = shown(difference);
+        changes.push(match difference.reach {
+            Reach::Free => format!("{what}: every stage stands"),
+            _ if last_step == 0 => format!("{what}: no complete step stands"),
+            _ => format!("{what}: steps 1 to {last_step} stand, {} on is new", last_step + 1),
+        });
+    }
+    Ok(Ok(ResumePlan { keep, changes }))
+}
+
+/// A value of a scene as it stands in its file.
+pub fn shown_value(value: &Option<serde_json::Value>) -> String {
+    value.as_ref().map_or_else(|| "not set".to_string(), ToString::to_string)
+}
+
+/// Number of stages before the first solve that the old target cut short and the new one would not, or the other way round.
+fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, StateError> {
+    let nearer = old.load.rotation_deg.min(new.load.rotation_deg);
+    for (index, entry) in log.entries().iter().enumerate().skip(1) {
+        let report = &entry.record.report;
+        if report.stage == Stage::Solve && report.attempted_rotation_deg >= nearer {
+            let parent = log.state(index - 1)?;
+            if next_attempt(old, &parent) != next_attempt(new, &parent) && parent.rotation_deg < new.load.rotation_deg {
+                return Ok(index);
+            }
+        }
+    }
+    Ok(log.entries().len())
+}
+
+/// Number of stages up to the last one that ends a load step.
+fn complete_steps(log: &Log, scene: &Scene) -> Result<usize, StateError> {
+    for index in (0..log.entries().len()).rev() {
+        let state = log.state(index)?;
+        let ends_step =
+            state.control.rejection.is_none() && matches!(next_stage(scene, &state), None | Some(Stage::Solve));
+        if ends_step {
+            return Ok(index + 1);
+        }
+    }
+    Ok(0)
+}
