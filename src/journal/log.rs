@@ -76,6 +76,7 @@ pub struct Log {
     pub(super) manifests: Vec<Manifest>,
     pub(super) entries: Vec<Entry>,
     pub(super) meshes: HashMap<Hash, Range<usize>>,
+    pub(super) displacements: HashMap<Hash, Range<usize>>,
     pub(super) parts: Vec<Part>,
     pub(super) finished: bool,
     pub(super) closed: bool,
@@ -162,7 +163,8 @@ impl Log {
         };
         let mesh = self.mesh(index)?;
         let bytes = &self.bytes[entry.state.clone()];
-        decode_state(bytes, mesh, entry.mesh_hash, entry.record.commit.state_hash)
+        let displacement = |hash: Hash| self.displacements.get(&hash).map(|place| &self.bytes[place.clone()]);
+        decode_state(bytes, displacement, mesh, entry.mesh_hash, entry.record.commit.state_hash)
             .map_err(|source| StateError::Content { index, source })
     }
 

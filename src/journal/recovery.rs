@@ -158,7 +158,7 @@ impl Resume {
             log: name,
             sync,
             viewer: None,
-            meshes: log.meshes.keys().copied().collect(),
+            known: log.meshes.keys().chain(log.displacements.keys()).copied().collect(),
             last: log.last_commit().copied(),
             length,
             synced: Instant::now(),

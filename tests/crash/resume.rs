@@ -220,6 +220,27 @@ fn two_writers_do_not_meet() {
     assert_eq!(folder.names(), ["run.mcap"]);
 }
 
+/// Where locks do not keep a rival out, the first of two that resume one log loses it, with nothing of the other's.
+#[test]
+fn a_rival_resumes_while_the_first_has_written_nothing() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    let run = synthetic::run(3, 6);
+    write(&path, &run[..2], End::Dropped);
+    let resume = || JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap().writer;
+    let mut first = resume();
+    fs::remove_file(folder.file("run.mcap.lock")).unwrap();
+    let mut second = resume();
+    let error = first.commit(&run[2].0, &run[2].1).unwrap_err();
+    assert!(matches!(error, WriteError::Lock(LockError::Lost { .. })), "{error}");
+    drop(first);
+    run[2..].iter().for_each(|(state, record)| second.commit(state, record).unwrap());
+    second.finish().unwrap();
+    assert_prefix(&Log::read(&path).unwrap(), &run);
+    assert_faultless(&path);
+    assert_eq!(folder.names(), ["run.mcap"]);
+}
+
 /// A process that dies while it copies leaves a copy that the next one does not stumble over.
 #[test]
 fn an_abandoned_copy_is_no_obstacle() {
@@ -305,7 +326,7 @@ fn a_killed_process_leaves_a_log_to_go_on_with() {
 fn resuming_forty_megabytes_takes_milliseconds() {
     let folder = Folder::new();
     let path = folder.file("run.mcap");
-    let run = synthetic::run(120, 125);
+    let run = synthetic::run(120, 250);
     write(&path, &run, End::Dropped);
     let length = fs::metadata(&path).unwrap().len();
     assert!(length > 40 << 20, "{length}");
