@@ -90,7 +90,7 @@ pub struct Resume {
 pub struct Resumed {
     /// Takes the stages that follow.
     pub writer: JournalWriter,
-    /// The log as it was, for the state to go on from.
+    /// The log as it was, for the state to go on from. Holds the whole file in memory; drop it once that is taken.
     pub log: Log,
     /// Where the part that was dropped is kept, if it might still be worth something.
     pub dropped: Option<PathBuf>,

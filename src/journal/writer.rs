@@ -137,6 +137,7 @@ impl From<WriteError> for SinkError {
 pub struct JournalWriter {
     pub(super) encoder: Encoder,
     pub(super) backend: Box<dyn Backend>,
+    /// Below the backend, so that it is given back only when that is through with the files.
     pub(super) lock: Option<LogLock>,
     /// The log's name in messages.
     pub(super) log: String,
