@@ -80,7 +80,7 @@ pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
 pub use manifest::{Manifest, ManifestError};
 pub use reader::ReadError;
-pub use recovery::{RecoverOutcome, Resume, ResumeError, Resumed, recover};
+pub use recovery::{RecoverError, RecoverOutcome, Resume, ResumeError, Resumed, recover};
 pub use soundness::{Flaw, check_mesh, check_state};
 pub use verify::{Finding, Level, verify, verify_log};
 pub use writer::{JournalWriter, ViewerTopics, WriteError};
