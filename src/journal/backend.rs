@@ -71,6 +71,10 @@ impl FileBackend {
         if let Some(synced) = replacement.synced.take() {
             synced.join().unwrap_or_else(|_| Err(io::Error::other("the thread that synced the log died")))?;
         }
+        // Where locks do not work, a rival may have put a copy of its own under this name.
+        if !is_at(&self.file, &self.path) {
+            return Err(io::Error::other(format!("{} is another's now", self.path.display())));
+        }
         std::fs::rename(&self.path, &replacement.target)?;
         self.path = replacement.target.clone();
         self.replaces = None;
@@ -111,7 +115,9 @@ impl Drop for FileBackend {
             if let Some(synced) = replacement.synced.take() {
                 let _ = synced.join();
             }
-            let _ = std::fs::remove_file(&self.path);
+            if is_at(&self.file, &self.path) {
+                let _ = std::fs::remove_file(&self.path);
+            }
         }
     }
 }
@@ -126,6 +132,21 @@ pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
     }
     let _ = path;
     Ok(())
+}
+
+/// Whether the open file is still the one that the path names; where that cannot be told, it is taken to be.
+pub(super) fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let (Ok(open), Ok(named)) = (file.metadata(), std::fs::metadata(path)) else { return false };
+        (open.dev(), open.ino()) == (named.dev(), named.ino())
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = (file, path);
+        true
+    }
 }
 
 /// The path with a suffix behind the whole file name.

@@ -8,7 +8,8 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use super::damage::Damage;
 use super::format::{
-    CHUNK_BYTES_LIMIT, COMMIT_TOPIC, FINISHED_TOPIC, FORMAT_VERSION, MESH_TOPIC, REPORT_TOPIC, STATE_TOPIC,
+    CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, FORMAT_VERSION, MESH_TOPIC, REPORT_TOPIC,
+    STATE_TOPIC,
 };
 use super::frame::{self, Frame, PREFIX_LEN, op};
 use super::message::{CommitMessage, FinishedMessage, MessageHash, ReportMessage, unseal};
@@ -41,6 +42,8 @@ pub(super) struct CommitContent {
     pub state: Range<usize>,
     /// Bytes of the mesh in the log, where this chunk holds one.
     pub mesh: Option<Range<usize>>,
+    /// Bytes of the displacements in the log, where this chunk holds them; they have the hash that the commit names.
+    pub displacement: Option<Range<usize>>,
 }
 
 /// The records of a chunk, one after the other, once they were found to fill it exactly.
@@ -152,12 +155,17 @@ fn content(bytes: &[u8], messages: &[Message]) -> Result<Content, Damage> {
     let state = one(before, STATE_TOPIC, "exactly one")?.ok_or(missing(STATE_TOPIC))?;
     let report = one(before, REPORT_TOPIC, "exactly one")?.ok_or(missing(REPORT_TOPIC))?;
     let mesh = one(before, MESH_TOPIC, "at most one")?;
+    let displacement = one(before, DISPLACEMENT_TOPIC, "at most one")?;
+    let named = commit.messages.iter().find(|message| message.topic == DISPLACEMENT_TOPIC);
+    if named.is_some_and(|named| named.blake3 != commit.displacement_hash) {
+        return Err(Damage::OtherDisplacement);
+    }
     let report = ReportMessage::from_json(&bytes[report]).map_err(Damage::Report)?;
     let same_stage = (report.report.stage, report.report.step) == (commit.stage, commit.step);
     if !same_stage || report.state_hash != commit.state_hash || report.chain_hash != commit.chain_hash {
         return Err(Damage::OtherReport);
     }
-    Ok(Content::Commit(Box::new(CommitContent { commit, report, state, mesh })))
+    Ok(Content::Commit(Box::new(CommitContent { commit, report, state, mesh, displacement })))
 }
 
 fn known_format(found: u32) -> Result<(), Damage> {

@@ -1,7 +1,8 @@
 //! States and meshes as bytes: a version byte, then bincode (little endian, fixed-width integers, no maps).
 //!
-//! Each version has structs of its own, so that a change of [`State`] cannot change how old logs are read. The mesh
-//! lies apart from the states and is named by its content hash. Nothing decoded leaves this file before its content
+//! Each version has structs of its own, so that a change of [`State`] cannot change how old logs are read. Mesh and
+//! displacements lie apart from the state and are named in it: the mesh by its content hash, the displacements by the
+//! hash of their bytes. Nothing decoded leaves this file before its content
 //! hash is what the commit says and [`soundness`](super::soundness) has passed it.
 
 use std::borrow::Cow;
@@ -51,6 +52,12 @@ pub enum CodecError {
         /// Mesh that the state names.
         found: Hash,
     },
+    /// The state names displacements that the log does not hold.
+    #[error("the state has displacements {hash}, which the log does not hold")]
+    NoDisplacement {
+        /// Hash of their bytes.
+        hash: Hash,
+    },
     /// Decoded, but not the content that was committed.
     #[error("the {what} hashes to {found}, and its commit says {expected}")]
     ContentHash {
@@ -92,9 +99,12 @@ impl<'a> MeshV1<'a> {
 }
 
 #[derive(Serialize, Deserialize)]
+struct DisplacementV1<'a>(Cow<'a, [[f64; 3]]>);
+
+#[derive(Serialize, Deserialize)]
 struct StateV1<'a> {
     mesh: [u8; 32],
-    displacement: Cow<'a, [[f64; 3]]>,
+    displacement: [u8; 32],
     marked: [Cow<'a, [f64]>; 2],
     refined: Option<MeshV1<'a>>,
     step: u64,
@@ -172,15 +182,28 @@ pub fn decode_mesh(bytes: &[u8], expected: Hash) -> Result<Mesh, CodecError> {
     Ok(mesh)
 }
 
-/// A state as bytes, without its mesh, which it names by hash.
+/// A state as bytes, in two messages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EncodedState {
+    /// The state, which names its mesh and its displacements by hash.
+    pub state: Vec<u8>,
+    /// The displacements.
+    pub displacement: Vec<u8>,
+    /// Hash of the bytes of the displacements.
+    pub displacement_hash: Hash,
+}
+
+/// A state as bytes, without its mesh.
 ///
 /// # Errors
 /// Where the state is unsound or larger than a log can hold.
-pub fn encode_state(state: &State) -> Result<Vec<u8>, CodecError> {
+pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
     check_state(state)?;
-    encode(&StateV1 {
+    let displacement = encode(&DisplacementV1(Cow::from(&state.displacement)))?;
+    let displacement_hash = blake3::hash(&displacement);
+    let state = encode(&StateV1 {
         mesh: *state.mesh.hash().as_bytes(),
-        displacement: Cow::from(&state.displacement),
+        displacement: *displacement_hash.as_bytes(),
         marked: [0, 1].map(|way| Cow::from(&state.marked[way])),
         refined: state.refined.as_deref().map(MeshV1::of),
         step: state.step,
@@ -201,23 +224,32 @@ pub fn encode_state(state: &State) -> Result<Vec<u8>, CodecError> {
             Rejection::NoEquilibrium => RejectionV1::NoEquilibrium,
             Rejection::Jump => RejectionV1::Jump,
         }),
-    })
+    })?;
+    Ok(EncodedState { state, displacement, displacement_hash })
 }
 
 /// The state that the bytes hold, if it stands on `mesh` (whose content hash is `mesh_hash`), its content hash is
-/// `expected` and it is sound.
+/// `expected` and it is sound. `displacement` finds the bytes of displacements by their hash.
 ///
 /// # Errors
 /// Where the bytes are anything else.
-pub fn decode_state(bytes: &[u8], mesh: Arc<Mesh>, mesh_hash: Hash, expected: Hash) -> Result<State, CodecError> {
+pub fn decode_state<'a>(
+    bytes: &[u8],
+    displacement: impl FnOnce(Hash) -> Option<&'a [u8]>,
+    mesh: Arc<Mesh>,
+    mesh_hash: Hash,
+    expected: Hash,
+) -> Result<State, CodecError> {
     let stored: StateV1 = decode(bytes)?;
     let found = Hash::from_bytes(stored.mesh);
     if found != mesh_hash {
         return Err(CodecError::OtherMesh { expected: mesh_hash, found });
     }
+    let hash = Hash::from_bytes(stored.displacement);
+    let DisplacementV1(displacement) = decode(displacement(hash).ok_or(CodecError::NoDisplacement { hash })?)?;
     let state = State {
         mesh,
-        displacement: stored.displacement.into_owned(),
+        displacement: displacement.into_owned(),
         marked: stored.marked.map(Cow::into_owned),
         refined: stored.refined.map(|mesh| Arc::new(mesh.into_mesh())),
         step: stored.step,

@@ -145,6 +145,15 @@ pub enum Damage {
         /// Content hash of the mesh.
         mesh: Hash,
     },
+    /// Displacements that are not those of the state.
+    #[error("the displacements in the chunk are not those that the commit names for its state")]
+    OtherDisplacement,
+    /// Displacements that the log does not hold up to here.
+    #[error("the state has displacements {displacement}, which the log does not hold up to here")]
+    UnknownDisplacement {
+        /// Hash of their bytes.
+        displacement: Hash,
+    },
     /// A commit out of its order.
     #[error("commit {found} stands where commit {expected} belongs")]
     OutOfOrder {

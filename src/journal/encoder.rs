@@ -10,10 +10,10 @@ use mcap::write::NoSeek;
 use mcap::{McapError, WriteOptions, Writer};
 
 use super::chunk;
-use super::codec::CodecError;
+use super::codec::{CodecError, EncodedState};
 use super::format::{
-    BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, OWN_TOPICS, PROFILE, REPORT_TOPIC,
-    STATE_TOPIC, log_time_ns, sequence,
+    BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, OWN_TOPICS,
+    PROFILE, REPORT_TOPIC, STATE_TOPIC, log_time_ns, sequence,
 };
 use super::frame::{self, Frame};
 use super::message::{CommitMessage, FinishedMessage, MessageHash, ReportMessage, schema_of, seal};
@@ -106,7 +106,9 @@ pub(super) struct Parts<'a> {
     pub mesh_hash: Hash,
     /// The mesh, where the log does not have it yet.
     pub mesh: Option<Vec<u8>>,
-    pub state: Vec<u8>,
+    pub state: EncodedState,
+    /// Whether the log does not have the state's displacements yet.
+    pub displacement_is_new: bool,
     pub viewer: &'a [ViewerMessage],
 }
 
@@ -142,7 +144,10 @@ impl Encoder {
         let report = ReportMessage::new(parts.record).to_json()?;
         let mut messages: Vec<(&ViewerTopic, &[u8])> = Vec::new();
         messages.extend(parts.mesh.as_deref().map(|mesh| (&OWN.mesh, mesh)));
-        messages.push((&OWN.state, &parts.state));
+        if parts.displacement_is_new {
+            messages.push((&OWN.displacement, &parts.state.displacement));
+        }
+        messages.push((&OWN.state, &parts.state.state));
         messages.push((&OWN.report, &report));
         for message in parts.viewer {
             if OWN_TOPICS.contains(&message.topic.topic.as_str()) {
@@ -151,7 +156,8 @@ impl Encoder {
             messages.push((&message.topic, &message.data));
         }
         let named = messages.iter().map(|(topic, data)| MessageHash::of(&topic.topic, data)).collect();
-        let commit = seal(&CommitMessage::new(&parts.record.commit, parts.mesh_hash, named))?;
+        let (mesh, displacement) = (parts.mesh_hash, parts.state.displacement_hash);
+        let commit = seal(&CommitMessage::new(&parts.record.commit, mesh, displacement, named))?;
         messages.push((&OWN.commit, &commit));
 
         const RECORD_OVERHEAD: usize = 256;
@@ -217,6 +223,7 @@ impl Encoder {
 /// The log's own topics; their schemas are made once.
 struct OwnTopics {
     mesh: ViewerTopic,
+    displacement: ViewerTopic,
     state: ViewerTopic,
     report: ViewerTopic,
     commit: ViewerTopic,
@@ -225,6 +232,7 @@ struct OwnTopics {
 
 static OWN: LazyLock<OwnTopics> = LazyLock::new(|| OwnTopics {
     mesh: binary_topic(MESH_TOPIC),
+    displacement: binary_topic(DISPLACEMENT_TOPIC),
     state: binary_topic(STATE_TOPIC),
     report: json_topic::<ReportMessage>(REPORT_TOPIC, "foldline.Report"),
     commit: json_topic::<CommitMessage>(COMMIT_TOPIC, "foldline.Commit"),

@@ -3,10 +3,14 @@
 //! | topic | encoding | schema | one message |
 //! |---|---|---|---|
 //! | `/foldline/mesh` | `foldline-bincode-v1` | none | per mesh, the first time that a state uses it |
+//! | `/foldline/displacement` | `foldline-bincode-v1` | none | per field of displacements, the first time that a state has it |
 //! | `/foldline/state` | `foldline-bincode-v1` | none | per stage |
 //! | `/foldline/report` | `json` | `foldline.Report` | per stage |
 //! | `/foldline/commit` | `json` | `foldline.Commit` | per stage, the last of its chunk |
 //! | `/foldline/finished` | `json` | `foldline.Finished` | at the end of a run that reached its end |
+//!
+//! A state names its mesh and its displacements by hash, so a stage that changes neither (indicators that mark nothing, a
+//! solve that is turned down) writes some hundred bytes and its report.
 //!
 //! Before the first chunk, and again wherever a run was taken up again, stands a metadata record `foldline.manifest`.
 //!
@@ -30,6 +34,8 @@ pub const BINARY_ENCODING: &str = "foldline-bincode-v1";
 
 /// Topic of the meshes.
 pub const MESH_TOPIC: &str = "/foldline/mesh";
+/// Topic of the displacements.
+pub const DISPLACEMENT_TOPIC: &str = "/foldline/displacement";
 /// Topic of the states.
 pub const STATE_TOPIC: &str = "/foldline/state";
 /// Topic of the reports.
@@ -40,7 +46,8 @@ pub const COMMIT_TOPIC: &str = "/foldline/commit";
 pub const FINISHED_TOPIC: &str = "/foldline/finished";
 
 /// Topics that no viewer may write to.
-pub const OWN_TOPICS: [&str; 5] = [MESH_TOPIC, STATE_TOPIC, REPORT_TOPIC, COMMIT_TOPIC, FINISHED_TOPIC];
+pub const OWN_TOPICS: [&str; 6] =
+    [MESH_TOPIC, DISPLACEMENT_TOPIC, STATE_TOPIC, REPORT_TOPIC, COMMIT_TOPIC, FINISHED_TOPIC];
 
 /// Largest chunk that is written or read, bytes. Bounds what a damaged length can make a reader allocate; a state
 /// with its mesh takes 56 bytes for each control point, so this is room for half a million of them.

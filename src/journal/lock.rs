@@ -11,7 +11,7 @@ use std::hash::{BuildHasher, RandomState};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::backend::beside;
+use super::backend::{beside, is_at};
 
 /// Why a log cannot be written, or no longer.
 #[derive(Debug, thiserror::Error)]
@@ -77,7 +77,7 @@ impl LogLock {
                 Err(TryLockError::Error(source)) if source.kind() == io::ErrorKind::Unsupported => {}
                 Err(TryLockError::Error(source)) => return Err(failed(&lock_path, source)),
             }
-            if still_there(&lock, &lock_path) {
+            if is_at(&lock, &lock_path) {
                 break lock;
             }
         };
@@ -106,28 +106,13 @@ impl LogLock {
 
 impl Drop for LogLock {
     fn drop(&mut self) {
-        if self.holds() && still_there(&self.lock, &self.lock_path) {
+        if self.holds() && is_at(&self.lock, &self.lock_path) {
             let _ = fs::remove_file(&self.lease);
             // Only where the next one can tell that the file it locked has gone.
             if cfg!(unix) {
                 let _ = fs::remove_file(&self.lock_path);
             }
         }
-    }
-}
-
-/// Whether the open file is still the one that the path names.
-fn still_there(file: &File, path: &Path) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        let (Ok(open), Ok(named)) = (file.metadata(), fs::metadata(path)) else { return false };
-        (open.dev(), open.ino()) == (named.dev(), named.ino())
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = (file, path);
-        true
     }
 }
 

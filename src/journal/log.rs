@@ -17,6 +17,8 @@ pub struct Entry {
     pub record: Record,
     /// Content hash of the mesh that its state stands on.
     pub mesh_hash: Hash,
+    /// Content hash of the displacements that its state holds.
+    pub(super) displacement_hash: Hash,
     /// Where its chunk lies in the log, bytes.
     pub bytes: Range<u64>,
     pub(super) state: Range<usize>,
@@ -76,6 +78,7 @@ pub struct Log {
     pub(super) manifests: Vec<Manifest>,
     pub(super) entries: Vec<Entry>,
     pub(super) meshes: HashMap<Hash, Range<usize>>,
+    pub(super) displacements: HashMap<Hash, Range<usize>>,
     pub(super) parts: Vec<Part>,
     pub(super) finished: bool,
     pub(super) closed: bool,
@@ -162,7 +165,8 @@ impl Log {
         };
         let mesh = self.mesh(index)?;
         let bytes = &self.bytes[entry.state.clone()];
-        decode_state(bytes, mesh, entry.mesh_hash, entry.record.commit.state_hash)
+        let displacement = |hash: Hash| self.displacements.get(&hash).map(|place| &self.bytes[place.clone()]);
+        decode_state(bytes, displacement, mesh, entry.mesh_hash, entry.record.commit.state_hash)
             .map_err(|source| StateError::Content { index, source })
     }
 

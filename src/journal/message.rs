@@ -91,6 +91,8 @@ pub struct CommitMessage {
     pub chain_hash: HexHash,
     /// Hash of the mesh that the state stands on, which this chunk or an earlier one holds.
     pub mesh_hash: HexHash,
+    /// Hash of the bytes of the state's displacements, which this chunk or an earlier one holds.
+    pub displacement_hash: HexHash,
     /// The other messages of this chunk, in their order.
     pub messages: Vec<MessageHash>,
     /// Hash of all bytes before this entry.
@@ -99,7 +101,7 @@ pub struct CommitMessage {
 
 impl CommitMessage {
     /// The message for a commit whose chunk holds `messages`.
-    pub fn new(commit: &Commit, mesh_hash: Hash, messages: Vec<MessageHash>) -> Self {
+    pub fn new(commit: &Commit, mesh_hash: Hash, displacement_hash: Hash, messages: Vec<MessageHash>) -> Self {
         Self {
             format: FORMAT_VERSION,
             ordinal: commit.ordinal,
@@ -110,6 +112,7 @@ impl CommitMessage {
             scene_hash: HexHash(commit.scene_hash),
             chain_hash: HexHash(commit.chain_hash),
             mesh_hash: HexHash(mesh_hash),
+            displacement_hash: HexHash(displacement_hash),
             messages,
             check: UNSEALED,
         }

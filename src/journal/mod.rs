@@ -2,8 +2,8 @@
 //!
 //! A log is an ordinary MCAP file, so that viewers can open it, and three things more:
 //!
-//! 1. **One chunk is one commit.** A chunk holds the state that a stage made (and its mesh, where the log does not have
-//!    it yet), the stage's report, and at its end a commit message. It reaches the file in one write. A process that
+//! 1. **One chunk is one commit.** A chunk holds the state that a stage made (its mesh and its displacements only where
+//!    the log does not have them yet), the stage's report, and at its end a commit message. It reaches the file in one write. A process that
 //!    dies loses the stage in flight and nothing else.
 //! 2. **Every commit vouches for its chunk.** The commit message is sealed with the hash of its own bytes and names the
 //!    hash of every other message in the chunk; its chain hash follows from the commit before it. A log that was cut or
@@ -74,14 +74,14 @@ mod verify;
 mod writer;
 
 pub use backend::{Backend, FileBackend};
-pub use codec::{CODEC_VERSION, CodecError, decode_mesh, decode_state, encode_mesh, encode_state};
+pub use codec::{CODEC_VERSION, CodecError, EncodedState, decode_mesh, decode_state, encode_mesh, encode_state};
 pub use damage::{Completeness, Damage, LaterCommit, Problem};
 pub use encoder::{EncodeError, ViewerMessage, ViewerTopic};
 pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
 pub use manifest::{Manifest, ManifestError};
 pub use reader::ReadError;
-pub use recovery::{RecoverOutcome, Resume, ResumeError, Resumed, recover};
+pub use recovery::{RecoverError, RecoverOutcome, Resume, ResumeError, Resumed, recover};
 pub use soundness::{Flaw, check_mesh, check_state};
 pub use trace::{ITERATE_TOPIC, TraceRow, write_trace};
 pub use verify::{Finding, Level, verify, verify_log};

@@ -97,6 +97,7 @@ impl Log {
             manifests: scan.manifests,
             entries: scan.entries,
             meshes: scan.meshes,
+            displacements: scan.displacements,
             parts: scan.parts,
             finished: scan.finished.is_some(),
             closed: scan.closed,
@@ -118,6 +119,7 @@ struct Scan {
     manifests: Vec<Manifest>,
     entries: Vec<Entry>,
     meshes: HashMap<Hash, Range<usize>>,
+    displacements: HashMap<Hash, Range<usize>>,
     parts: Vec<Part>,
     finished: Option<FinishedMessage>,
     closed: bool,
@@ -289,15 +291,18 @@ impl Scan {
         if commit.chain_hash != expected {
             return Err(Damage::BrokenChain { ordinal, expected, found: commit.chain_hash });
         }
-        let mesh_hash = content.commit.mesh_hash.0;
-        match content.mesh {
-            Some(place) => drop(self.meshes.insert(mesh_hash, place)),
-            None if self.meshes.contains_key(&mesh_hash) => {}
-            None => return Err(Damage::UnknownMesh { mesh: mesh_hash }),
+        let (mesh_hash, displacement) = (content.commit.mesh_hash.0, content.commit.displacement_hash.0);
+        if content.mesh.is_none() && !self.meshes.contains_key(&mesh_hash) {
+            return Err(Damage::UnknownMesh { mesh: mesh_hash });
         }
+        if content.displacement.is_none() && !self.displacements.contains_key(&displacement) {
+            return Err(Damage::UnknownDisplacement { displacement });
+        }
+        self.meshes.extend(content.mesh.map(|place| (mesh_hash, place)));
+        self.displacements.extend(content.displacement.map(|place| (displacement, place)));
         let record = Record { wall_s: content.report.wall_s, report: content.report.report, commit };
         let bytes = frame.at as u64..frame.body.end as u64;
-        self.entries.push(Entry { record, mesh_hash, bytes, state: content.state });
+        self.entries.push(Entry { record, mesh_hash, displacement_hash: displacement, bytes, state: content.state });
         Ok(())
     }
 }

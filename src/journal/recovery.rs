@@ -24,7 +24,7 @@ use super::lock::{LockError, LogLock};
 use super::log::{Kept, Log};
 use super::manifest::Manifest;
 use super::reader::ReadError;
-use super::writer::{JournalWriter, WriteError};
+use super::writer::JournalWriter;
 use crate::scene::SyncPolicy;
 
 /// Bytes that are collected before they go to the new file.
@@ -90,7 +90,7 @@ pub struct Resume {
 pub struct Resumed {
     /// Takes the stages that follow.
     pub writer: JournalWriter,
-    /// The log as it was, for the state to go on from.
+    /// The log as it was, for the state to go on from. Holds the whole file in memory; drop it once that is taken.
     pub log: Log,
     /// Where the part that was dropped is kept, if it might still be worth something.
     pub dropped: Option<PathBuf>,
@@ -167,7 +167,7 @@ impl Resume {
             log: name,
             sync,
             viewer: None,
-            meshes: log.entries()[..keep].iter().map(|entry| entry.mesh_hash).collect(),
+            known: log.entries()[..keep].iter().flat_map(|entry| [entry.mesh_hash, entry.displacement_hash]).collect(),
             last: keep.checked_sub(1).map(|last| log.entries()[last].record.commit),
             length,
             synced: Instant::now(),
@@ -318,53 +318,82 @@ pub enum RecoverOutcome {
     },
 }
 
+/// Why a log cannot be copied.
+#[derive(Debug, thiserror::Error)]
+pub enum RecoverError {
+    /// The log cannot be read at all.
+    #[error(transparent)]
+    Read(ReadError),
+    /// There is a file where the copy should go.
+    #[error("{new} exists and is not overwritten: choose another name for the copy")]
+    Exists {
+        /// The copy.
+        new: String,
+    },
+    /// Another process writes there.
+    #[error(transparent)]
+    Lock(#[from] LockError),
+    /// The copy cannot be written.
+    #[error("cannot write {new}; the log itself is as it was")]
+    Write {
+        /// The copy.
+        new: String,
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
+    /// MCAP refused a record of the log.
+    #[error("cannot write {new} anew from the log, which is as it was")]
+    Encode {
+        /// The copy.
+        new: String,
+        /// Why not.
+        #[source]
+        source: EncodeError,
+    },
+}
+
 /// Copies what is good of a log to a new file, with the summary that viewers look for.
 ///
 /// # Errors
 /// Where the log cannot be read at all, or the new file exists or cannot be written. That nothing is good of the log is
 /// an outcome.
-pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, WriteError> {
-    let target = new.display().to_string();
-    let io_error = |source: io::Error| match source.kind() {
-        io::ErrorKind::AlreadyExists => WriteError::Exists { log: target.clone() },
-        _ => WriteError::Io { action: "write", log: target.clone(), commits: 0, source },
-    };
+pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> {
     let log = match Log::read(path) {
         Ok(log) => log,
-        Err(ReadError::Io { path, source }) => {
-            return Err(WriteError::Io { action: "read", log: path, commits: 0, source });
-        }
+        Err(error @ ReadError::Io { .. }) => return Err(RecoverError::Read(error)),
         Err(error) => return Ok(RecoverOutcome::Hopeless { why: error.to_string() }),
     };
     let commits = log.entries().len() as u64;
-    let why = log.loss().map(ToString::to_string);
-    if let (0, Some(why)) = (commits, why.clone()) {
-        return Ok(RecoverOutcome::Hopeless { why });
+    let finished = log.completeness() == Completeness::Finished;
+    let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
+    if let (0, Some(why)) = (commits, &loss) {
+        return Ok(RecoverOutcome::Hopeless { why: why.clone() });
     }
+    let name = new.display().to_string();
     let _lock = LogLock::take(new)?;
-    let mut backend = FileBackend::create_new(new).map_err(io_error)?;
-    let encode = |source| WriteError::Encode { ordinal: commits, log: target.clone(), source };
-    let written =
-        Encoder::new(&log.library).map_err(|source| CopyError::Encode(source.into())).and_then(|mut encoder| {
-            let keep = if log.completeness() == Completeness::Finished { None } else { Some(log.entries().len()) };
-            copy(&log, keep, &mut encoder, &mut backend)?;
-            encoder.close().map_err(EncodeError::Mcap)?;
-            backend.append(&encoder.take())?;
-            Ok(backend.sync()?)
-        });
-    if let Err(error) = written {
+    let mut backend = FileBackend::create_new(new).map_err(|source| match source.kind() {
+        io::ErrorKind::AlreadyExists => RecoverError::Exists { new: name.clone() },
+        _ => RecoverError::Write { new: name.clone(), source },
+    })?;
+    let write = |backend: &mut FileBackend| {
+        let mut encoder = Encoder::new(&log.library).map_err(EncodeError::Mcap)?;
+        copy(&log, (!finished).then_some(log.entries().len()), &mut encoder, backend)?;
+        encoder.close().map_err(EncodeError::Mcap)?;
+        backend.append(&encoder.take())?;
+        Ok(backend.sync()?)
+    };
+    if let Err(error) = write(&mut backend) {
         let _ = fs::remove_file(new);
         return Err(match error {
-            CopyError::Io(source) => io_error(source),
-            CopyError::Encode(source) => encode(source),
+            CopyError::Io(source) => RecoverError::Write { new: name, source },
+            CopyError::Encode(source) => RecoverError::Encode { new: name, source },
         });
     }
     let later_commits = log.later_commits().len() as u64;
     let dropped = log.file_len() - log.good_end();
-    Ok(match why {
-        Some(why) if log.completeness() != Completeness::Finished => {
-            RecoverOutcome::Lossy { commits, dropped, later_commits, why }
-        }
-        _ => RecoverOutcome::Lossless { commits },
+    Ok(match loss {
+        Some(why) => RecoverOutcome::Lossy { commits, dropped, later_commits, why },
+        None => RecoverOutcome::Lossless { commits },
     })
 }

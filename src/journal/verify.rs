@@ -35,13 +35,7 @@ pub fn verify(path: &Path) -> Vec<Finding> {
     match Log::read(path) {
         Ok(log) => verify_log(&log),
         Err(error) => {
-            let mut text = error.to_string();
-            let mut cause = std::error::Error::source(&error);
-            while let Some(error) = cause {
-                text = format!("{text}: {error}");
-                cause = error.source();
-            }
-            vec![finding(Level::Error, "log", text)]
+            vec![finding(Level::Error, "log", with_causes(&error))]
         }
     }
 }
@@ -56,9 +50,9 @@ pub fn verify_log(log: &Log) -> Vec<Finding> {
         let level = if costly { Level::Error } else { Level::Warning };
         findings.push(finding(level, format!("byte {}", problem.at), problem.damage.to_string()));
     }
-    findings.extend(log.notes().iter().map(|note| {
-        finding(Level::Warning, format!("byte {}", note.at), note.text.clone()) //
-    }));
+    for note in log.notes() {
+        findings.push(finding(Level::Warning, format!("byte {}", note.at), note.text.clone()));
+    }
     for commit in log.later_commits() {
         let place = format!("commit {} (step {}, {})", commit.ordinal, commit.step, commit.stage);
         let text = format!("whole at byte {}, but what it follows on is lost: it is not used", commit.at);
@@ -67,8 +61,7 @@ pub fn verify_log(log: &Log) -> Vec<Finding> {
     findings.extend(manifests(log));
     for index in 0..log.entries().len() {
         if let Err(error) = log.state(index) {
-            let cause = std::error::Error::source(&error).map(ToString::to_string).unwrap_or_default();
-            findings.push(finding(Level::Error, place(&log.entries()[index]), format!("{error}: {cause}")));
+            findings.push(finding(Level::Error, place(&log.entries()[index]), with_causes(&error)));
         }
     }
     findings.extend(bytes_between(log));
@@ -77,6 +70,14 @@ pub fn verify_log(log: &Log) -> Vec<Finding> {
 
 fn finding(level: Level, place: impl Into<String>, text: impl Into<String>) -> Finding {
     Finding { level, place: place.into(), text: text.into() }
+}
+
+/// An error and what is below it, in one line.
+fn with_causes(error: &dyn std::error::Error) -> String {
+    match error.source() {
+        Some(cause) => format!("{error}: {}", with_causes(cause)),
+        None => error.to_string(),
+    }
 }
 
 fn place(entry: &Entry) -> String {

@@ -137,13 +137,14 @@ impl From<WriteError> for SinkError {
 pub struct JournalWriter {
     pub(super) encoder: Encoder,
     pub(super) backend: Box<dyn Backend>,
+    /// Below the backend, so that it is given back only when that is through with the files.
     pub(super) lock: Option<LogLock>,
     /// The log's name in messages.
     pub(super) log: String,
     pub(super) sync: SyncPolicy,
     pub(super) viewer: Option<Box<dyn ViewerTopics>>,
-    /// Content hashes of the meshes that the log holds.
-    pub(super) meshes: HashSet<Hash>,
+    /// Hashes of the meshes and displacements that the log holds.
+    pub(super) known: HashSet<Hash>,
     pub(super) last: Option<Commit>,
     /// Bytes of the log that are good.
     pub(super) length: u64,
@@ -199,7 +200,7 @@ impl JournalWriter {
             log: log.to_owned(),
             sync,
             viewer: None,
-            meshes: HashSet::new(),
+            known: HashSet::new(),
             last: None,
             length: 0,
             synced: Instant::now(),
@@ -287,16 +288,18 @@ impl JournalWriter {
             return Err(WriteError::StateHash { ordinal, expected: commit.state_hash, found });
         }
         let mesh_hash = state.mesh.hash();
-        let is_new = !self.meshes.contains(&mesh_hash);
         let viewer = self.viewer.as_mut().map(|topics| topics.messages(state, record)).unwrap_or_default();
         let encoded = (|| {
-            let mesh = if is_new { Some(encode_mesh(&state.mesh)?) } else { None };
-            let parts = Parts { record, mesh_hash, mesh, state: encode_state(state)?, viewer: &viewer };
-            self.encoder.commit(&parts)
+            let mesh = if self.known.contains(&mesh_hash) { None } else { Some(encode_mesh(&state.mesh)?) };
+            let state = encode_state(state)?;
+            let displacement_hash = state.displacement_hash;
+            let displacement_is_new = !self.known.contains(&displacement_hash);
+            self.encoder.commit(&Parts { record, mesh_hash, mesh, state, displacement_is_new, viewer: &viewer })?;
+            Ok(displacement_hash)
         })();
-        encoded.map_err(|source| self.encode_error(ordinal, source))?;
+        let displacement_hash = encoded.map_err(|source| self.encode_error(ordinal, source))?;
         self.append()?;
-        self.meshes.insert(mesh_hash);
+        self.known.extend([mesh_hash, displacement_hash]);
         self.last = Some(*commit);
         let due = match self.sync {
             SyncPolicy::EachStage => true,

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use foldline::journal::{
-    Completeness, JournalWriter, Level, LockError, Log, RecoverOutcome, ResumeError, WriteError, recover, verify,
+    Completeness, JournalWriter, Level, LockError, Log, RecoverError, RecoverOutcome, ResumeError, WriteError, recover,
+    verify,
 };
 use foldline::pipeline::Record;
 use foldline::scene::SyncPolicy;
@@ -138,7 +139,7 @@ fn what_damage_costs_is_kept_beside_the_log() {
     assert!(matches!(outcome, RecoverOutcome::Lossy { commits: 4, later_commits: 4, .. }), "{outcome:?}");
     assert_faultless(&copy);
     assert_prefix(&Log::read(&copy).unwrap(), &run);
-    assert!(matches!(recover(&path, &copy), Err(WriteError::Exists { .. })));
+    assert!(matches!(recover(&path, &copy), Err(RecoverError::Exists { .. })));
 
     let resumed = JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap();
     let dropped = fs::read(resumed.dropped.as_ref().unwrap()).unwrap();
@@ -216,6 +217,27 @@ fn two_writers_do_not_meet() {
 
     // The rival is gone too; neither left anything that keeps the next one out.
     resume_and_finish(&path, run.len());
+    assert_faultless(&path);
+    assert_eq!(folder.names(), ["run.mcap"]);
+}
+
+/// Where locks do not keep a rival out, the first of two that resume one log loses it, with nothing of the other's.
+#[test]
+fn a_rival_resumes_while_the_first_has_written_nothing() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    let run = synthetic::run(3, 6);
+    write(&path, &run[..2], End::Dropped);
+    let resume = || JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap().writer;
+    let mut first = resume();
+    fs::remove_file(folder.file("run.mcap.lock")).unwrap();
+    let mut second = resume();
+    let error = first.commit(&run[2].0, &run[2].1).unwrap_err();
+    assert!(matches!(error, WriteError::Lock(LockError::Lost { .. })), "{error}");
+    drop(first);
+    run[2..].iter().for_each(|(state, record)| second.commit(state, record).unwrap());
+    second.finish().unwrap();
+    assert_prefix(&Log::read(&path).unwrap(), &run);
     assert_faultless(&path);
     assert_eq!(folder.names(), ["run.mcap"]);
 }
@@ -305,7 +327,7 @@ fn a_killed_process_leaves_a_log_to_go_on_with() {
 fn resuming_forty_megabytes_takes_milliseconds() {
     let folder = Folder::new();
     let path = folder.file("run.mcap");
-    let run = synthetic::run(120, 125);
+    let run = synthetic::run(120, 250);
     write(&path, &run, End::Dropped);
     let length = fs::metadata(&path).unwrap().len();
     assert!(length > 40 << 20, "{length}");

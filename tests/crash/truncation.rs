@@ -8,7 +8,7 @@ use crate::synthetic;
 /// Every prefix of a log is read to the last commit that it wholly holds, or refused where not even a header is left.
 #[test]
 fn every_cut_keeps_the_commits_before_it() {
-    let run = synthetic::run(3, 12);
+    let run = synthetic::run(2, 9);
     let bytes = finished_log(&run);
     let whole = Log::from_bytes(bytes.clone()).unwrap();
     assert_eq!(whole.completeness(), Completeness::Finished);

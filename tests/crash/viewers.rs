@@ -63,6 +63,22 @@ fn pictures_keep_off_the_logs_own_topics() {
     insta::assert_snapshot!(std::error::Error::source(&error).unwrap(), @"viewers' messages cannot go to /foldline/state, which is the log's own");
 }
 
+/// A stage that changes neither mesh nor displacements costs its report and a few hashes, however large the shell.
+#[test]
+fn what_is_unchanged_is_not_written_again() {
+    let run = synthetic::run(40, 12);
+    let log = Log::from_bytes(crate::support::finished_log(&run)).unwrap();
+    let idle = |index: &usize| {
+        let (before, after) = (&run[index - 1].0, &run[*index].0);
+        before.mesh == after.mesh && before.displacement == after.displacement
+    };
+    let (idle, busy): (Vec<usize>, Vec<usize>) = (1..run.len()).partition(idle);
+    assert!(idle.len() >= 4 && busy.len() >= 4);
+    let length = |index: &usize| log.entries()[*index].bytes.clone().count();
+    assert!(idle.iter().map(length).max().unwrap() < 3000);
+    assert!(busy.iter().map(length).min().unwrap() > 40 * 40 * 24);
+}
+
 /// Viewers want plain types, no references, and one schema that names every entry there is.
 #[test]
 fn the_schema_of_reports_is_plain_and_whole() {

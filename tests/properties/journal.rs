@@ -90,7 +90,8 @@ proptest! {
         let mesh = decode_mesh(&encode_mesh(&state.mesh).unwrap(), mesh_hash).unwrap();
         prop_assert_eq!(mesh.hash(), mesh_hash);
         let bytes = encode_state(&state).unwrap();
-        let back = decode_state(&bytes, Arc::new(mesh), mesh_hash, hash).unwrap();
+        let find = |_: Hash| Some(&bytes.displacement[..]);
+        let back = decode_state(&bytes.state, find, Arc::new(mesh), mesh_hash, hash).unwrap();
         prop_assert_eq!(back.hash(), hash);
         prop_assert_eq!(encode_state(&back).unwrap(), bytes);
     }
@@ -98,8 +99,12 @@ proptest! {
     #[test]
     fn changed_bytes_never_decode(state in state(), place in any::<prop::sample::Index>(), flip in 1..=255_u8) {
         let (mesh_hash, hash) = (state.mesh.hash(), state.hash());
-        let bytes = flipped(encode_state(&state).unwrap(), place, flip);
-        prop_assert!(decode_state(&bytes, state.mesh.clone(), mesh_hash, hash).is_err());
+        let good = encode_state(&state).unwrap();
+        let bytes = flipped(good.state.clone(), place, flip);
+        let find = |asked: Hash| (asked == good.displacement_hash).then_some(&good.displacement[..]);
+        prop_assert!(decode_state(&bytes, find, state.mesh.clone(), mesh_hash, hash).is_err());
+        let bytes = flipped(good.displacement.clone(), place, flip);
+        prop_assert!(decode_state(&good.state, |_| Some(&bytes[..]), state.mesh.clone(), mesh_hash, hash).is_err());
         let bytes = flipped(encode_mesh(&state.mesh).unwrap(), place, flip);
         prop_assert!(decode_mesh(&bytes, mesh_hash).is_err());
     }
@@ -112,7 +117,7 @@ proptest! {
         let hash = Hash::from_bytes([0; 32]);
         prop_assert!(decode_mesh(&bytes, hash).is_err());
         let mesh = synthetic::start(1).mesh;
-        prop_assert!(decode_state(&bytes, mesh, hash, hash).is_err());
+        prop_assert!(decode_state(&bytes, |_| Some(&bytes[..]), mesh, hash, hash).is_err());
     }
 
     #[test]
@@ -200,8 +205,13 @@ fn flipped(mut bytes: Vec<u8>, place: prop::sample::Index, flip: u8) -> Vec<u8> 
 fn nonsense() -> impl Strategy<Value = Cow<'static, [u8]>> {
     let (_, record) = synthetic::run(2, 1).remove(0);
     let report = message::ReportMessage::new(&record).to_json().unwrap();
-    let commit =
-        message::seal(&message::CommitMessage::new(&record.commit, record.commit.state_hash, Vec::new())).unwrap();
+    let commit = message::seal(&message::CommitMessage::new(
+        &record.commit,
+        record.commit.state_hash,
+        record.commit.state_hash,
+        Vec::new(),
+    ))
+    .unwrap();
     let end = message::seal(&message::FinishedMessage::after(&record.commit)).unwrap();
     prop_oneof![
         prop::collection::vec(any::<u8>(), 0..200).prop_map(Cow::Owned),
