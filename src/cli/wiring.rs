@@ -56,6 +56,8 @@ pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
 
 /// Samples the deformed surface, the whole shell, in the state that `record` made.
 pub(super) fn surface(_log: &Path, _scene: &Scene, _record: &Record) -> Result<SurfaceSamples, Failure> {
+    // the state of `record.commit.ordinal`, its hash checked, into
+    // Ok(view::deformed_surface(scene, &state.mesh, &state.displacement, 4)?)
     Err(Failure::NotYetWired { what: "sampling the deformed surface" })
 }
 
