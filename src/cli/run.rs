@@ -20,7 +20,7 @@ use crate::units::rounded;
 pub(super) struct Arguments {
     /// Scene file (TOML); `foldline help scene` describes its keys
     scene: PathBuf,
-    /// Log to write (MCAP) [default: checkpoints/<SCENE>.mcap]
+    /// Log to write (MCAP) [default: checkpoints/SCENE.mcap]
     #[arg(short, long, value_name = "LOG")]
     output: Option<PathBuf>,
     /// Threads; the result is the same on any number of them [default: one for each core]

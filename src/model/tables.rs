@@ -20,7 +20,7 @@ pub struct Tables {
     pub first: [Vec<usize>; 2],
     /// Quadrature points of an element.
     pub points_per_element: usize,
-    /// (p₁ + 1)(p₂ + 1), padded to a multiple of [`LANES`]; the padding holds zeros.
+    /// (p₁ + 1)(p₂ + 1), padded to a multiple of 4; the padding holds zeros.
     pub padded: usize,
     /// `functions[((element · points + point) · 5 + k) · padded + a]`: derivative k (,1 ,2 ,11 ,22 ,12) of function
     /// a = a₁ (p₂ + 1) + a₂.

@@ -29,7 +29,7 @@ pub enum StageError {
         /// The scene's least increment, degrees.
         least_deg: f64,
         /// Why the last attempt failed.
-        cause: SolveError,
+        cause: Box<SolveError>,
     },
     /// The refined mesh has no equilibrium at the load.
     #[error("step {step}, re-equilibrate at {rotation_deg}° on {elements:?} elements: {cause}")]
@@ -41,7 +41,7 @@ pub enum StageError {
         /// Elements each way.
         elements: [usize; 2],
         /// Why the solve failed.
-        cause: SolveError,
+        cause: Box<SolveError>,
     },
     /// The equations do not fit in memory.
     #[error("step {step}, {stage} on {elements:?} elements: {cause}")]
@@ -195,7 +195,7 @@ impl Stages {
                         rotation_deg: state.rotation_deg,
                         attempted_deg: attempt.target_deg,
                         least_deg: self.scene.solver.least_increment_deg,
-                        cause,
+                        cause: Box::new(cause),
                     });
                 }
                 Ok(reject(state, report, attempt, Rejection::NoEquilibrium))
@@ -268,7 +268,7 @@ impl Stages {
                 step,
                 rotation_deg: state.rotation_deg,
                 elements: state.mesh.element_counts(),
-                cause,
+                cause: Box::new(cause),
             },
         )?;
         let released = state.strain_energy_n_mm - solved.energy;
