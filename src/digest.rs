@@ -4,18 +4,29 @@
 pub type Hash = blake3::Hash;
 
 /// Feeds numbers into a hash by their bits, each sequence with its length in front.
-pub(crate) struct Feed(blake3::Hasher);
+pub(crate) struct Feed {
+    hasher: blake3::Hasher,
+    /// Bytes on their way to the hasher, which is fast only on long inputs.
+    pending: Vec<u8>,
+}
+
+/// Bytes that are gathered before the hasher gets them.
+const BATCH: usize = 16 * 1024;
 
 impl Feed {
     pub(crate) fn new(domain: &str) -> Self {
-        let mut feed = Self(blake3::Hasher::new());
+        let mut feed = Self { hasher: blake3::Hasher::new(), pending: Vec::with_capacity(BATCH) };
         feed.integer(domain.len() as u64);
         feed.bytes(domain.as_bytes());
         feed
     }
 
     pub(crate) fn bytes(&mut self, bytes: &[u8]) {
-        self.0.update(bytes);
+        if self.pending.len() + bytes.len() > BATCH {
+            self.hasher.update(&self.pending);
+            self.pending.clear();
+        }
+        self.pending.extend_from_slice(bytes);
     }
 
     pub(crate) fn integer(&mut self, value: u64) {
@@ -31,7 +42,8 @@ impl Feed {
         values.iter().for_each(|value| self.number(*value));
     }
 
-    pub(crate) fn finish(self) -> Hash {
-        self.0.finalize()
+    pub(crate) fn finish(mut self) -> Hash {
+        self.hasher.update(&self.pending);
+        self.hasher.finalize()
     }
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use super::failure::Failure;
 use super::json_line::json_line;
 use super::log_file::read_log;
-use super::output::{print, say};
+use super::output::print;
 use super::stage_table::{stage_table, step_in_full};
 use crate::pipeline::Record;
 use crate::study::Summary;
@@ -31,9 +31,6 @@ impl Arguments {
         let Self { log, step, json } = self;
         let read = read_log(&log)?;
         let records = read.records();
-        for warning in &read.warnings() {
-            say(&format!("foldline: {}: {warning}", log.display()));
-        }
         let wanted: Vec<Record> =
             records.iter().filter(|record| step.is_none_or(|step| record.report.step == step)).cloned().collect();
         if let (Some(step), true) = (step, wanted.is_empty()) {

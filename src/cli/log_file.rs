@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::failure::Failure;
+use super::output::say;
 use super::scene_file::checked;
 use crate::journal::{Completeness, Log};
 use crate::pipeline::Record;
@@ -31,12 +32,7 @@ impl ReadLog {
         steps().min().zip(steps().max())
     }
 
-    /// What was lost, a line each.
-    pub(super) fn warnings(&self) -> Vec<String> {
-        Self::warnings_of(&self.log)
-    }
-
-    /// The same of a log without its scene.
+    /// What was lost of a log, a line each.
     pub(super) fn warnings_of(log: &Log) -> Vec<String> {
         match log.completeness() {
             Completeness::Finished | Completeness::Unfinished => Vec::new(),
@@ -53,12 +49,15 @@ impl ReadLog {
     }
 }
 
-/// Reads a log and the scene in it.
+/// Reads a log and the scene in it; says what of it is lost.
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
     let wrong =
         |source: Box<dyn std::error::Error + Send + Sync>| Failure::WrongLog { log: path.to_path_buf(), source };
     let log = Log::read(path).map_err(|source| wrong(Box::new(source)))?;
     let scene = scene_of(&log, path, &[])?;
+    for warning in ReadLog::warnings_of(&log) {
+        say(&format!("foldline: {}: {warning}", path.display()));
+    }
     Ok(ReadLog { log, scene })
 }
 
