@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use crate::history::{ConditionError, NothingStands, ReplayError, SnapError};
 use crate::model::ModelError;
 use crate::scene::{Scene, Stage};
+use crate::study::BenchError;
 use crate::view::{PlotError, SamplesError};
 
 /// Stopped by a signal; nothing is wrong.
@@ -65,6 +66,8 @@ pub(super) enum Failure {
     Condition(#[from] ConditionError),
     #[error(transparent)]
     Snap(#[from] Box<SnapError>),
+    #[error("nothing can be timed")]
+    Bench { source: Box<BenchError> },
     #[error("no stage of {} meets the condition `{condition}`", log.display())]
     NeverHolds { log: PathBuf, condition: String },
 }

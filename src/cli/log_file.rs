@@ -63,6 +63,11 @@ pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
 
 /// The scene of a log's last stretch, with settings laid over it.
 pub(super) fn scene_of(log: &Log, path: &Path, settings: &[String]) -> Result<Scene, Failure> {
-    let Some(manifest) = log.manifests().last() else { return Err(Failure::NoScene { log: path.to_path_buf() }) };
+    scene_at(log, path, u64::MAX, settings)
+}
+
+/// The scene that a stage of a log was run with: a run may have gone on with a changed one.
+pub(super) fn scene_at(log: &Log, path: &Path, ordinal: u64, settings: &[String]) -> Result<Scene, Failure> {
+    let manifest = log.manifest_at(ordinal).ok_or_else(|| Failure::NoScene { log: path.to_path_buf() })?;
     checked(&manifest.scene_text, &format!("scene in {}", path.display()), settings)
 }

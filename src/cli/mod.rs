@@ -3,6 +3,7 @@
 //! Everything that can be wrong with the arguments and the scene is found before anything starts. What a program would
 //! read goes to standard output, what a person would watch to standard error.
 
+mod bench;
 mod bisect;
 mod failure;
 mod help;
@@ -51,6 +52,7 @@ enum Command {
     Bisect(bisect::Arguments),
     Verify(verify::Arguments),
     Recover(recover::Arguments),
+    Bench(bench::Arguments),
     Help(help::Arguments),
 }
 
@@ -66,6 +68,7 @@ impl Command {
             Command::Bisect(arguments) => arguments.run(),
             Command::Verify(arguments) => arguments.run(),
             Command::Recover(arguments) => arguments.run(),
+            Command::Bench(arguments) => arguments.run().map(|()| 0),
             Command::Help(arguments) => arguments.run().map(|()| 0),
         }
     }

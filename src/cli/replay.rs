@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::log_file::{ReadLog, read_log, scene_of};
+use super::log_file::{ReadLog, read_log, scene_at};
 use super::output::print;
 use super::scene_file::stage_named;
 use super::trace;
@@ -44,14 +44,18 @@ impl Arguments {
     pub(super) fn run(self) -> Result<u8, Failure> {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
         let read = read_log(&self.log)?;
-        let scene = scene_of(&read.log, &self.log, &self.set)?;
-        let mut stages = Stages::new(scene);
+        let scene_at = |ordinal| scene_at(&read.log, &self.log, ordinal, &self.set);
+        let mut stages = Stages::new(scene_at(0)?);
         let mut rows: Vec<TraceRow> = Vec::new();
         let mut worst = 0;
         for index in self.chosen(&read)? {
             let entry = &read.log.entries()[index];
             let commit = entry.record.commit;
             let mesh = read.log.mesh(index).ok();
+            let scene = scene_at(commit.ordinal)?;
+            if *stages.scene() != scene {
+                stages = Stages::new(scene);
+            }
             let mut observer = |iterate: &crate::equilibrium::Iterate| {
                 if let (true, Some(mesh)) = (self.trace.is_some(), &mesh) {
                     rows.push(trace::row(&commit, mesh, iterate));

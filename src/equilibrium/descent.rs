@@ -125,15 +125,26 @@ impl<'a> Descent<'a> {
         let here = Start { unknowns: self.unknowns.clone(), direction, slope, iterate: *last };
         self.effort.iterations += 1;
 
-        let length = if indefinite { self.along_negative_curvature(&here) } else { Some(1.0) };
-        let energy = match length {
-            Some(length) => self.settle(&here, length),
-            None => f64::INFINITY,
-        };
+        if indefinite {
+            let Some(length) = self.along_negative_curvature(&here) else {
+                return match self.watched.take() {
+                    Some(from) => self.shorten(from),
+                    None => Err(SolveError::LineSearchFailed { last: *last, effort: self.effort }),
+                };
+            };
+            let energy = self.settle(&here, length);
+            return self.judge(here, length, energy);
+        }
+        let energy = self.settle(&here, 1.0);
+        self.judge(here, 1.0, energy)
+    }
+
+    /// Keeps a step that lowered the energy, watches one that did not, and goes back where a watched one did not pay.
+    fn judge(&mut self, here: Start, length: f64, energy: f64) -> Result<(), SolveError> {
         match self.watched.take() {
             Some(from) if !from.is_enough(1.0, energy) => self.shorten(from),
             Some(_) => Ok(()),
-            None if length.is_some_and(|length| here.is_enough(length, energy)) => Ok(()),
+            None if here.is_enough(length, energy) => Ok(()),
             None if energy.is_finite() => {
                 self.watched = Some(here);
                 Ok(())

@@ -6,11 +6,13 @@
 //! b ≥ a (rounded down to a whole vector) are formed.
 
 use crate::model::Tables;
-use crate::shell::PointReference;
+use crate::shell::{Hessian, PointReference};
 
 /// Doubles in a vector of the kernel; the tables are padded to a multiple.
 const LANES: usize = 4;
 type Lane = [f64; LANES];
+/// Columns of the Hessian with its padding.
+const HALF_ROW: usize = 16;
 
 /// Local arrays of one element. `M` vectors of [`LANES`] basis functions.
 pub struct ElementBuffers {
@@ -22,6 +24,8 @@ pub struct ElementBuffers {
     pub stiffness: Vec<f64>,
     /// Strain energy.
     pub energy: f64,
+    /// Fᵀ H at a point: row `a · 3 + c`.
+    half: Vec<[f64; HALF_ROW]>,
 }
 
 impl ElementBuffers {
@@ -32,6 +36,7 @@ impl ElementBuffers {
             residual: vec![0.0; 3 * padded],
             stiffness: vec![0.0; 9 * padded * padded],
             energy: 0.0,
+            half: vec![[0.0; HALF_ROW]; 3 * padded],
         }
     }
 }
@@ -120,7 +125,7 @@ fn integrate<const M: usize, const FMA: bool>(
     if want == Want::Stiffness {
         buffers.stiffness.fill(0.0);
     }
-    let mut hessian = [[0.0; 15]; 15];
+    let mut hessian: Hessian = [[0.0; 16]; 15];
     for (point, functions) in points.iter().zip(functions.chunks_exact(5 * LANES * M)) {
         let lanes = functions.as_chunks::<LANES>().0;
         let u = displacement_derivatives::<M, FMA>(lanes, &buffers.displacement);
@@ -137,7 +142,7 @@ fn integrate<const M: usize, const FMA: bool>(
             Want::Stiffness => {
                 let (energy, gradient) = point.hessian(&u, &mut hessian);
                 buffers.energy += energy;
-                contract::<M, FMA>(lanes, &hessian, &mut buffers.stiffness);
+                contract::<M, FMA>(lanes, &hessian, &mut buffers.half, &mut buffers.stiffness);
                 gradient
             }
         };
@@ -174,32 +179,44 @@ fn displacement_derivatives<const M: usize, const FMA: bool>(lanes: &[Lane], dis
     u
 }
 
-/// Adds Fᵀ H F to the stiffness.
+/// Adds Fᵀ H F to the stiffness. `half` takes Fᵀ H of all functions first: formed one by one in registers it was compiled to scalar
+/// code, which took as long as all the rest.
 #[inline(always)]
-fn contract<const M: usize, const FMA: bool>(lanes: &[Lane], hessian: &[[f64; 15]; 15], stiffness: &mut [f64]) {
-    let stiffness = stiffness.as_chunks_mut::<LANES>().0;
-    for a in 0..LANES * M {
-        let (vector, slot) = (a / LANES, a % LANES);
-        for c in 0..3 {
-            let mut p = [0.0; 15];
-            for k in 0..5 {
-                let f = lanes[k * M + vector][slot];
-                let row = &hessian[3 * k + c];
-                for q in 0..15 {
-                    p[q] = multiply_add::<FMA>(f, row[q], p[q]);
-                }
+fn contract<const M: usize, const FMA: bool>(
+    lanes: &[Lane],
+    hessian: &Hessian,
+    half: &mut [[f64; HALF_ROW]],
+    stiffness: &mut [f64],
+) {
+    for (a, rows) in half.chunks_exact_mut(3).enumerate() {
+        let f = [0, 1, 2, 3, 4].map(|k| lanes[k * M + a / LANES][a % LANES]);
+        for (c, row) in rows.iter_mut().enumerate() {
+            for q in 0..HALF_ROW {
+                let mut sum = f[0] * hessian[c][q];
+                sum = multiply_add::<FMA>(f[1], hessian[3 + c][q], sum);
+                sum = multiply_add::<FMA>(f[2], hessian[6 + c][q], sum);
+                sum = multiply_add::<FMA>(f[3], hessian[9 + c][q], sum);
+                row[q] = multiply_add::<FMA>(f[4], hessian[12 + c][q], sum);
             }
-            for d in 0..3 {
-                let row = &mut stiffness[((a * 3 + c) * 3 + d) * M..][..M];
-                for m in vector..M {
-                    let mut sum = row[m];
-                    for l in 0..5 {
-                        for i in 0..LANES {
-                            sum[i] = multiply_add::<FMA>(p[3 * l + d], lanes[l * M + m][i], sum[i]);
-                        }
-                    }
-                    row[m] = sum;
+        }
+    }
+    let lanes = &lanes[..5 * M];
+    let stiffness = stiffness.as_chunks_mut::<LANES>().0;
+    for (ac, p) in half.iter().enumerate() {
+        let vector = ac / (3 * LANES);
+        for d in 0..3 {
+            let w = [p[d], p[3 + d], p[6 + d], p[9 + d], p[12 + d]];
+            let row = &mut stiffness[(ac * 3 + d) * M..][..M];
+            for m in vector..M {
+                let mut sum = row[m];
+                for i in 0..LANES {
+                    sum[i] = multiply_add::<FMA>(w[0], lanes[m][i], sum[i]);
+                    sum[i] = multiply_add::<FMA>(w[1], lanes[M + m][i], sum[i]);
+                    sum[i] = multiply_add::<FMA>(w[2], lanes[2 * M + m][i], sum[i]);
+                    sum[i] = multiply_add::<FMA>(w[3], lanes[3 * M + m][i], sum[i]);
+                    sum[i] = multiply_add::<FMA>(w[4], lanes[4 * M + m][i], sum[i]);
                 }
+                row[m] = sum;
             }
         }
     }

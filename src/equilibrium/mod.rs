@@ -7,8 +7,11 @@ mod newton;
 mod pattern;
 mod sparse;
 mod stability;
+mod timing;
 
 pub use assembly::{Assembled, Want, strain_energy};
-pub use newton::{Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
+pub use newton::{Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Workspace};
 pub use sparse::FactorError;
+pub use sparse::dense_product;
 pub use stability::{SoftMode, soft_mode};
+pub use timing::{KernelCost, KernelRun};

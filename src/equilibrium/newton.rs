@@ -9,7 +9,7 @@ use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::descent::Descent;
 use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::sparse::{FactorError, SparseSolver};
-use crate::model::{Discretization, copies};
+use crate::model::Discretization;
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
@@ -211,7 +211,7 @@ impl<'a> Equilibrium<'a> {
         to_deg: f64,
         observer: Observer,
     ) -> Result<Solved, SolveError> {
-        let start = self.predict(displacement, from_deg.to_radians(), to_deg.to_radians())?;
+        let start = self.predict(displacement, from_deg.to_radians(), to_deg.to_radians());
         self.minimize(start, to_deg.to_radians(), observer)
     }
 
@@ -232,14 +232,15 @@ impl<'a> Equilibrium<'a> {
     }
 
     /// Unknowns at `to`: along the tangent of the path where it is stable, or the old ones, whichever has less energy.
-    fn predict(&mut self, displacement: &[[f64; 3]], from: f64, to: f64) -> Result<Vec<f64>, SolveError> {
+    fn predict(&mut self, displacement: &[[f64; 3]], from: f64, to: f64) -> Vec<f64> {
         let (rate, old) = {
-            let negative = self.work.factorize_at(from, displacement)?;
+            // Where the stiffness has no factor (exactly at a limit point), the old unknowns are as good a start.
+            let negative = self.work.factorize_at(from, displacement).unwrap_or(usize::MAX);
             let Workspace { discretization, solver, assembled, .. } = &mut *self.work;
             let placement = discretization.unknowns.at(from);
             let old = placement.unknowns_of(displacement);
             if negative > 0 {
-                return Ok(old);
+                return old;
             }
             let moved = placement.rate(&old);
             let forces = assembled.multiply(discretization, &moved);
@@ -252,7 +253,7 @@ impl<'a> Equilibrium<'a> {
         };
         let along: Vec<f64> = old.iter().zip(&rate).map(|(q, slope)| q + slope * (to - from)).collect();
         let (moved, kept) = (self.energy_at(to, &along), self.energy_at(to, &old));
-        Ok(if moved <= kept { along } else { old })
+        if moved <= kept { along } else { old }
     }
 
     fn energy_at(&self, theta: f64, unknowns: &[f64]) -> f64 {
@@ -279,7 +280,7 @@ impl<'a> Equilibrium<'a> {
         };
         let (displacement, power, effort) = descent.finish();
         self.work.factored_at = Some((theta, displacement.clone(), last.negative_pivots));
-        let parts = copies(self.scene.symmetry);
+        let parts = self.scene.symmetry.copies() as f64;
         Ok(Solved {
             displacement,
             energy: parts * last.energy,

@@ -143,6 +143,22 @@ impl SparseSolver {
         );
     }
 
+    /// Numbers in the factor.
+    pub fn factor_len(&self) -> usize {
+        self.factor.len()
+    }
+
+    /// Floating-point operations of a factorization: the sum of the squares of the column counts.
+    pub fn flops(&self) -> f64 {
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else { return 0.0 };
+        let of_supernode = |s: usize| {
+            let columns = symbolic.supernode_end()[s] - symbolic.supernode_begin()[s];
+            let height = (symbolic.col_ptr_for_val()[s + 1] - symbolic.col_ptr_for_val()[s]) / columns;
+            (0..columns).map(|column| ((height - column) as f64).powi(2)).sum::<f64>()
+        };
+        (0..symbolic.n_supernodes()).map(of_supernode).sum()
+    }
+
     fn for_each_pivot(&mut self, mut visit: impl FnMut(usize, &mut f64)) {
         let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else { return };
         for s in 0..symbolic.n_supernodes() {
@@ -154,6 +170,14 @@ impl SparseSolver {
             }
         }
     }
+}
+
+/// A dense product of two square matrices on one thread: what the processor can do at best. Returns one of its numbers.
+pub fn dense_product(size: usize) -> f64 {
+    let matrix = faer::Mat::from_fn(size, size, |i, j| ((i * 7 + j * 3) % 11) as f64);
+    let mut product = faer::Mat::zeros(size, size);
+    faer::linalg::matmul::matmul(product.as_mut(), faer::Accum::Replace, &matrix, &matrix, 1.0, Par::Seq);
+    product[(size / 2, size / 3)]
 }
 
 #[cfg(test)]

@@ -77,8 +77,10 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     }
     let mut keep = log.entries().len();
     let mut changes = Vec::new();
+    let mut clipped = keep;
     if old.load.rotation_deg != new.load.rotation_deg {
-        keep = keep.min(before_clipped_step(log, old, new)?);
+        clipped = before_clipped_step(log, old, new)?;
+        keep = keep.min(clipped);
     }
     let steps: Vec<&Difference> = differences.iter().filter(|difference| difference.reach == Reach::Steps).collect();
     if !steps.is_empty() {
@@ -88,7 +90,10 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     for difference in &differences {
         let what = shown(difference);
         changes.push(match difference.reach {
-            Reach::Free => format!("{what}: every stage stands"),
+            Reach::Free if difference.path != "load.rotation_deg" => format!("{what}: every stage stands"),
+            Reach::Free if keep == clipped => {
+                format!("{what}: every stage stands that was not cut short at the old target")
+            }
             _ if last_step == 0 => format!("{what}: no complete step stands"),
             _ => format!("{what}: steps 1 to {last_step} stand, {} on is new", last_step + 1),
         });

@@ -1,6 +1,6 @@
 //! Where exactly a run jumped: from the last stable state before the jump, the load is halved until it is known.
 
-use crate::equilibrium::{Equilibrium, FactorError, SoftMode, SolveError, Workspace, soft_mode};
+use crate::equilibrium::{Equilibrium, FactorError, Iterate, Observer, SoftMode, SolveError, Workspace, soft_mode};
 use crate::history::bisection::LoadBisection;
 use crate::journal::{Log, StateError};
 use crate::pipeline::is_jump;
@@ -45,6 +45,17 @@ pub enum SnapError {
         "the run jumps in its first step: there is no stable state in the log to go back to; run it with a smaller increment"
     )]
     NothingBefore,
+    /// The jump does not happen on the mesh before it.
+    #[error(
+        "the shell goes from {from_deg}° to {to_deg}° without a jump on the mesh that it had: the jump came from refining that mesh; \
+         run the scene from a finer mesh to bisect it"
+    )]
+    OnRefinedMesh {
+        /// Last stable rotation, degrees.
+        from_deg: f64,
+        /// Rotation of the jump, degrees.
+        to_deg: f64,
+    },
     /// A solve failed.
     #[error("a solve from {from_deg}° to {to_deg}° failed")]
     Solve {
@@ -77,9 +88,12 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
     let mut tries = Tries { scene, work: &mut work, count: 0 };
 
     let mut stable = start;
+    if tries.gently(&stable, beyond)?.is_some() {
+        return Err(SnapError::OnRefinedMesh { from_deg: stable.rotation_deg, to_deg: beyond });
+    }
     let mut search = LoadBisection::new(stable.rotation_deg, beyond, tolerance_deg);
     while let Some(rotation_deg) = search.next() {
-        let next = tries.gently(&stable, rotation_deg);
+        let next = tries.gently(&stable, rotation_deg)?;
         search = search.told(rotation_deg, next.is_none());
         if let Some(next) = next {
             stable = next;
@@ -115,18 +129,45 @@ struct Tries<'a> {
 
 impl Tries<'_> {
     /// The equilibrium at a rotation, if the shell reaches it without passing an unstable shape or releasing energy.
-    fn gently(&mut self, from: &State, rotation_deg: f64) -> Option<State> {
+    fn gently(&mut self, from: &State, rotation_deg: f64) -> Result<Option<State>, SnapError> {
+        let stable = from.negative_pivots as usize;
+        let reached = match self.solve(from, rotation_deg, &mut |iterate| iterate.negative_pivots > stable) {
+            Ok(reached) => reached,
+            // Beyond a limit point there is nothing to converge to near by.
+            Err(
+                SolveError::Stopped { .. } | SolveError::TooManyIterations { .. } | SolveError::LineSearchFailed { .. },
+            ) => {
+                return Ok(None);
+            }
+            Err(source) => return Err(SnapError::Solve { from_deg: from.rotation_deg, to_deg: rotation_deg, source }),
+        };
+        let work = (from.moment_n_mm + reached.moment_n_mm) * (rotation_deg - from.rotation_deg).to_radians();
+        let released = from.strain_energy_n_mm + work - reached.strain_energy_n_mm;
+        let jumped = is_jump(released, from.strain_energy_n_mm, reached.strain_energy_n_mm);
+        Ok((!jumped).then_some(reached))
+    }
+
+    /// The equilibrium at a rotation however it is reached, and the most negative pivots on the way.
+    fn through(&mut self, from: &State, rotation_deg: f64) -> Result<(State, usize), SnapError> {
+        let mut most = 0;
+        let mut watch = |iterate: &Iterate| {
+            most = most.max(iterate.negative_pivots);
+            false
+        };
+        let reached = self.solve(from, rotation_deg, &mut watch);
+        let failed = |source| SnapError::Solve { from_deg: from.rotation_deg, to_deg: rotation_deg, source };
+        Ok((reached.map_err(failed)?, most))
+    }
+
+    fn solve(&mut self, from: &State, rotation_deg: f64, watch: Observer) -> Result<State, SolveError> {
         self.count += 1;
-        let mut watch = |iterate: &crate::equilibrium::Iterate| iterate.negative_pivots > 0;
-        let solved = Equilibrium::new(self.scene, self.work)
-            .advance(&from.displacement, from.rotation_deg, rotation_deg, &mut watch)
-            .ok()?;
-        let work = (from.moment_n_mm + solved.moment) * (rotation_deg - from.rotation_deg).to_radians();
-        let released = from.strain_energy_n_mm + work - solved.energy;
-        if is_jump(released, from.strain_energy_n_mm, solved.energy) {
-            return None;
-        }
-        Some(State {
+        let solved = Equilibrium::new(self.scene, self.work).advance(
+            &from.displacement,
+            from.rotation_deg,
+            rotation_deg,
+            watch,
+        )?;
+        Ok(State {
             displacement: solved.displacement,
             rotation_deg,
             moment_n_mm: solved.moment,
@@ -134,27 +175,5 @@ impl Tries<'_> {
             negative_pivots: solved.negative_pivots as u64,
             ..from.clone()
         })
-    }
-
-    /// The equilibrium at a rotation however it is reached, and the most negative pivots on the way.
-    fn through(&mut self, from: &State, rotation_deg: f64) -> Result<(State, usize), SnapError> {
-        self.count += 1;
-        let mut most = 0;
-        let mut watch = |iterate: &crate::equilibrium::Iterate| {
-            most = most.max(iterate.negative_pivots);
-            false
-        };
-        let solved = Equilibrium::new(self.scene, self.work)
-            .advance(&from.displacement, from.rotation_deg, rotation_deg, &mut watch)
-            .map_err(|source| SnapError::Solve { from_deg: from.rotation_deg, to_deg: rotation_deg, source })?;
-        let state = State {
-            displacement: solved.displacement,
-            rotation_deg,
-            moment_n_mm: solved.moment,
-            strain_energy_n_mm: solved.energy,
-            negative_pivots: solved.negative_pivots as u64,
-            ..from.clone()
-        };
-        Ok((state, most))
     }
 }

@@ -96,6 +96,11 @@ impl Log {
         &self.manifests
     }
 
+    /// What the stretch was begun with that stage `ordinal` belongs to.
+    pub fn manifest_at(&self, ordinal: u64) -> Option<&Manifest> {
+        self.manifests.iter().rev().find(|manifest| manifest.first_ordinal <= ordinal)
+    }
+
     /// The stages, in the order of the run; entry k has ordinal k.
     pub fn entries(&self) -> &[Entry] {
         &self.entries

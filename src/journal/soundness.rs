@@ -1,15 +1,13 @@
 //! What a mesh and a state must hold so that no later code can stumble over them, whoever wrote them.
 
+use crate::spline::DEGREES;
 use crate::state::{Mesh, State};
-
-/// Highest degree that a log may hold.
-const LARGEST_DEGREE: usize = 16;
 
 /// What is wrong with a mesh or a state.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Flaw {
-    /// A degree outside 1 to 16.
-    #[error("degree {degree} in direction {} (it must be 1 to {LARGEST_DEGREE})", way + 1)]
+    /// A degree that no kernel is built for.
+    #[error("degree {degree} in direction {} (it must be {} to {})", way + 1, DEGREES.start(), DEGREES.end())]
     Degree {
         /// Parametric direction, 0 or 1.
         way: usize,
@@ -68,6 +66,14 @@ pub enum Flaw {
         /// The value.
         value: f64,
     },
+    /// A weight that puts a control point at infinity or beyond.
+    #[error("weight {index} is {value} (it must be above 0)")]
+    Weight {
+        /// Control point.
+        index: usize,
+        /// Its weight.
+        value: f64,
+    },
     /// A marked knot that the mesh cannot have, or one that the refined mesh lacks.
     #[error("{what} knot {value} in direction {} is not a knot that this mesh can have", way + 1)]
     ForeignKnot {
@@ -96,7 +102,7 @@ pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
     let mut expected = 1_usize;
     for way in 0..2 {
         let (degree, knots) = (mesh.degree[way], &mesh.knots[way]);
-        if !(1..=LARGEST_DEGREE).contains(&degree) {
+        if !DEGREES.contains(&degree) {
             return Err(Flaw::Degree { way, degree });
         }
         if knots.len() < 2 * (degree + 1) {
@@ -120,7 +126,11 @@ pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
     if mesh.control_points.len() != expected {
         return Err(Flaw::Length { what: "control points", expected, found: mesh.control_points.len() });
     }
-    finite("control point coordinate", mesh.control_points.iter().flatten().copied())
+    finite("control point coordinate", mesh.control_points.iter().flatten().copied())?;
+    match mesh.control_points.iter().position(|point| point[3] <= 0.0) {
+        Some(index) => Err(Flaw::Weight { index, value: mesh.control_points[index][3] }),
+        None => Ok(()),
+    }
 }
 
 /// Checks that a state fits its mesh and holds finite numbers; the mesh is checked too.

@@ -6,23 +6,14 @@ mod tables;
 mod unknowns;
 
 pub use ends::RigidEnd;
-pub use patch::{ModelError, starting_mesh};
+pub use patch::{MOST_CONTROL_POINTS, ModelError, starting_mesh};
 pub use tables::Tables;
 pub use unknowns::{Entry, Placement, Unknowns};
 
 use std::sync::Arc;
 
-use crate::scene::{Scene, Symmetry};
+use crate::scene::Scene;
 use crate::spline::Mesh;
-
-/// Parts of the whole shell that one model stands for: energies of the model times this are those of the shell.
-pub fn copies(symmetry: Symmetry) -> f64 {
-    match symmetry {
-        Symmetry::None => 1.0,
-        Symmetry::HalfLength | Symmetry::HalfArc => 2.0,
-        Symmetry::Quarter => 4.0,
-    }
-}
 
 /// A scene on a mesh: everything that assembly and constraints need and that a state does not carry.
 #[derive(Debug)]

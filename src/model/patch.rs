@@ -1,6 +1,6 @@
 //! The mesh that a scene starts from: an exact NURBS surface with the scene's elements.
 
-use crate::scene::{Geometry, Scene, Symmetry};
+use crate::scene::{Geometry, Scene};
 use crate::spline::{HomogeneousCurve, Mesh, circular_arc, insert_knots_into_net, segment_count, straight_line};
 
 /// A scene that cannot be made discrete.
@@ -21,7 +21,23 @@ pub enum ModelError {
         /// Elements along the length that suffice.
         least: usize,
     },
+    /// More than memory holds.
+    #[error(
+        "{} × {} elements have {count} control points, and the most that this program takes on is {MOST_CONTROL_POINTS}: write fewer in \
+         mesh.elements, and let the mesh refine itself where it has to",
+        elements[0],
+        elements[1]
+    )]
+    TooManyControlPoints {
+        /// Elements each way of the model.
+        elements: [usize; 2],
+        /// Control points.
+        count: usize,
+    },
 }
+
+/// Control points of a mesh at most: tables and matrix of more would not fit in the memory of a large workstation.
+pub const MOST_CONTROL_POINTS: usize = 500_000;
 
 /// Builds the starting mesh. The whole shell spans x in [0, L] and the arc angle φ in [−α/2, α/2] from the apex; a
 /// half-length model spans x in [0, L/2], a half-arc model φ in [0, α/2]. Where the arc needs several segments, the
@@ -32,7 +48,7 @@ pub enum ModelError {
 pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry;
     let [degree, arc_degree] = scene.mesh.degree;
-    let [half_length, half_arc] = halves(scene.symmetry);
+    let [half_length, half_arc] = scene.symmetry.cuts();
     let length = if half_length { length_mm / 2.0 } else { length_mm };
     let half = arc_deg.to_radians() / 2.0;
     let from = if half_arc { 0.0 } else { -half };
@@ -45,18 +61,12 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     if rows < 4 {
         return Err(ModelError::TooFewRows { elements: elements[0], degree, rows, least: 4 - degree });
     }
+    let count = rows * (elements[1] + arc_degree);
+    if count > MOST_CONTROL_POINTS {
+        return Err(ModelError::TooManyControlPoints { elements, count });
+    }
     let mesh = tensor_product(&along, &across);
     Ok(subdivide(mesh, [1, segment_count(half - from)], elements))
-}
-
-/// Whether the model is cut at mid-length, and along the apex.
-pub fn halves(symmetry: Symmetry) -> [bool; 2] {
-    match symmetry {
-        Symmetry::None => [false, false],
-        Symmetry::HalfLength => [true, false],
-        Symmetry::HalfArc => [false, true],
-        Symmetry::Quarter => [true, true],
-    }
 }
 
 /// Cylinder over `across` (in the y–z plane) along `along` (x).

@@ -13,7 +13,6 @@
 use std::collections::BTreeMap;
 
 use crate::model::RigidEnd;
-use crate::model::patch::halves;
 use crate::scene::Scene;
 use crate::shell::{add, dot, norm, scaled, sub};
 use crate::spline::Mesh;
@@ -55,7 +54,7 @@ impl Unknowns {
     pub fn new(scene: &Scene, mesh: &Mesh) -> Self {
         let ends = RigidEnd::both(scene);
         let points: Vec<[f64; 3]> = mesh.control_points.iter().map(|[x, y, z, w]| [x / w, y / w, z / w]).collect();
-        let [half_length, _] = halves(scene.symmetry);
+        let [half_length, _] = scene.symmetry.cuts();
         let [n1, n2] = mesh.control_counts();
         let frame: Vec<Option<usize>> = (0..n1 * n2)
             .map(|i| match i / n2 {
@@ -264,16 +263,24 @@ type Expression = Vec<(usize, f64)>;
 /// All linear homogeneous constraints of the scene on frame components, each as an expression that is zero.
 fn constraints(scene: &Scene, mesh: &Mesh, points: &[[f64; 3]]) -> Vec<Expression> {
     let [n1, n2] = mesh.control_counts();
-    let [half_length, half_arc] = halves(scene.symmetry);
+    let [half_length, half_arc] = scene.symmetry.cuts();
     let at = |i1: usize, i2: usize, c: usize| 3 * (i1 * n2 + i2) + c;
+    let joints = joints(mesh);
+    // The normal of a cylinder at a control point is radial in the section plane. Control points that a plane of symmetry or a C¹ joint
+    // holds on one line span the tangent there and share its normal: their own would take a free motion away.
+    let mut normal_like: Vec<usize> = (0..n2).collect();
+    if half_arc {
+        normal_like[1] = 0;
+    }
+    for (joint, ..) in &joints {
+        normal_like[joint - 1] = *joint;
+        normal_like[joint + 1] = *joint;
+    }
     let mut all: Vec<Expression> = Vec::new();
     let mut clamp = |edge: usize, inner: usize| {
         for i2 in 0..n2 {
             all.extend((0..3).map(|c| vec![(at(edge, i2, c), 1.0)]));
-            // The normal of a cylinder at a control point: radial in the section plane. At a plane of symmetry the
-            // first two control points span the tangent and share the normal there.
-            let like = if half_arc && i2 == 1 { 0 } else { i2 };
-            let [_, y, z] = points[inner * n2 + like];
+            let [_, y, z] = points[inner * n2 + normal_like[i2]];
             let radius = norm([0.0, y, z]);
             all.push(vec![(at(inner, i2, 1), y / radius), (at(inner, i2, 2), z / radius)]);
         }
@@ -294,7 +301,7 @@ fn constraints(scene: &Scene, mesh: &Mesh, points: &[[f64; 3]]) -> Vec<Expressio
             all.extend([0, 2].map(|c| vec![(at(i1, 0, c), 1.0), (at(i1, 1, c), -1.0)]));
         }
     }
-    for (joint, before, after) in joints(mesh) {
+    for (joint, before, after) in joints {
         for i1 in 0..n1 {
             all.extend((0..3).map(|c| {
                 vec![

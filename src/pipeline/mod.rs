@@ -10,4 +10,5 @@ pub use record::{Commit, Outcome, Record, Report};
 pub use run::{Ending, Run, RunError};
 pub use sink::{MemorySink, Sink, SinkError};
 pub use stages::{StageError, Stages};
-pub use step_control::{Attempt, is_jump, next_attempt, next_stage};
+pub use step_control::next_stage;
+pub(crate) use step_control::{is_jump, next_attempt};

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::digest::Hash;
-use crate::pipeline::step_control::next_stage;
+use crate::pipeline::step_control::{has_reached, next_stage};
 use crate::pipeline::{Commit, Record, Sink, SinkError, StageError, Stages};
 use crate::scene::Stage;
 use crate::state::State;
@@ -87,7 +87,9 @@ impl Run {
         loop {
             let next = self.next_stage();
             let Some(stage) = next else { return Ok(Ending::Finished) };
-            if stage == Stage::Solve && until_deg.is_some_and(|until| self.state.rotation_deg >= until) {
+            if stage == Stage::Solve
+                && until_deg.is_some_and(|until| has_reached(self.stages.scene(), &self.state, until))
+            {
                 return Ok(Ending::Until);
             }
             if interrupted() {

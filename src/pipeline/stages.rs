@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use crate::adapt::{evaluate_indicators, project_displacements, refine_mesh};
 use crate::equilibrium::{Effort, Equilibrium, FactorError, Iterate, SolveError, Solved, Workspace, strain_energy};
-use crate::model::{ModelError, Tables, Unknowns, copies, starting_mesh};
+use crate::model::{MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, starting_mesh};
 use crate::pipeline::step_control::{Attempt, is_jump, next_attempt};
 use crate::pipeline::{Outcome, Report};
 use crate::scene::{Scene, Stage};
 use crate::spline::Mesh;
-use crate::state::{Rejection, State, StepControl};
+use crate::state::{State, StepControl};
 
 /// Why a stage could not be run to its end. The state before it stands.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +29,21 @@ pub enum StageError {
         /// The scene's least increment, degrees.
         least_deg: f64,
         /// Why the last attempt failed.
+        cause: Box<SolveError>,
+    },
+    /// The shell jumps, the jump is located, and the solver did not reach the shape beyond it.
+    #[error(
+        "step {step}, solve: the shell jumps between {rotation_deg}° and {attempted_deg}°, and the shape beyond was not reached: \
+         {cause}; raise solver.max_iterations"
+    )]
+    JumpNotFollowed {
+        /// Load step.
+        step: u64,
+        /// Rotation of the last good state, degrees.
+        rotation_deg: f64,
+        /// Rotation beyond the jump, degrees.
+        attempted_deg: f64,
+        /// Why the solve failed.
         cause: Box<SolveError>,
     },
     /// The refined mesh has no equilibrium at the load.
@@ -54,6 +69,21 @@ pub enum StageError {
         elements: [usize; 2],
         /// What the solver said.
         cause: FactorError,
+    },
+    /// Refinement asks for more than memory holds.
+    #[error(
+        "step {step}, refine-knots: {} × {} elements would have {count} control points, and the most is {MOST_CONTROL_POINTS}; raise \
+         adapt.threshold or adapt.length_limit_mm",
+        elements[0],
+        elements[1]
+    )]
+    RefinedTooFar {
+        /// Load step.
+        step: u64,
+        /// Elements each way that were asked for.
+        elements: [usize; 2],
+        /// Control points of that mesh.
+        count: usize,
     },
     /// The stage needs what the stage before it makes.
     #[error("step {step}: {stage} cannot follow {after}: {missing}")]
@@ -154,9 +184,10 @@ impl Stages {
         let step = state.step + 1;
         let attempt = next_attempt(&self.scene, state);
         let (scene, work) = self.workspace(&state.mesh, step, Stage::Solve)?;
+        // A run that stands on an unstable branch (and says so) follows it; what ends an attempt is a further loss of stability.
         let mut watch = |iterate: &Iterate| {
             observer(iterate);
-            !attempt.may_jump && iterate.negative_pivots > 0
+            !attempt.may_jump && iterate.negative_pivots as u64 > state.negative_pivots
         };
         let solved = Equilibrium::new(scene, work).advance(
             &state.displacement,
@@ -172,7 +203,8 @@ impl Stages {
                 let jumped = is_jump(released, state.strain_energy_n_mm, solved.energy);
                 if jumped && !attempt.may_jump {
                     report.record_effort(solved.effort);
-                    return Ok(reject(state, report, attempt, Rejection::Jump));
+                    let control = attempt.control_after_jump(&state.control);
+                    return Ok(reject(state, report, Outcome::RejectedJump, control));
                 }
                 let mut next = settle(state, &solved);
                 next.step = step;
@@ -187,18 +219,26 @@ impl Stages {
                 report.record_effort(cause.effort());
                 report.residual = cause.last().map_or(f64::NAN, |last| last.residual / last.reactions);
                 if matches!(cause, SolveError::Stopped { .. }) {
-                    return Ok(reject(state, report, attempt, Rejection::Jump));
+                    let control = attempt.control_after_jump(&state.control);
+                    return Ok(reject(state, report, Outcome::RejectedJump, control));
                 }
-                if attempt.increment_deg(state) / 2.0 < self.scene.solver.least_increment_deg {
-                    return Err(StageError::NoEquilibrium {
-                        step,
-                        rotation_deg: state.rotation_deg,
-                        attempted_deg: attempt.target_deg,
-                        least_deg: self.scene.solver.least_increment_deg,
-                        cause: Box::new(cause),
-                    });
+                match attempt.control_after_failure(&self.scene, state) {
+                    Some(control) => Ok(reject(state, report, Outcome::RejectedNoEquilibrium, control)),
+                    None => Err(self.stopped(state, attempt, cause)),
                 }
-                Ok(reject(state, report, attempt, Rejection::NoEquilibrium))
+            }
+        }
+    }
+
+    /// The error of a solve that cannot be tried with a smaller increment.
+    fn stopped(&self, state: &State, attempt: Attempt, cause: SolveError) -> StageError {
+        let (step, rotation_deg, attempted_deg) = (state.step + 1, state.rotation_deg, attempt.target_deg);
+        let cause = Box::new(cause);
+        match state.control.jump_seen_at_deg {
+            Some(_) => StageError::JumpNotFollowed { step, rotation_deg, attempted_deg, cause },
+            None => {
+                let least_deg = self.scene.solver.least_increment_deg;
+                StageError::NoEquilibrium { step, rotation_deg, attempted_deg, least_deg, cause }
             }
         }
     }
@@ -220,13 +260,18 @@ impl Stages {
             return Err(out_of_order(state, Stage::RefineKnots, "no knot span is marked"));
         }
         let finer = refine_mesh(&state.mesh, &state.marked);
+        if finer.control_points.len() > MOST_CONTROL_POINTS {
+            let (step, elements, count) = (state.step, finer.element_counts(), finer.control_points.len());
+            return Err(StageError::RefinedTooFar { step, elements, count });
+        }
         // Integrated where the finer mesh is: what the energy changes here is the error of the coarser quadrature, and
         // projecting then changes nothing.
         let tables = Tables::on_elements_of(&self.scene, &state.mesh, &finer);
-        let energy = copies(self.scene.symmetry) * strain_energy(&state.mesh, &tables, &state.displacement);
+        let energy = self.scene.symmetry.copies() as f64 * strain_energy(&state.mesh, &tables, &state.displacement);
         let mut report = self.report(state, state.step);
         report.marked = [state.marked[0].len(), state.marked[1].len()];
         report.elements = finer.element_counts();
+        report.unknowns = Unknowns::new(&self.scene, &finer).count();
         report.strain_energy_n_mm = energy;
         let next = State {
             refined: Some(Arc::new(finer)),
@@ -242,7 +287,7 @@ impl Stages {
             return Err(out_of_order(state, Stage::ProjectDisplacements, "there is no refined mesh"));
         };
         let displacement = project_displacements(&state.mesh, finer, &state.displacement);
-        let parts = copies(self.scene.symmetry);
+        let parts = self.scene.symmetry.copies() as f64;
         let (_, work) = self.workspace(finer, state.step, Stage::ProjectDisplacements)?;
         let strain_energy_n_mm = parts * work.energy(&displacement);
         let next = State { mesh: finer.clone(), refined: None, displacement, strain_energy_n_mm, ..state.clone() };
@@ -272,14 +317,13 @@ impl Stages {
             },
         )?;
         let released = state.strain_energy_n_mm - solved.energy;
-        let mut next = settle(state, &solved);
+        let next = settle(state, &solved);
         let mut report = self.report(&next, step);
         report.record(&next, &solved);
         // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
         report.jumped = unstable_on_the_way && is_jump(released, state.strain_energy_n_mm, solved.energy);
         if report.jumped {
             report.energy_released_n_mm = released;
-            next.control.jump_seen_at_deg = None;
         }
         Ok((next, report))
     }
@@ -340,13 +384,9 @@ fn settle(state: &State, solved: &Solved) -> State {
     }
 }
 
-/// The state where it was, with a smaller increment to try.
-fn reject(state: &State, mut report: Report, attempt: Attempt, rejection: Rejection) -> (State, Report) {
-    report.outcome = match rejection {
-        Rejection::Jump => Outcome::RejectedJump,
-        Rejection::NoEquilibrium => Outcome::RejectedNoEquilibrium,
-    };
-    let control = attempt.control_after_rejection(&state.control, rejection);
+/// The state where it was, with another attempt to make.
+fn reject(state: &State, mut report: Report, outcome: Outcome, control: StepControl) -> (State, Report) {
+    report.outcome = outcome;
     (State { control, marked: Default::default(), ..state.clone() }, report)
 }
 

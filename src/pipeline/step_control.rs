@@ -1,17 +1,28 @@
 //! Which rotation the next solve tries, and what a failed or jumping one teaches.
 //!
-//! Steps lie on the multiples of the scene's increment, so that runs can be compared point by point. Where a solve finds no
-//! equilibrium, the increment is halved, and doubled back after each success. Where the shell jumps, the jump is bracketed: the last good
-//! rotation is below it, `jump_seen_at_deg` beyond, and the middle is tried until the bracket is as narrow as the scene's
-//! `snap_tolerance_deg`; then the jump is taken, and the run goes on with the scene's increment.
+//! Steps lie on the multiples of the scene's increment, so that runs can be compared point by point.
+//!
+//! | the last solve | memory | the next solve |
+//! |---|---|---|
+//! | went on | forgets a jump; one halving less | the next multiple of the increment, or the target if that is nearer |
+//! | found no equilibrium | halvings, so that the increment is at most half of what was tried | the next multiple of that |
+//! | passed an unstable shape or released energy | the rotation where it did | the middle between here and there |
+//! | the same, within `snap_tolerance_deg` of here | the same | there, and the jump is taken |
+//!
+//! A success inside a bracket forgets the bracket and tries the whole step again: what looked like a jump may have been a step
+//! too large for a sharp turn of the path, and for a real one the second look costs two or three iterations.
 
 use crate::equilibrium::Solved;
 use crate::scene::{Scene, Stage};
 use crate::state::{Rejection, State, StepControl};
 
 /// Energy that leaves the balance of a step, relative to the strain energy, above which the step jumped. The baseline's snap
-/// releases half of the energy; the trapezoidal rule over its smooth steps of 0.4° is off by less than 1e-4.
+/// releases half of the energy; the trapezoidal rule over its smooth steps of 0.4° is off by less than 1e-4. Steps so large that
+/// the rule is off by more are cut, until it is not.
 const JUMP_SHARE: f64 = 0.01;
+
+/// Rotations closer than this, relative to the increment, are one: multiples of decimal numbers are not exact.
+const SAME: f64 = 1e-6;
 
 /// A solve to try.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,14 +38,20 @@ pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
     let here = state.rotation_deg;
     let tolerance = scene.solver.snap_tolerance_deg;
     if let Some(beyond) = state.control.jump_seen_at_deg {
-        let located = beyond - here <= tolerance;
-        return Attempt { target_deg: if located { beyond } else { 0.5 * (here + beyond) }, may_jump: located };
+        let middle = 0.5 * (here + beyond);
+        let located = beyond - here <= tolerance || middle <= here || middle >= beyond;
+        return Attempt { target_deg: if located { beyond } else { middle }, may_jump: located };
     }
     let increment = scene.load.increment_deg / 2.0_f64.powi(state.control.halvings as i32);
-    // The next multiple; a rotation that is one already, to rounding, does not count.
-    let multiple = (here / increment + 1e-6).floor() + 1.0;
-    let target_deg = (multiple * increment).min(scene.load.rotation_deg);
+    let multiple = ((here / increment + SAME).floor() + 1.0) * increment;
+    let last = scene.load.rotation_deg;
+    let target_deg = if multiple > last - SAME * increment { last } else { multiple };
     Attempt { target_deg, may_jump: target_deg - here <= tolerance }
+}
+
+/// Whether a rotation is reached, to the rounding of its steps.
+pub fn has_reached(scene: &Scene, state: &State, rotation_deg: f64) -> bool {
+    state.rotation_deg >= rotation_deg - SAME * scene.load.increment_deg
 }
 
 /// The stage that follows a state; `None` where the run has reached its target.
@@ -54,7 +71,7 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
     if has(Stage::RefineKnots) && state.marked.iter().any(|knots| !knots.is_empty()) {
         return Some(Stage::RefineKnots);
     }
-    (state.rotation_deg < scene.load.rotation_deg).then_some(Stage::Solve)
+    (!has_reached(scene, state, scene.load.rotation_deg)).then_some(Stage::Solve)
 }
 
 impl Attempt {
@@ -71,29 +88,178 @@ impl Attempt {
 
     /// Step control after the attempt was taken.
     pub fn control_after_success(&self, before: &StepControl) -> StepControl {
-        StepControl {
-            halvings: before.halvings.saturating_sub(1),
-            jump_seen_at_deg: before.jump_seen_at_deg.filter(|beyond| *beyond > self.target_deg),
-            rejection: None,
-        }
+        let halvings = match before.jump_seen_at_deg {
+            Some(_) => before.halvings,
+            None => before.halvings.saturating_sub(1),
+        };
+        StepControl { halvings, jump_seen_at_deg: None, rejection: None }
     }
 
-    /// Step control after the attempt was turned down.
-    pub fn control_after_rejection(&self, before: &StepControl, rejection: Rejection) -> StepControl {
-        match rejection {
-            Rejection::Jump => StepControl {
-                halvings: before.halvings,
-                jump_seen_at_deg: Some(self.target_deg),
-                rejection: Some(rejection),
-            },
-            Rejection::NoEquilibrium => {
-                StepControl { halvings: before.halvings + 1, jump_seen_at_deg: None, rejection: Some(rejection) }
-            }
+    /// Step control after the attempt passed an unstable shape or released energy.
+    pub fn control_after_jump(&self, before: &StepControl) -> StepControl {
+        StepControl { jump_seen_at_deg: Some(self.target_deg), rejection: Some(Rejection::Jump), ..*before }
+    }
+
+    /// Step control after the attempt found no equilibrium; `None` where an increment below the scene's least one would be needed, or
+    /// where a located jump could not be followed.
+    pub fn control_after_failure(&self, scene: &Scene, state: &State) -> Option<StepControl> {
+        if state.control.jump_seen_at_deg.is_some() && self.may_jump {
+            return None;
         }
+        let half = 0.5 * self.increment_deg(state);
+        let mut halvings = state.control.halvings;
+        while scene.load.increment_deg / 2.0_f64.powi(halvings as i32) > half * (1.0 + SAME) {
+            halvings += 1;
+        }
+        let increment = scene.load.increment_deg / 2.0_f64.powi(halvings as i32);
+        let rejection = Some(Rejection::NoEquilibrium);
+        (increment >= scene.solver.least_increment_deg).then_some(StepControl {
+            halvings,
+            jump_seen_at_deg: None,
+            rejection,
+        })
     }
 }
 
 /// Whether energy that left the balance says that the shell jumped.
 pub fn is_jump(released: f64, before: f64, after: f64) -> bool {
     released.abs() > JUMP_SHARE * before.max(after)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::scene::parse;
+    use crate::spline::Mesh;
+
+    fn scene(increment_deg: f64, rotation_deg: f64) -> Scene {
+        let mut scene = parse(include_str!("../../pipelines/baseline-uniform.toml"), "baseline-uniform.toml").unwrap();
+        scene.load.increment_deg = increment_deg;
+        scene.load.rotation_deg = rotation_deg;
+        scene.solver.snap_tolerance_deg = 0.01;
+        scene.solver.least_increment_deg = 1e-4;
+        scene
+    }
+
+    fn at(rotation_deg: f64, control: StepControl) -> State {
+        State {
+            mesh: Arc::new(Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] }),
+            displacement: vec![],
+            marked: Default::default(),
+            refined: None,
+            step: 1,
+            stage: Some(Stage::Solve),
+            rotation_deg,
+            moment_n_mm: 0.0,
+            strain_energy_n_mm: 0.0,
+            negative_pivots: 0,
+            control,
+        }
+    }
+
+    /// Rotations of a run in which every attempt succeeds.
+    fn smooth(scene: &Scene) -> Vec<f64> {
+        let mut state = at(0.0, StepControl::default());
+        let mut rotations = Vec::new();
+        while next_stage(scene, &state).is_some() {
+            let attempt = next_attempt(scene, &state);
+            state = at(attempt.target_deg, attempt.control_after_success(&state.control));
+            rotations.push(state.rotation_deg);
+        }
+        rotations
+    }
+
+    #[test]
+    fn steps_are_multiples_and_no_slivers() {
+        for increment in [0.1, 0.3, 0.4, 0.6, 0.7] {
+            for tenths in 1..=120 {
+                let target = f64::from(tenths) / 10.0;
+                let rotations = smooth(&scene(increment, target));
+                assert_eq!(rotations.len(), (target / increment - 1e-6).ceil() as usize, "{target} by {increment}");
+                assert_eq!(rotations.last(), Some(&target));
+            }
+        }
+        assert_eq!(smooth(&scene(0.4, 1.0)).len(), 3);
+        assert_eq!(smooth(&scene(5.0, 1.0)), [1.0]);
+    }
+
+    /// Runs with a shell that jumps at `critical`, one way; returns the bracket in which the jump was taken, and the attempts.
+    fn locate(scene: &Scene, critical: f64) -> ([f64; 2], usize) {
+        let mut state = at(0.0, StepControl::default());
+        for attempts in 1..10_000 {
+            let attempt = next_attempt(scene, &state);
+            assert!(attempt.target_deg > state.rotation_deg);
+            let jumps = state.rotation_deg < critical && attempt.target_deg >= critical;
+            if jumps && attempt.may_jump {
+                return ([state.rotation_deg, attempt.target_deg], attempts);
+            }
+            state = if jumps {
+                at(state.rotation_deg, attempt.control_after_jump(&state.control))
+            } else {
+                at(attempt.target_deg, attempt.control_after_success(&state.control))
+            };
+        }
+        panic!("never located");
+    }
+
+    #[test]
+    fn a_jump_is_bracketed_to_the_tolerance() {
+        for critical in [0.003, 0.4, 3.217, 9.9039, 9.99999] {
+            let ([below, beyond], attempts) = locate(&scene(0.4, 20.0), critical);
+            assert!(below < critical && critical <= beyond && beyond - below <= 0.01, "{critical}: {below} {beyond}");
+            assert!(attempts <= (critical / 0.4) as usize + 20, "{attempts} attempts to {critical}");
+        }
+        let mut fine = scene(0.4, 20.0);
+        // Finer than numbers are: the bracket of two neighbours ends it.
+        fine.solver.snap_tolerance_deg = 1e-18;
+        let ([below, beyond], _) = locate(&fine, 3.217);
+        assert!(below < beyond && beyond - below < 1e-14);
+    }
+
+    #[test]
+    fn a_failing_solve_is_never_tried_again_unchanged_and_ends() {
+        for start in [0.0, 9.6, 9.90625, 9.9999] {
+            let scene = scene(0.4, 20.0);
+            let mut state = at(start, StepControl::default());
+            let mut before = f64::INFINITY;
+            let mut tries = 0;
+            loop {
+                let attempt = next_attempt(&scene, &state);
+                let size = attempt.increment_deg(&state);
+                assert!(size <= 0.5 * before * (1.0 + 1e-5), "{start}: {size} after {before}");
+                before = size;
+                tries += 1;
+                match attempt.control_after_failure(&scene, &state) {
+                    Some(control) => state = at(start, control),
+                    None => break,
+                }
+            }
+            assert!(tries <= 15, "{tries} tries from {start}");
+        }
+    }
+
+    #[test]
+    fn the_increment_grows_back() {
+        let scene = scene(0.4, 20.0);
+        let mut state = at(2.0, StepControl { halvings: 3, ..StepControl::default() });
+        let mut sizes = Vec::new();
+        for _ in 0..5 {
+            let attempt = next_attempt(&scene, &state);
+            sizes.push((attempt.increment_deg(&state) * 1e6).round() / 1e6);
+            state = at(attempt.target_deg, attempt.control_after_success(&state.control));
+        }
+        assert_eq!(sizes, [0.05, 0.05, 0.1, 0.2, 0.4]);
+    }
+
+    #[test]
+    fn a_located_jump_that_cannot_be_followed_is_not_tried_again() {
+        let scene = scene(0.4, 20.0);
+        let control = StepControl { jump_seen_at_deg: Some(5.005), ..StepControl::default() };
+        let state = at(5.0, control);
+        let attempt = next_attempt(&scene, &state);
+        assert_eq!((attempt.target_deg, attempt.may_jump), (5.005, true));
+        assert_eq!(attempt.control_after_failure(&scene, &state), None);
+    }
 }

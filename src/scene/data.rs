@@ -77,6 +77,16 @@ pub enum Quadrature {
     Reduced,
 }
 
+impl Quadrature {
+    /// The name in scenes and logs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quadrature::Full => "full",
+            Quadrature::Reduced => "reduced",
+        }
+    }
+}
+
 /// Which part of the shell is modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -100,6 +110,11 @@ impl Symmetry {
             Symmetry::HalfArc => [false, true],
             Symmetry::Quarter => [true, true],
         }
+    }
+
+    /// Models that make up the whole shell: 1, 2 or 4. Energies of the model times this are those of the shell.
+    pub fn copies(self) -> usize {
+        self.cuts().iter().map(|cut| 1 + usize::from(*cut)).product()
     }
 }
 

@@ -6,6 +6,6 @@ mod quadrature;
 mod vector;
 
 pub use material::{ShellStiffness, shell_stiffness};
-pub use point::{PointReference, Strains};
+pub use point::{Hessian, PointReference, Strains};
 pub use quadrature::gauss_legendre;
 pub(crate) use vector::{add, cross, dot, norm, scaled, sub};

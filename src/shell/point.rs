@@ -19,8 +19,8 @@ use crate::shell::{add, cross, dot, norm, scaled, shell_stiffness, sub};
 /// Gradient of the energy: `[k][c]`, k over (a₁, a₂, a₁₁, a₂₂, a₁₂), c over x, y, z.
 pub type Gradient = [[f64; 3]; 5];
 
-/// Hessian of the energy: `[3 k + c][3 l + d]`, symmetric.
-pub type Hessian = [[f64; 15]; 15];
+/// Hessian of the energy: `[3 k + c][3 l + d]`, symmetric; a last column of zeros makes rows whole vectors.
+pub type Hessian = [[f64; 16]; 15];
 
 /// The undeformed shell at a quadrature point.
 #[derive(Clone, Copy, Debug)]
@@ -275,7 +275,7 @@ mod tests {
     #[test]
     fn gradient_is_the_derivative_of_the_energy_and_hessian_that_of_the_gradient() {
         let (point, u) = sample();
-        let mut hessian = [[0.0; 15]; 15];
+        let mut hessian = [[0.0; 16]; 15];
         let (energy, gradient) = point.hessian(&u, &mut hessian);
         assert_eq!(energy, point.energy(&u));
         let step = 1e-5;

@@ -1,7 +1,8 @@
 //! B-spline basis functions and their first two derivatives (NURBS Book, A2.1 and A2.3).
 
-/// Highest polynomial degree that the program handles.
-pub const MAX_DEGREE: usize = 5;
+/// Polynomial degrees that the program handles: C¹ needs 2, and kernels are built up to 5.
+pub const DEGREES: std::ops::RangeInclusive<usize> = 2..=MAX_DEGREE;
+const MAX_DEGREE: usize = 5;
 
 /// Index s of the knot span with `knots[s] ≤ parameter < knots[s + 1]`; the last non-empty span at the end.
 /// `knots` is open, of degree `degree`, and `parameter` lies within it.

@@ -1,11 +1,13 @@
 //! What a run says when it is held against theory: the closed-form laws of tape springs, and the summary of a run.
 
+mod bench;
 mod path;
 mod section_shape;
 mod summary;
 mod summary_text;
 mod wuest;
 
+pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use path::{PathPoint, Snap, equilibrium_path, snaps};
 pub use summary::{FoldMean, MeasuredPeak, MeshChange, StageWork, Summary};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

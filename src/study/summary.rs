@@ -1,7 +1,7 @@
 //! The summary of a run: what it found, beside what theory says, and what it cost.
 
 use crate::pipeline::{Outcome, Record};
-use crate::scene::{Scene, Stage, Symmetry};
+use crate::scene::{Scene, Stage};
 use crate::study::{PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
 
 /// From this rotation on a fold is far from the ends, and its moment is compared as it stands (theory: the plateau is
@@ -97,7 +97,7 @@ impl Summary {
         Self {
             spring: TapeSpring::of_scene(scene),
             target_deg: scene.load.rotation_deg,
-            symmetric_parts: symmetric_parts(scene),
+            symmetric_parts: scene.symmetry.copies(),
             initial_stiffness_n_mm: initial_stiffness(&path[..before_jump]),
             peak: peak(&path[..before_jump], before_jump < path.len()),
             fold: fold_mean(&path, snaps.last()),
@@ -118,15 +118,6 @@ impl Summary {
     /// How often any stage ran.
     pub fn stages(&self) -> usize {
         self.work.iter().map(|work| work.runs).sum()
-    }
-}
-
-/// Elements of the whole shell for each element of the model.
-fn symmetric_parts(scene: &Scene) -> usize {
-    match scene.symmetry {
-        Symmetry::None => 1,
-        Symmetry::HalfLength | Symmetry::HalfArc => 2,
-        Symmetry::Quarter => 4,
     }
 }
 
@@ -196,13 +187,7 @@ fn fold_mean(path: &[PathPoint], snap: Option<&Snap>) -> Option<FoldMean> {
 fn mesh_changes(records: &[Record]) -> Vec<MeshChange> {
     let mut changes: Vec<MeshChange> = Vec::new();
     for Record { report, .. } in records {
-        let same = changes.last().is_some_and(|last| last.elements == report.elements);
-        if same {
-            // A stage between refining and projecting may still count the unknowns of the coarser space.
-            if let Some(last) = changes.last_mut() {
-                last.unknowns = report.unknowns;
-            }
-        } else {
+        if changes.last().is_none_or(|last| last.elements != report.elements) {
             changes.push(MeshChange {
                 rotation_deg: if changes.is_empty() { 0.0 } else { report.rotation_deg },
                 elements: report.elements,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use foldline::equilibrium::{Assembled, Equilibrium, Want, Workspace, strain_energy};
-use foldline::model::{Discretization, copies, starting_mesh};
+use foldline::model::{Discretization, starting_mesh};
 use foldline::scene::{Geometry, Scene, Sense, Symmetry};
 
 use crate::support::scene;
@@ -144,7 +144,6 @@ fn symmetric_parts_agree_with_the_whole() {
         let mut work = Workspace::new(&scene, &mesh).unwrap();
         let start = vec![[0.0; 3]; mesh.control_points.len()];
         let solved = Equilibrium::new(&scene, &mut work).advance(&start, 0.0, 2.0, &mut |_| false).unwrap();
-        assert!((copies(symmetry) - 1.0).abs() < 4.0);
         solved.moment
     };
     let whole = moment(Symmetry::None);

@@ -1,0 +1,97 @@
+//! `foldline bench`: how fast the kernels and whole runs are, beside what the machine can do.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::output::print;
+use super::scene_file::{checked, read_scene};
+use crate::scene::Scene;
+use crate::study::{BenchError, Figure, kernel_figures, run_figure};
+
+/// The scene that is timed where none is named.
+const BASELINE: &str = include_str!("../../pipelines/baseline.toml");
+
+/// Time the kernels on a uniform mesh, and whole runs of scenes, each as a fraction of what the machine can do
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Scenes to run whole (TOML); the kernels are timed on the first [default: the baseline's kernels alone]
+    scenes: Vec<PathBuf>,
+    /// Elements each way over the whole shell, for the kernels
+    #[arg(long, value_name = "N1,N2", default_value = "128,16")]
+    elements: String,
+    /// Lay a setting over the scenes, such as mesh.quadrature=reduced; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Calls of each kernel, of which the median counts
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+    /// Print a JSON object for each figure
+    #[arg(long)]
+    json: bool,
+}
+
+impl Arguments {
+    /// Times and prints.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
+        let mut scenes: Vec<(String, Scene)> = Vec::new();
+        for path in &self.scenes {
+            let name = path.display().to_string();
+            let text = read_scene(path)?.text;
+            scenes.push((name.clone(), checked(&text, &name, &self.set)?));
+        }
+        let elements = format!("mesh.elements=[{}]", self.elements);
+        let settings: Vec<String> = self.set.iter().cloned().chain([elements]).collect();
+        let (name, kernels) = match self.scenes.first() {
+            Some(path) => {
+                let name = path.display().to_string();
+                (name.clone(), checked(&read_scene(path)?.text, &name, &settings)?)
+            }
+            None => ("baseline".to_string(), checked(BASELINE, "baseline", &settings)?),
+        };
+        let failed = |source: BenchError| Failure::Bench { source: Box::new(source) };
+        let figures = kernel_figures(&kernels, &name, usize::from(self.repeats)).map_err(failed)?;
+        self.show(&figures, true)?;
+        for (name, scene) in &scenes {
+            self.show(&[run_figure(scene, name).map_err(failed)?], false)?;
+        }
+        Ok(())
+    }
+
+    fn show(&self, figures: &[Figure], head: bool) -> Result<(), Failure> {
+        if self.json {
+            let line = |figure: &Figure| serde_json::to_string(figure).unwrap_or_default() + "\n";
+            return print(&figures.iter().map(line).collect::<String>());
+        }
+        let mut text = String::new();
+        if head {
+            text.push_str(&format!(
+                "{:<17} {:>12} {:>6} {:>9} {:>7} {:>8} {:>11} {:>9}  {}\n",
+                "figure", "median ms", "limit", "elements", "degree", "threads", "quadrature", "unknowns", "scene"
+            ));
+        }
+        for figure in figures {
+            let fraction = figure.fraction_of_peak.map_or_else(String::new, |share| format!("{:.0} %", 100.0 * share));
+            let [n1, n2] = figure.elements;
+            let [p1, p2] = figure.degree;
+            text.push_str(&format!(
+                "{:<17} {:>12.3} {:>6} {:>9} {:>7} {:>8} {:>11} {:>9}  {}\n",
+                figure.name,
+                figure.median_ms,
+                fraction,
+                format!("{n1}×{n2}"),
+                format!("{p1}×{p2}"),
+                figure.threads,
+                figure.quadrature,
+                figure.unknowns,
+                figure.scene
+            ));
+        }
+        print(&text)
+    }
+}

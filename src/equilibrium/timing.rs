@@ -1,0 +1,83 @@
+//! The pieces of a Newton iteration one by one, for timing.
+
+use crate::equilibrium::assembly::Want;
+use crate::equilibrium::newton::{SolveError, Workspace};
+use crate::model::Placement;
+
+/// What the pieces have to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KernelCost {
+    /// Floating-point operations of Σ Fᵀ H F, upper half.
+    pub assembly_flops: f64,
+    /// Floating-point operations of L D Lᵀ.
+    pub factor_flops: f64,
+    /// Bytes of the factor.
+    pub factor_bytes: f64,
+}
+
+/// The pieces at one state; each call does the same work.
+#[derive(Debug)]
+pub struct KernelRun<'a> {
+    work: &'a mut Workspace,
+    displacement: &'a [[f64; 3]],
+    theta: f64,
+}
+
+impl<'a> KernelRun<'a> {
+    /// At a state whose stiffness has a factor.
+    ///
+    /// # Errors
+    /// Where it has none.
+    pub fn new(work: &'a mut Workspace, displacement: &'a [[f64; 3]], rotation_deg: f64) -> Result<Self, SolveError> {
+        let theta = rotation_deg.to_radians();
+        work.factorize_at(theta, displacement)?;
+        Ok(Self { work, displacement, theta })
+    }
+
+    /// Cost of the pieces.
+    pub fn cost(&self) -> KernelCost {
+        let tables = &self.work.discretization.tables;
+        let [p1, p2] = self.work.discretization.mesh.degree;
+        let functions = (p1 + 1) * (p2 + 1);
+        let points = tables.points.len() as f64;
+        let per_point: f64 = (0..functions).map(|a| 2.0 * (225.0 + 45.0 * (functions - a) as f64)).sum();
+        KernelCost {
+            assembly_flops: points * per_point,
+            factor_flops: self.work.solver.flops(),
+            factor_bytes: 8.0 * self.work.solver.factor_len() as f64,
+        }
+    }
+
+    /// Stiffness and residual on the control points.
+    pub fn assemble(&mut self) {
+        self.work.assembled.assemble(&self.work.discretization, self.displacement, Want::Stiffness);
+    }
+
+    /// Residual alone.
+    pub fn residual(&mut self) {
+        self.work.assembled.assemble(&self.work.discretization, self.displacement, Want::Residual);
+    }
+
+    /// Matrix on the unknowns and its factor.
+    pub fn factor(&mut self) {
+        let Workspace { discretization, pattern, solver, assembled, values, .. } = &mut *self.work;
+        let placement: Placement = discretization.unknowns.at(self.theta);
+        pattern.fill(discretization, &placement, assembled, values);
+        // It had a factor in `new`, and the values are the same.
+        let _ = solver.factorize(values);
+    }
+
+    /// One right-hand side.
+    pub fn solve(&mut self) {
+        let placement = self.work.discretization.unknowns.at(self.theta);
+        let mut right_hand_side = placement.restrict(&self.work.assembled.residual);
+        self.work.solver.solve(&mut right_hand_side);
+    }
+
+    /// All of it.
+    pub fn newton_iteration(&mut self) {
+        self.assemble();
+        self.factor();
+        self.solve();
+    }
+}

@@ -1,0 +1,157 @@
+//! How fast the kernels are, beside what the machine can do: each figure also as a fraction of a limit measured in the same run.
+//!
+//! Limits: the floating-point rate of a dense product (faer), for the assembly and the factorization; the rate of a memory copy, for
+//! the solve, which reads the factor twice. Floating-point operations are those that the method needs (the upper half of Fᵀ H F with
+//! the Hessian's own cost left out, the squares of the column counts of the factor), not those that padding adds.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::equilibrium::{Equilibrium, FactorError, KernelRun, SolveError, Workspace, dense_product};
+use crate::model::{ModelError, starting_mesh};
+use crate::pipeline::{MemorySink, Run, RunError, Stages};
+use crate::scene::Scene;
+
+/// Size of the dense product.
+const PRODUCT_SIZE: usize = 1024;
+/// Doubles of the memory copy: far beyond any cache.
+const COPY_LEN: usize = 16 * 1024 * 1024;
+/// Rotation of the deformed state, degrees.
+const ROTATION_DEG: f64 = 4.0;
+
+/// One figure.
+#[derive(Clone, Debug, Serialize)]
+pub struct Figure {
+    /// What was timed.
+    pub name: &'static str,
+    /// Scene file.
+    pub scene: String,
+    /// Elements each way.
+    pub elements: [usize; 2],
+    /// Degree each way.
+    pub degree: [usize; 2],
+    /// Integration rule.
+    pub quadrature: String,
+    /// Threads.
+    pub threads: usize,
+    /// Free unknowns.
+    pub unknowns: usize,
+    /// Median time, ms.
+    pub median_ms: f64,
+    /// Share of the limit that bounds it; `None` where none is measured.
+    pub fraction_of_peak: Option<f64>,
+}
+
+/// Why there are no figures.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchError {
+    /// The scene cannot be made discrete.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The equations do not fit in memory.
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+    /// The deformed state was not found.
+    #[error("no equilibrium to time at")]
+    Solve(#[from] SolveError),
+    /// A whole run failed.
+    #[error("the run stopped")]
+    Run(#[from] Box<RunError>),
+}
+
+/// Times the kernels on the scene's own starting mesh, deformed; `repeats` of each.
+///
+/// # Errors
+/// Where the scene has no deformed state to time at.
+pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<Figure>, BenchError> {
+    let mesh = Arc::new(starting_mesh(scene)?);
+    let mut work = Workspace::new(scene, &mesh)?;
+    let flat = vec![[0.0; 3]; mesh.control_points.len()];
+    let solved = Equilibrium::new(scene, &mut work).advance(&flat, 0.0, ROTATION_DEG, &mut |_| false)?;
+    let unknowns = work.discretization().unknowns.count();
+    let figure = |name: &'static str, seconds: f64, fraction_of_peak: Option<f64>| Figure {
+        name,
+        scene: String::new(),
+        elements: mesh.element_counts(),
+        degree: mesh.degree,
+        quadrature: scene.mesh.quadrature.name().to_string(),
+        threads: rayon::current_num_threads(),
+        unknowns,
+        median_ms: 1e3 * seconds,
+        fraction_of_peak,
+    };
+    let threads = rayon::current_num_threads() as f64;
+    let product = median(repeats, || dense_product(PRODUCT_SIZE));
+    let flops_per_s = 2.0 * (PRODUCT_SIZE as f64).powi(3) / product;
+    let copy = copy_seconds(repeats);
+    let bytes_per_s = 16.0 * COPY_LEN as f64 / copy;
+
+    let mut kernels = KernelRun::new(&mut work, &solved.displacement, ROTATION_DEG)?;
+    let cost = kernels.cost();
+    let assemble = median(repeats, || kernels.assemble());
+    let residual = median(repeats, || kernels.residual());
+    let factor = median(repeats, || kernels.factor());
+    let solve = median(repeats, || kernels.solve());
+    let iteration = median(repeats, || kernels.newton_iteration());
+    let of_flops = |flops: f64, seconds: f64, cores: f64| Some(flops / seconds / (flops_per_s * cores));
+    let figures = vec![
+        figure("dense-product", product, Some(1.0)),
+        figure("copy", copy, Some(1.0)),
+        figure("assemble", assemble, of_flops(cost.assembly_flops, assemble, threads)),
+        figure("residual", residual, None),
+        figure("factor", factor, of_flops(cost.factor_flops, factor, 1.0)),
+        figure("solve", solve, Some(2.0 * cost.factor_bytes / solve / bytes_per_s)),
+        figure("newton-iteration", iteration, None),
+    ];
+    Ok(figures.into_iter().map(|figure| Figure { scene: name.to_string(), ..figure }).collect())
+}
+
+/// Times a whole run of a scene, in memory.
+///
+/// # Errors
+/// Where the run stops before its end.
+pub fn run_figure(scene: &Scene, name: &str) -> Result<Figure, BenchError> {
+    let stages = Stages::new(scene.clone());
+    let start = stages.start()?;
+    let mut sink = MemorySink::default();
+    let begin = Instant::now();
+    Run::new(stages, start, None).to_end(None, &|| false, &mut sink).map_err(Box::new)?;
+    let seconds = begin.elapsed().as_secs_f64();
+    let last = sink.stages.last().map(|(_, record)| &record.report);
+    Ok(Figure {
+        name: "run",
+        scene: name.to_string(),
+        elements: last.map_or([0, 0], |report| report.elements),
+        degree: scene.mesh.degree,
+        quadrature: scene.mesh.quadrature.name().to_string(),
+        threads: rayon::current_num_threads(),
+        unknowns: last.map_or(0, |report| report.unknowns),
+        median_ms: 1e3 * seconds,
+        fraction_of_peak: None,
+    })
+}
+
+fn copy_seconds(repeats: usize) -> f64 {
+    let from = vec![1.0_f64; COPY_LEN];
+    let mut to = vec![0.0_f64; COPY_LEN];
+    median(repeats, || {
+        to.copy_from_slice(std::hint::black_box(&from));
+        std::hint::black_box(&mut to);
+    })
+}
+
+/// Median of the times of `repeats` calls, after one that warms up.
+fn median<R>(repeats: usize, mut call: impl FnMut() -> R) -> f64 {
+    std::hint::black_box(call());
+    let mut times: Vec<f64> = (0..repeats.max(1))
+        .map(|_| {
+            let begin = Instant::now();
+            std::hint::black_box(call());
+            begin.elapsed().as_secs_f64()
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
