@@ -1,5 +1,7 @@
-//! A run is a function of its scene: the same chain of hashes however it is run.
+//! A run is a function of its scene: the same chain of hashes however it is run, stopped, and gone on with.
 
+mod cuts;
+mod program;
 mod threads;
 
 #[path = "../verification/support.rs"]
