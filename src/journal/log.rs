@@ -74,6 +74,7 @@ pub(super) struct Part {
 pub struct Log {
     pub(super) library: String,
     pub(super) manifests: Vec<Manifest>,
+    pub(super) manifest_lost: bool,
     pub(super) entries: Vec<Entry>,
     pub(super) meshes: HashMap<Hash, Range<usize>>,
     pub(super) parts: Vec<Part>,
@@ -91,6 +92,11 @@ impl Log {
     /// The manifests of the run's stretches, in order; one that is damaged is not among them.
     pub fn manifests(&self) -> &[Manifest] {
         &self.manifests
+    }
+
+    /// Whether a damaged manifest stands behind the last good one: what the run last went on with is not known.
+    pub fn last_manifest_is_lost(&self) -> bool {
+        self.manifest_lost
     }
 
     /// The stages, in the order of the run; entry k has ordinal k.

@@ -1,7 +1,9 @@
 //! A run is a function of its scene: the same chain of hashes however it is run, stopped, and gone on with.
 
+mod changed;
 mod cuts;
 mod program;
+mod replay;
 mod threads;
 
 #[path = "../verification/support.rs"]
