@@ -10,7 +10,7 @@ use super::output::say;
 use super::progress::Manner;
 use super::session::{RunOptions, drive, watch_signals};
 use crate::history::{basis, plan, restored_scene};
-use crate::journal::{Completeness, Log, Manifest, Resume};
+use crate::journal::{Completeness, Log, Manifest, ReadError, Resume, ResumeError};
 use crate::pipeline::{Record, Run, Stages};
 use crate::scene::Scene;
 use crate::study::Summary;
@@ -64,6 +64,15 @@ impl OldLog {
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         let failed = |source| Failure::Resume { log: path.to_path_buf(), source: Box::new(source) };
         Ok(Self { claim: Resume::open(path).map_err(failed)? })
+    }
+
+    /// The same; `None` where the file has not even a header, as a power cut may leave it.
+    pub(super) fn open_unless_empty(path: &Path) -> Result<Option<Self>, Failure> {
+        match Resume::open(path) {
+            Ok(claim) => Ok(Some(Self { claim })),
+            Err(ResumeError::Read { source: ReadError::TooShort { .. }, .. }) => Ok(None),
+            Err(source) => Err(Failure::Resume { log: path.to_path_buf(), source: Box::new(source) }),
+        }
     }
 }
 
