@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::log_file::{ReadLog, read_log};
+use super::log_file::{ReadLog, read_log, scene_at};
 use super::output::print;
 use super::replay::place;
 use super::stage_table::stage_table;
@@ -98,7 +98,10 @@ impl Arguments {
     }
 
     fn jump(&self, read: &ReadLog) -> Result<u8, Failure> {
-        let report = find_snap(&read.log, &read.scene, self.tolerance).map_err(Box::new)?;
+        let jump = read.log.entries().iter().position(|entry| entry.record.report.jumped);
+        // The scene of the stretch that jumped; without a jump no scene is needed.
+        let scene = jump.map_or(Ok(read.scene.clone()), |jump| scene_at(&read.log, &self.log, jump, &[]))?;
+        let report = find_snap(&read.log, &scene, self.tolerance).map_err(Box::new)?;
         print(&told(&report)).map(|()| 0)
     }
 }

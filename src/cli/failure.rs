@@ -52,6 +52,11 @@ pub(super) enum Failure {
     Signals { source: io::Error },
     #[error("{} holds no scene", log.display())]
     NoScene { log: PathBuf },
+    #[error(
+        "the scene that stage {ordinal} of {} was run with is lost; `foldline run SCENE -o {} --resume` goes on with the scene's file",
+        log.display(), log.display()
+    )]
+    SceneLost { log: PathBuf, ordinal: usize },
     #[error(transparent)]
     Model(#[from] ModelError),
     #[error(transparent)]

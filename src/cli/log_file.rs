@@ -5,7 +5,7 @@ use std::path::Path;
 use super::failure::Failure;
 use super::output::say;
 use super::scene_file::checked;
-use crate::journal::{Completeness, Log};
+use crate::journal::{Completeness, Log, Manifest};
 use crate::pipeline::Record;
 use crate::scene::Scene;
 
@@ -34,40 +34,63 @@ impl ReadLog {
 
     /// What was lost of a log, a line each.
     pub(super) fn warnings_of(log: &Log) -> Vec<String> {
+        let mut warnings: Vec<String> =
+            log.notes().iter().map(|note| format!("at byte {}: {}", note.at, note.text)).collect();
         match log.completeness() {
-            Completeness::Finished | Completeness::Unfinished => Vec::new(),
-            Completeness::Truncated { at, dropped } => {
-                vec![format!(
-                    "cut off: good up to byte {at}; {dropped} bytes beyond are part of a stage and are not used"
-                )]
-            }
-            Completeness::Damaged { at, dropped, later_commits } => vec![format!(
+            Completeness::Finished | Completeness::Unfinished => {}
+            Completeness::Truncated { at, dropped } => warnings.push(format!(
+                "cut off: good up to byte {at}; {dropped} bytes beyond are part of a stage and are not used"
+            )),
+            Completeness::Damaged { at, dropped, later_commits } => warnings.push(format!(
                 "damaged at byte {at}: {dropped} bytes beyond, with {later_commits} stages that have lost what they follow \
                  on, are not used; `foldline verify` tells more"
-            )],
+            )),
         }
+        warnings
     }
 }
 
-/// Reads a log and the scene in it; says what of it is lost.
+/// Reads a log and the scene of its last stretch, and says what of it is lost; where that is lost, an earlier one serves to show what is there.
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
     let wrong =
         |source: Box<dyn std::error::Error + Send + Sync>| Failure::WrongLog { log: path.to_path_buf(), source };
     let log = Log::read(path).map_err(|source| wrong(Box::new(source)))?;
-    let scene = scene_of(&log, path, &[])?;
+    let scene = match (scene_of(&log, path), log.manifests().last()) {
+        (Err(Failure::SceneLost { .. }), Some(manifest)) => scene_in(manifest, path, &[])?,
+        (scene, _) => scene?,
+    };
     for warning in ReadLog::warnings_of(&log) {
         say(&format!("foldline: {}: {warning}", path.display()));
     }
     Ok(ReadLog { log, scene })
 }
 
-/// The scene of a log's last stretch, with settings laid over it.
-pub(super) fn scene_of(log: &Log, path: &Path, settings: &[String]) -> Result<Scene, Failure> {
-    scene_at(log, path, u64::MAX, settings)
+/// The scene that the log was last gone on with.
+pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
+    let stages = log.entries().len();
+    if log.last_manifest_is_lost() {
+        return Err(Failure::SceneLost { log: path.to_path_buf(), ordinal: stages.saturating_sub(1) });
+    }
+    match (log.manifests().last(), stages.checked_sub(1)) {
+        (None, None) => Err(Failure::NoScene { log: path.to_path_buf() }),
+        // A stretch that has no stage yet.
+        (Some(manifest), _) if manifest.first_ordinal == stages as u64 => scene_in(manifest, path, &[]),
+        (_, last) => scene_at(log, path, last.unwrap_or(0), &[]),
+    }
 }
 
-/// The scene that a stage of a log was run with: a run may have gone on with a changed one.
-pub(super) fn scene_at(log: &Log, path: &Path, ordinal: u64, settings: &[String]) -> Result<Scene, Failure> {
-    let manifest = log.manifest_at(ordinal).ok_or_else(|| Failure::NoScene { log: path.to_path_buf() })?;
+/// The scene that stage `index` was run with, with settings laid over it: that of its stretch, and held against the hash in its
+/// commit, so that no other takes its place where it is lost.
+pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
+    let expected = log.entries()[index].record.commit.scene_hash;
+    for manifest in log.manifests().iter().rev().filter(|manifest| manifest.first_ordinal <= index as u64) {
+        if scene_in(manifest, path, &[]).is_ok_and(|scene| scene.hash() == expected) {
+            return scene_in(manifest, path, settings);
+        }
+    }
+    Err(Failure::SceneLost { log: path.to_path_buf(), ordinal: index })
+}
+
+fn scene_in(manifest: &Manifest, path: &Path, settings: &[String]) -> Result<Scene, Failure> {
     checked(&manifest.scene_text, &format!("scene in {}", path.display()), settings)
 }

@@ -44,24 +44,25 @@ impl Arguments {
     pub(super) fn run(self) -> Result<u8, Failure> {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
         let read = read_log(&self.log)?;
-        let scene_at = |ordinal| scene_at(&read.log, &self.log, ordinal, &self.set);
-        let mut stages = Stages::new(scene_at(0)?);
+        let mut stages: Option<Stages> = None;
         let mut rows: Vec<TraceRow> = Vec::new();
         let mut worst = 0;
         for index in self.chosen(&read)? {
             let entry = &read.log.entries()[index];
             let commit = entry.record.commit;
             let mesh = read.log.mesh(index).ok();
-            let scene = scene_at(commit.ordinal)?;
-            if *stages.scene() != scene {
-                stages = Stages::new(scene);
-            }
+            // Each stretch of a log with the scene that it was run with.
+            let scene = scene_at(&read.log, &self.log, index, &self.set)?;
+            let stages = match stages.take().filter(|stages| *stages.scene() == scene) {
+                Some(same) => stages.insert(same),
+                None => stages.insert(Stages::new(scene)),
+            };
             let mut observer = |iterate: &crate::equilibrium::Iterate| {
                 if let (true, Some(mesh)) = (self.trace.is_some(), &mesh) {
                     rows.push(trace::row(&commit, mesh, iterate));
                 }
             };
-            let replayed = replay_stage(&read.log, index, &mut stages, &mut observer).map_err(|source| {
+            let replayed = replay_stage(&read.log, index, stages, &mut observer).map_err(|source| {
                 let (ordinal, stage, step) = (commit.ordinal, commit.stage, commit.step);
                 Failure::Replay { ordinal, stage, step, source: Box::new(source) }
             });

@@ -9,8 +9,8 @@ use super::log_file::{ReadLog, scene_of};
 use super::output::say;
 use super::progress::Manner;
 use super::session::{RunOptions, drive, watch_signals};
-use crate::history::{basis, plan};
-use crate::journal::{Completeness, Log, Manifest, Resume};
+use crate::history::{basis, plan, restored_scene};
+use crate::journal::{Completeness, Log, Manifest, ReadError, Resume, ResumeError};
 use crate::pipeline::{Record, Run, Stages};
 use crate::scene::Scene;
 use crate::study::Summary;
@@ -38,7 +38,7 @@ impl Arguments {
     /// Goes on with the scene that is in the log.
     pub(super) fn run(self) -> Result<(), Failure> {
         let old = OldLog::open(&self.log)?;
-        let scene = scene_of(old.claim.log(), &self.log, &[])?;
+        let scene = scene_of(old.claim.log(), &self.log)?;
         if let Some(until_deg) = self.until.filter(|until| *until > scene.load.rotation_deg) {
             return Err(Failure::UntilBeyondScene { until_deg, scene: Box::new(scene) });
         }
@@ -65,6 +65,15 @@ impl OldLog {
         let failed = |source| Failure::Resume { log: path.to_path_buf(), source: Box::new(source) };
         Ok(Self { claim: Resume::open(path).map_err(failed)? })
     }
+
+    /// The same; `None` where the file has not even a header, as a power cut may leave it.
+    pub(super) fn open_unless_empty(path: &Path) -> Result<Option<Self>, Failure> {
+        match Resume::open(path) {
+            Ok(claim) => Ok(Some(Self { claim })),
+            Err(ResumeError::Read { source: ReadError::TooShort { .. }, .. }) => Ok(None),
+            Err(source) => Err(Failure::Resume { log: path.to_path_buf(), source: Box::new(source) }),
+        }
+    }
 }
 
 /// Goes on with a log as far as it stands for `scene`.
@@ -73,9 +82,19 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let path = &options.log;
     let unusable = |source: Box<dyn std::error::Error + Send + Sync>| Failure::Resume { log: path.clone(), source };
     let log = old.claim.log();
-    let was = scene_of(log, path, &[])?;
+    let mut restored = None;
+    let was = match scene_of(log, path) {
+        Err(lost @ (Failure::SceneLost { .. } | Failure::NoScene { .. })) => {
+            restored = Some(
+                "the log has lost its last scene; this one decides the same states and takes its place".to_string(),
+            );
+            restored_scene(log, &scene).ok_or(lost)?
+        }
+        was => was?,
+    };
     let plan = plan(log, &was, &scene).map_err(|source| unusable(Box::new(source)))??;
     let mut findings = found(log, plan.keep);
+    findings.extend(restored);
     findings.extend(plan.changes);
     findings.extend(other_machine(log, &manifest));
     let stages = Stages::new(scene.clone());

@@ -70,8 +70,13 @@ impl Job {
     pub(super) fn run(self) -> Result<(), Failure> {
         let Job { file, scene: SceneFile { scene, text }, options, resume } = self;
         if resume && options.log.exists() {
-            let manifest = Manifest::here(&file, &text, options.use_threads());
-            return resume::go_on(OldLog::open(&options.log)?, scene, manifest, &options);
+            if let Some(old) = OldLog::open_unless_empty(&options.log)? {
+                let manifest = Manifest::here(&file, &text, options.use_threads());
+                return resume::go_on(old, scene, manifest, &options);
+            }
+            say(&format!("{} holds nothing: begun anew", options.log.display()));
+            std::fs::remove_file(&options.log)
+                .map_err(|source| Failure::Write { path: options.log.clone(), source })?;
         }
         let stages = Stages::new(scene.clone());
         let start = stages.start()?;

@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-use crate::pipeline::Report;
+use crate::pipeline::{Outcome, Report};
+use crate::scene::Stage;
 
 /// Comparisons that must all hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +61,16 @@ pub enum ConditionError {
         /// What was written.
         field: String,
         /// Fields of a report.
+        known: Vec<String>,
+    },
+    /// A word that the field never holds.
+    #[error("{field} is never `{value}`; it is one of {}", known.join(", "))]
+    NoSuchWord {
+        /// The field.
+        field: String,
+        /// What was written.
+        value: String,
+        /// What it can be.
         known: Vec<String>,
     },
     /// A word compared by size, or with a field that holds numbers.
@@ -122,7 +133,13 @@ fn parse_term(term: &str, fields: &[(String, Value)]) -> Result<Term, ConditionE
     };
     let equality = matches!(operator, Operator::Equal | Operator::NotEqual);
     let value = match (value.parse::<f64>(), sample) {
-        (_, Value::String(_)) if equality => Operand::Word(value),
+        (_, Value::String(_)) if equality => {
+            let known = words_of(&field);
+            if !known.is_empty() && !known.contains(&value) {
+                return Err(ConditionError::NoSuchWord { field, value, known });
+            }
+            Operand::Word(value)
+        }
         (_, Value::String(_)) => {
             return Err(ConditionError::NotANumber { field, value, problem: "holds a word: compare it with == or !=" });
         }
@@ -132,6 +149,18 @@ fn parse_term(term: &str, fields: &[(String, Value)]) -> Result<Term, ConditionE
         (Err(_), _) => return Err(ConditionError::NotANumber { field, value, problem: "holds a number" }),
     };
     Ok(Term { field, operator, value })
+}
+
+/// Every word that a field can hold; empty for fields that hold numbers.
+fn words_of(field: &str) -> Vec<String> {
+    let outcomes = [Outcome::Done, Outcome::RejectedJump, Outcome::RejectedNoEquilibrium];
+    match field {
+        "stage" => Stage::ALL.iter().map(|stage| stage.name().to_string()).collect(),
+        "outcome" => {
+            outcomes.iter().filter_map(|it| Some(serde_json::to_value(it).ok()?.as_str()?.to_string())).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// Fields of a report by name, pairs also one by one.

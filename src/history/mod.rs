@@ -13,5 +13,5 @@ pub use compare::{Comparison, Difference, compare};
 pub use condition::{Condition, ConditionError};
 pub use part::{Parting, find_parting};
 pub use replay::{ReplayError, Replayed, Verdict, replay_stage, verdict};
-pub use resume::{Basis, BasisError, NothingStands, ResumePlan, basis, plan, shown_value};
+pub use resume::{Basis, BasisError, NothingStands, ResumePlan, basis, plan, restored_scene, shown_value};
 pub use snap::{SnapError, SnapReport, find_snap};

@@ -2,9 +2,12 @@
 
 use crate::journal::{Log, StateError};
 use crate::model::ModelError;
-use crate::pipeline::{Commit, Stages, next_attempt, next_stage};
+use crate::pipeline::{Commit, Outcome, Stages, next_attempt, next_stage};
 use crate::scene::{Difference, Reach, Scene, Stage};
 use crate::state::State;
+
+/// The key of the rotation at which a run stops.
+const TARGET: &str = "load.rotation_deg";
 
 /// What a run goes on from.
 #[derive(Clone, Debug)]
@@ -60,8 +63,8 @@ pub struct NothingStands {
 
 /// What stands of a log written for `old` when it goes on with `new`.
 ///
-/// Output may change freely. The target may: the steps that were cut short at the old target go. A change of what steps are made with
-/// keeps every complete step and drops a step in hand. A change of geometry, material, mesh, symmetry or sense keeps
+/// Output may change freely. The target may: what was cut short at the old target goes, and what lies beyond a nearer one. A change of
+/// what steps are made with keeps every complete step and drops a step in hand. A change of geometry, material, mesh, symmetry or sense keeps
 /// nothing.
 ///
 /// # Errors
@@ -77,22 +80,20 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     }
     let mut keep = log.entries().len();
     let mut changes = Vec::new();
-    let mut clipped = keep;
     if old.load.rotation_deg != new.load.rotation_deg {
-        clipped = before_clipped_step(log, old, new)?;
-        keep = keep.min(clipped);
+        keep = keep.min(before_clipped_step(log, old, new)?);
     }
     let steps: Vec<&Difference> = differences.iter().filter(|difference| difference.reach == Reach::Steps).collect();
     if !steps.is_empty() {
-        keep = keep.min(complete_steps(log, old)?);
+        keep = complete_steps(log, keep, old)?;
     }
-    let last_step = keep.checked_sub(1).map_or(0, |last| log.entries()[last].record.report.step);
+    let done = log.entries()[..keep].iter().map(|entry| &entry.record.report).filter(|it| it.outcome == Outcome::Done);
+    let last_step = done.map(|report| report.step).max().unwrap_or(0);
     for difference in &differences {
         let what = shown(difference);
         changes.push(match difference.reach {
-            Reach::Free if difference.path != "load.rotation_deg" => format!("{what}: every stage stands"),
-            Reach::Free if keep == clipped => {
-                format!("{what}: every stage stands that was not cut short at the old target")
+            Reach::Free if keep == log.entries().len() || difference.path != TARGET => {
+                format!("{what}: every stage stands")
             }
             _ if last_step == 0 => format!("{what}: no complete step stands"),
             _ => format!("{what}: steps 1 to {last_step} stand, {} on is new", last_step + 1),
@@ -106,14 +107,15 @@ pub fn shown_value(value: &Option<serde_json::Value>) -> String {
     value.as_ref().map_or_else(|| "not set".to_string(), ToString::to_string)
 }
 
-/// Number of stages before the first solve that the old target cut short and the new one would not, or the other way round.
+/// Number of stages before the first solve that the new target would not try: the old one cut it short, or the new one does, or it lies
+/// beyond the new one.
 fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, StateError> {
     let nearer = old.load.rotation_deg.min(new.load.rotation_deg);
     for (index, entry) in log.entries().iter().enumerate().skip(1) {
         let report = &entry.record.report;
         if report.stage == Stage::Solve && report.attempted_rotation_deg >= nearer {
             let parent = log.state(index - 1)?;
-            if next_attempt(old, &parent) != next_attempt(new, &parent) && parent.rotation_deg < new.load.rotation_deg {
+            if next_attempt(old, &parent) != next_attempt(new, &parent) {
                 return Ok(index);
             }
         }
@@ -121,9 +123,9 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
     Ok(log.entries().len())
 }
 
-/// Number of stages up to the last one that ends a load step.
-fn complete_steps(log: &Log, scene: &Scene) -> Result<usize, StateError> {
-    for index in (0..log.entries().len()).rev() {
+/// Number of stages, of the first `keep`, up to the last one that ends a load step.
+fn complete_steps(log: &Log, keep: usize, scene: &Scene) -> Result<usize, StateError> {
+    for index in (0..keep).rev() {
         let state = log.state(index)?;
         let ends_step =
             state.control.rejection.is_none() && matches!(next_stage(scene, &state), None | Some(Stage::Solve));
@@ -132,4 +134,14 @@ fn complete_steps(log: &Log, scene: &Scene) -> Result<usize, StateError> {
         }
     }
     Ok(0)
+}
+
+/// The scene of a log's last stretch where the log has lost it and `scene`, which decides the same states, takes its place. Its target is
+/// not known any more; what was attempted says which steps it may have cut short.
+pub fn restored_scene(log: &Log, scene: &Scene) -> Option<Scene> {
+    let last = log.last_commit()?;
+    let attempts = log.entries().iter().map(|entry| entry.record.report.attempted_rotation_deg);
+    let mut restored = scene.clone();
+    restored.load.rotation_deg = attempts.fold(f64::MIN, f64::max);
+    (last.scene_hash == scene.hash()).then_some(restored)
 }

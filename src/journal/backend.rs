@@ -31,6 +31,8 @@ pub trait Backend: Send {
 pub struct FileBackend {
     file: File,
     path: PathBuf,
+    /// The name that the file comes to with its first bytes.
+    publish_as: Option<PathBuf>,
     /// The log that this file takes the place of, before the first byte is added to what was copied.
     replaces: Option<Replacement>,
     folder_synced: bool,
@@ -51,7 +53,26 @@ impl FileBackend {
     /// Where there is one already ([`io::ErrorKind::AlreadyExists`]), or none can be made.
     pub fn create_new(path: &Path) -> io::Result<Self> {
         let file = OpenOptions::new().append(true).create_new(true).open(path)?;
-        Ok(Self { file, path: path.to_owned(), replaces: None, folder_synced: false })
+        Ok(Self { file, path: path.to_owned(), publish_as: None, replaces: None, folder_synced: false })
+    }
+
+    /// The same, but the file has this name only from its first bytes on, so that no log is ever there without its manifest. A
+    /// file of that name that comes to be meanwhile is not overwritten.
+    pub(super) fn publish_as(mut self, target: &Path) -> Self {
+        self.publish_as = Some(target.to_owned());
+        self
+    }
+
+    fn publish(&mut self) -> io::Result<()> {
+        let Some(target) = self.publish_as.take() else { return Ok(()) };
+        match std::fs::hard_link(&self.path, &target) {
+            Ok(()) => std::fs::remove_file(&self.path)?,
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return Err(error),
+            // A file system without links; the lock keeps others away.
+            Err(_) => std::fs::rename(&self.path, &target)?,
+        }
+        self.path = target;
+        Ok(())
     }
 
     /// Lets this file, once all of it is on disk, take the place of `target`, which lies in the same folder. Until
@@ -94,7 +115,8 @@ impl FileBackend {
 impl Backend for FileBackend {
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.settle()?;
-        self.file.write_all(bytes)
+        self.file.write_all(bytes)?;
+        self.publish()
     }
 
     fn sync(&mut self) -> io::Result<()> {

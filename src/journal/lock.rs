@@ -35,6 +35,17 @@ pub enum LockError {
         /// Who has the lease now.
         holder: String,
     },
+    /// The lease is not there any more.
+    #[error(
+        "{lease} is gone, which says that this run may write {log}: its folder was moved or removed, or another run took the log over \
+         and is done. This run stops; put the folder back, then `foldline resume {log}`"
+    )]
+    Gone {
+        /// The log.
+        log: String,
+        /// The lease.
+        lease: String,
+    },
     /// The lock or the lease cannot be made.
     #[error("cannot make {path}, which keeps two runs from writing one log")]
     Io {
@@ -96,7 +107,11 @@ impl LogLock {
         if self.holds() {
             return Ok(());
         }
-        Err(LockError::Lost { log: self.log.display().to_string(), holder: holder(&self.lease) })
+        let log = self.log.display().to_string();
+        if !self.lease.exists() {
+            return Err(LockError::Gone { log, lease: self.lease.display().to_string() });
+        }
+        Err(LockError::Lost { log, holder: holder(&self.lease) })
     }
 
     fn holds(&self) -> bool {

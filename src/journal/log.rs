@@ -76,6 +76,7 @@ pub(super) struct Part {
 pub struct Log {
     pub(super) library: String,
     pub(super) manifests: Vec<Manifest>,
+    pub(super) manifest_lost: bool,
     pub(super) entries: Vec<Entry>,
     pub(super) meshes: HashMap<Hash, Range<usize>>,
     pub(super) displacements: HashMap<Hash, Range<usize>>,
@@ -96,9 +97,9 @@ impl Log {
         &self.manifests
     }
 
-    /// What the stretch was begun with that stage `ordinal` belongs to.
-    pub fn manifest_at(&self, ordinal: u64) -> Option<&Manifest> {
-        self.manifests.iter().rev().find(|manifest| manifest.first_ordinal <= ordinal)
+    /// Whether a damaged manifest stands behind the last good one: what the run last went on with is not known.
+    pub fn last_manifest_is_lost(&self) -> bool {
+        self.manifest_lost
     }
 
     /// The stages, in the order of the run; entry k has ordinal k.

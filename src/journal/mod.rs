@@ -50,11 +50,13 @@
 //!
 //! # Old logs
 //!
-//! `checkpoints/golden/` holds one small finished log for each layout that was ever released, named
-//! `v<format>-<program version>.mcap`, which a test reads to the last state. A change of what is written takes these
-//! steps: raise [`format::FORMAT_VERSION`] (or [`CODEC_VERSION`], where only states or meshes change); keep the old
-//! structs and decode both; write a small log with the last program before the change (a coarse mesh, one refinement, a
-//! dozen stages: some 100 kB) and add it to the folder. A golden log is never written again.
+//! `checkpoints/golden/` holds small logs for each layout that was ever released, named
+//! `v<format>-<program version>-<what happened to it>.mcap`: a finished one, an unfinished one, and damaged ones. The
+//! `README.md` there says how each was made and what it must give, and a test holds every later version to that table,
+//! to the last state. A change of what is written takes these steps: raise [`format::FORMAT_VERSION`] (or
+//! [`CODEC_VERSION`], where only states or meshes change); keep the old structs and decode both; write the logs with the
+//! last program before the change, by the command that the `README.md` names, and add them with their rows. A golden
+//! log is never written again.
 mod backend;
 mod chunk;
 mod codec;

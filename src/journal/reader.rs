@@ -80,7 +80,7 @@ impl Log {
         if let Some(found) = scan.newer_format {
             return Err(ReadError::NewerFormat { found });
         }
-        let known = !scan.entries.is_empty() || !scan.manifests.is_empty() || !scan.later.is_empty();
+        let known = !scan.entries.is_empty() || scan.manifest_seen || !scan.later.is_empty();
         match &scan.header {
             _ if known => {}
             None if mcap::MAGIC.starts_with(&bytes[..bytes.len().min(mcap::MAGIC.len())]) => {
@@ -95,6 +95,7 @@ impl Log {
         Ok(Log {
             library: scan.header.map(|(_, library)| library).unwrap_or_default(),
             manifests: scan.manifests,
+            manifest_lost: scan.manifest_lost,
             entries: scan.entries,
             meshes: scan.meshes,
             displacements: scan.displacements,
@@ -117,6 +118,8 @@ struct Scan {
     channels: Channels,
     header: Option<(String, String)>,
     manifests: Vec<Manifest>,
+    manifest_seen: bool,
+    manifest_lost: bool,
     entries: Vec<Entry>,
     meshes: HashMap<Hash, Range<usize>>,
     displacements: HashMap<Hash, Range<usize>>,
@@ -227,10 +230,16 @@ impl Scan {
                 if manifest.format_version > FORMAT_VERSION {
                     self.newer_format = Some(manifest.format_version);
                 }
-                self.parts.push(Part { at: frame.at, end: frame.body.end, kept: Kept::Manifest });
-                self.manifests.push(manifest);
+                self.manifest_seen = true;
+                // Behind a loss it speaks of commits that are not used.
+                if manifest.first_ordinal == self.entries.len() as u64 {
+                    self.parts.push(Part { at: frame.at, end: frame.body.end, kept: Kept::Manifest });
+                    self.manifests.push(manifest);
+                    self.manifest_lost = false;
+                }
             }
             Err(error) if record.name == MANIFEST => {
+                self.manifest_lost = true;
                 self.notes.push(Note { at: frame.at as u64, text: format!("{error}; it is left out") });
             }
             Err(_) => {

@@ -6,7 +6,7 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::backend::{Backend, FileBackend};
+use super::backend::{Backend, FileBackend, beside};
 use super::codec::{encode_mesh, encode_state};
 use super::encoder::{EncodeError, Encoder, Parts, ViewerMessage, library};
 use super::lock::{LockError, LogLock};
@@ -172,15 +172,28 @@ impl JournalWriter {
             return Err(WriteError::NoFolder { folder: folder.display().to_string(), log });
         }
         let lock = LogLock::take(path)?;
-        let backend = FileBackend::create_new(path).map_err(|source| match source.kind() {
-            io::ErrorKind::AlreadyExists => WriteError::Exists { log: log.clone() },
-            _ => WriteError::Io { action: "begin", log: log.clone(), commits: 0, source },
+        let new = beside(path, ".new");
+        // Left by a process that died while it did this; the lock says that it is nobody's.
+        let _ = std::fs::remove_file(&new);
+        let backend = FileBackend::create_new(&new).map_err(|source| WriteError::Io {
+            action: "begin",
+            log: log.clone(),
+            commits: 0,
+            source,
         })?;
-        let begun = Self::on(Box::new(backend), &log, manifest, sync);
-        if begun.is_err() {
-            let _ = std::fs::remove_file(path);
+        let begun = Self::on(Box::new(backend.publish_as(path)), &log, manifest, sync);
+        match begun {
+            Ok(writer) => Ok(Self { lock: Some(lock), ..writer }),
+            Err(error) => {
+                let _ = std::fs::remove_file(&new);
+                Err(match error {
+                    WriteError::Io { source, .. } if source.kind() == io::ErrorKind::AlreadyExists => {
+                        WriteError::Exists { log }
+                    }
+                    error => error,
+                })
+            }
         }
-        begun.map(|writer| Self { lock: Some(lock), ..writer })
     }
 
     /// Begins a log on a backend, which is empty; `log` is its name in messages. Takes no lock.

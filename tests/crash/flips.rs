@@ -31,7 +31,7 @@ impl Random {
 }
 
 /// A seed from the clock, or the one in `FOLDLINE_SEED`.
-fn seed() -> u64 {
+pub fn seed() -> u64 {
     let clock = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_nanos() as u64;
     std::env::var("FOLDLINE_SEED").map_or(clock, |text| u64::from_str_radix(text.trim_start_matches("0x"), 16).unwrap())
 }

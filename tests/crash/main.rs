@@ -1,12 +1,19 @@
-//! What happens to processes, disks and files, done to logs on purpose.
+//! What happens to processes, disks and files, done to logs and to the running program on purpose.
 
+mod disk;
 mod findings;
 mod flips;
 mod golden;
+mod kill;
 mod memory;
 mod power;
 mod resume;
+mod signals;
 mod support;
 mod synthetic;
 mod truncation;
 mod viewers;
+
+#[path = "../restart/program.rs"]
+#[allow(dead_code, reason = "shared with the tests of restarts")]
+mod program;

@@ -1,5 +1,11 @@
-//! A run is a function of its scene: the same chain of hashes however it is run.
+//! A run is a function of its scene: the same chain of hashes however it is run, stopped, and gone on with.
 
+mod bisect;
+mod changed;
+mod cuts;
+mod program;
+mod reading;
+mod replay;
 mod threads;
 
 #[path = "../verification/support.rs"]

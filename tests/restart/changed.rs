@@ -1,0 +1,176 @@
+//! A scene that changed between a run and its resume: what stands is said and kept, and nothing is mixed in silence.
+
+use foldline::journal::Log;
+use foldline::scene::Stage;
+
+use crate::program::{Place, SMALL, Straight, assert_ends_with, scene, small_with};
+
+const TARGET: &str = "rotation_deg = 16.0";
+
+/// Index of the last stage of a load step.
+fn end_of_step(log: &Log, step: u64) -> usize {
+    log.entries().iter().rposition(|entry| entry.record.report.step == step).unwrap()
+}
+
+/// What is written beside the states may change: every stage stands.
+#[test]
+fn output_alone() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", whole.cut_after(17));
+    place.write("small.toml", format!("{SMALL}\n[output]\nsync = \"each-stage\"\n"));
+    let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
+    said.says(&["the log holds 17 stages, all good", "output.sync changed", "every stage stands"]);
+    assert_ends_with(&place.log("run.mcap"), whole.chain, "output changed");
+}
+
+/// A finished run goes on to a farther target as if that had been the target from the start.
+#[test]
+fn a_farther_target() {
+    let whole = Straight::small();
+    for (near, clipped) in [("12.0", false), ("11.3", true), ("10.46", true), ("9.0", true), ("2.0", false)] {
+        let place = Place::new();
+        place.write("near.toml", small_with(&[(TARGET, &format!("rotation_deg = {near}"))]));
+        place.foldline("run near.toml -o run.mcap").ends(0);
+        let near_stages = place.log("run.mcap").entries().len();
+        let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
+        assert_ends_with(&place.log("run.mcap"), whole.chain, &format!("target {near} and then 16"));
+        assert_eq!(place.logs().len(), 1 + usize::from(clipped), "{near}: {:?}", place.logs());
+        if clipped {
+            assert!(!said.err.contains("every stage stands"), "{near}: stages go, and yet: {}", said.err);
+            said.says(&["load.rotation_deg changed", "stand,", &format!("the log holds {near_stages} good stages")]);
+            assert_eq!(place.logs(), ["run.mcap", "run.mcap.replaced-1"]);
+        } else {
+            said.says(&["load.rotation_deg changed", "every stage stands"]);
+        }
+    }
+}
+
+/// A nearer target: what lies beyond it goes, and the log ends where a run to that target ends.
+#[test]
+fn a_nearer_target() {
+    let whole = Straight::small();
+    for near in ["12.0", "11.3", "10.46", "9.0"] {
+        let near_scene = small_with(&[(TARGET, &format!("rotation_deg = {near}"))]);
+        let straight = Straight::run(&near_scene, 2);
+        for stages in [whole.stages, 30, 5] {
+            let place = Place::new();
+            place.write("run.mcap", whole.cut_after(stages));
+            place.write("small.toml", &near_scene);
+            place.foldline("run small.toml -o run.mcap --resume").ends(0);
+            assert_ends_with(&place.log("run.mcap"), straight.chain, &format!("{stages} stages, then to {near}"));
+        }
+    }
+}
+
+/// What steps are made with: complete steps stand, a step in hand is begun anew, and the log says which scene made what.
+#[test]
+fn solver_tolerance() {
+    let whole = Straight::small();
+    let log = whole.log();
+    let tighter = small_with(&[("[solver]", "[solver]\ntolerance = 1e-9")]);
+    let third = end_of_step(&log, 3) + 1;
+    for (stages, keep, last_step) in [(third, third, 3), (third + 1, third + 2, 3), (third - 2, 0, 2), (1, 0, 0)] {
+        let keep = if keep <= stages && keep > 0 { keep } else { end_of_step_at_most(&log, stages) };
+        let place = Place::new();
+        place.write("run.mcap", whole.cut_after(stages));
+        place.write("small.toml", &tighter);
+        let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
+        if last_step == 0 {
+            said.says(&["solver.tolerance changed", "no complete step stands"]);
+        } else {
+            let stand = format!("steps 1 to {last_step} stand, {} on is new", last_step + 1);
+            said.says(&["solver.tolerance changed (1e-7 → 1e-9)", &stand]);
+        }
+        let mixed = place.log("run.mcap");
+        let hashes = [scene(SMALL).hash(), scene(&tighter).hash()];
+        for (index, entry) in mixed.entries().iter().enumerate() {
+            assert_eq!(entry.record.commit.scene_hash, hashes[usize::from(index >= keep)], "{stages}: stage {index}");
+            if index < keep {
+                assert_eq!(entry.record, log.entries()[index].record, "{stages}: stage {index}");
+            }
+        }
+        assert_ne!(mixed.last_commit().unwrap().chain_hash, whole.chain);
+        // Every stretch is run again with the scene that it was run with.
+        let said = place.foldline("replay run.mcap --from-scratch").ends(0);
+        assert_eq!(said.out.matches("bit-identical").count(), mixed.entries().len());
+    }
+}
+
+/// Stages of the complete steps among the first `stages`.
+fn end_of_step_at_most(log: &Log, stages: usize) -> usize {
+    let step_of = |index: usize| log.entries()[index].record.report.step;
+    let ends = |index: &usize| log.entries().get(index + 1).is_some_and(|_| step_of(index + 1) > step_of(*index));
+    (0..stages).rev().find(ends).map_or(0, |index| index + 1)
+}
+
+/// A new target and new steps at once: the earlier of the two boundaries holds, and it is the end of a step.
+#[test]
+fn target_and_tolerance_at_once() {
+    let place = Place::new();
+    place.write("near.toml", small_with(&[(TARGET, "rotation_deg = 10.46")]));
+    place.foldline("run near.toml -o run.mcap").ends(0);
+    let near = place.log("run.mcap");
+    place.write("small.toml", small_with(&[("[solver]", "[solver]\ntolerance = 1e-9")]));
+    place.foldline("run small.toml -o run.mcap --resume").ends(0);
+    let log = place.log("run.mcap");
+    let keep = log.manifests()[1].first_ordinal as usize;
+    let last = near.state(keep - 1).unwrap();
+    assert!(last.control.rejection.is_none() && log.entries()[keep].record.report.stage == Stage::Solve);
+    assert!(log.entries()[keep - 1].record.report.step < log.entries()[keep].record.report.step);
+    place.foldline("replay run.mcap --from-scratch").ends(0);
+}
+
+/// Another problem keeps nothing: refused, and the log is not touched.
+#[test]
+fn geometry_and_the_like() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", whole.cut_after(17));
+    let changes = [
+        ("length_mm = 300.0", "length_mm = 310.0", "geometry.length_mm changed (300.0 in the log, 310.0 now)"),
+        ("thickness_mm = 0.1", "thickness_mm = 0.11", "material.thickness_mm changed"),
+        ("elements = [4, 4]", "elements = [6, 4]", "mesh.elements changed"),
+        ("sense = \"opposite\"", "sense = \"equal\"", "load.sense changed"),
+        ("part = \"quarter\"", "part = \"half-arc\"", "symmetry.part changed"),
+    ];
+    for (from, to, said) in changes {
+        place.write("small.toml", small_with(&[(from, to)]));
+        let refusal = place.foldline("run small.toml -o run.mcap --resume").ends(1);
+        refusal.says(&[said, "nothing can be kept; write to another log with -o"]);
+        assert_eq!(place.read("run.mcap"), whole.cut_after(17), "{said}");
+        assert_eq!(place.logs(), ["run.mcap"]);
+    }
+    place.foldline("resume run.mcap").ends(0);
+    assert_ends_with(&place.log("run.mcap"), whole.chain, "after refusals");
+}
+
+/// Where the scene of the last stretch is lost, an earlier one does not silently take its place.
+#[test]
+fn a_lost_scene_is_not_replaced_by_an_older_one() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", whole.cut_after(17));
+    let tighter = small_with(&[("[solver]", "[solver]\ntolerance = 1e-9")]);
+    place.write("small.toml", &tighter);
+    place.foldline("run small.toml -o run.mcap --resume --until 9").ends(0);
+    let mut bytes = place.read("run.mcap");
+    let at = bytes.windows(16).rposition(|window| window == b"tolerance = 1e-9").unwrap();
+    bytes[at + 15] = b'8';
+    place.write("run.mcap", &bytes);
+    place.foldline("verify run.mcap").says(&["the manifest's entries do not have the hash that it carries"]);
+    let before = place.read("run.mcap");
+    for command in ["resume run.mcap", "replay run.mcap --step 4"] {
+        place.foldline(command).ends(1).says(&["the scene", "is lost", "--resume"]);
+    }
+    assert_eq!(place.read("run.mcap"), before);
+    // Stages whose scene is there can be run again, and everything else can be looked at.
+    place.foldline("replay run.mcap --step 2").ends(0);
+    place.foldline("inspect run.mcap").ends(0);
+    // The scene's file brings it back.
+    place.foldline("run small.toml -o run.mcap --resume").ends(0);
+    let log = place.log("run.mcap");
+    let kept = log.manifests().last().unwrap().first_ordinal;
+    assert_eq!(kept, Log::from_bytes(before).unwrap().entries().len() as u64);
+    place.foldline("replay run.mcap --step 6").ends(0);
+}

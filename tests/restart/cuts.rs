@@ -1,0 +1,114 @@
+//! A run cut anywhere and resumed ends with the same chain of hashes as one that was never cut.
+
+use crate::program::{Place, SMALL, Straight, assert_ends_with, small_syncing};
+
+/// Cuts a straight run after every stage in turn and resumes each.
+fn every_cut(policy: &str, threads_before: usize, threads_after: usize) {
+    let whole = Straight::run(&small_syncing(policy), threads_before);
+    assert_eq!(whole.chain, Straight::small().chain, "syncing and threads change no state");
+    let place = Place::new();
+    for stages in 0..=whole.stages {
+        place.write("cut.mcap", whole.cut_after(stages));
+        place.foldline(&format!("resume cut.mcap --quiet --threads {threads_after}")).ends(0);
+        let what = format!("cut after {stages} stages, {policy}, {threads_before} threads and then {threads_after}");
+        let log = place.log("cut.mcap");
+        assert_ends_with(&log, whole.chain, &what);
+        assert_eq!(log.entries().len(), whole.stages, "{what}");
+        assert_eq!(log.manifests().len(), 2, "{what}");
+        let manifest = &log.manifests()[1];
+        assert_eq!((manifest.first_ordinal, manifest.threads), (stages as u64, threads_after), "{what}");
+        assert_eq!(place.logs(), ["cut.mcap"], "{what}: nothing is left beside the log");
+    }
+}
+
+#[test]
+fn every_cut_from_one_thread_to_two_syncing_each_second() {
+    every_cut("each-second", 1, 2);
+}
+
+#[test]
+fn every_cut_from_two_threads_to_one_syncing_each_stage() {
+    every_cut("each-stage", 2, 1);
+}
+
+#[test]
+fn every_cut_from_one_thread_to_one_syncing_at_the_end() {
+    every_cut("at-end", 1, 1);
+}
+
+/// What a resume says: what it found, what it dropped and why, and what it computes first.
+#[test]
+fn a_resume_says_what_it_found() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("cut.mcap", whole.cut_after(9));
+    place.foldline("resume cut.mcap").ends(0).says(&["the log holds 9 stages, all good", "goes on from 6° with"]);
+
+    let mut torn = whole.cut_after(9).to_vec();
+    torn.extend_from_slice(&whole.bytes[torn.len()..torn.len() + 700]);
+    place.write("torn.mcap", &torn);
+    let said = place.foldline("resume torn.mcap").ends(0);
+    said.says(&["the log holds 9 stages, all good", "cut off: good up to byte", "goes on from 6° with"]);
+    assert_ends_with(&place.log("torn.mcap"), whole.chain, "torn");
+
+    let mut flipped = whole.bytes.clone();
+    flipped[whole.cut_after(20).len() + 400] ^= 8;
+    place.write("flipped.mcap", &flipped);
+    let said = place.foldline("resume flipped.mcap").ends(0);
+    let later = format!("with {} stages that have lost what they follow on", whole.stages - 21);
+    said.says(&["the log holds 20 stages", "damaged at byte", &later, "flipped.mcap.dropped-1"]);
+    assert_ends_with(&place.log("flipped.mcap"), whole.chain, "flipped");
+}
+
+/// A finished log is left as it is.
+#[test]
+fn resuming_a_finished_log_changes_nothing() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", &whole.bytes);
+    place.foldline("resume run.mcap").ends(0).says(&["nothing to do: the log has reached 16°"]);
+    place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["nothing to do: the log has reached 16°"]);
+    assert_eq!(place.read("run.mcap"), whole.bytes);
+    assert_eq!(place.logs(), ["run.mcap"]);
+}
+
+/// Stopped on purpose, twice, the second time in the middle of the way to the snap.
+#[test]
+fn until_here_and_until_there_is_the_straight_run() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.foldline("run small.toml -o run.mcap --until 5 --threads 2").ends(0);
+    assert_eq!(place.log("run.mcap").entries().last().unwrap().record.report.rotation_deg, 6.0);
+    place.foldline("resume run.mcap --until 10.3 --threads 1").ends(0);
+    let reached = place.log("run.mcap").entries().last().unwrap().record.report.rotation_deg;
+    assert!((10.3..10.5).contains(&reached), "{reached}");
+    place.foldline("resume run.mcap --until 10.3").ends(0).says(&["nothing to do"]);
+    place.foldline("resume run.mcap --until 17").ends(2).says(&["--until 17 is beyond the 16°"]);
+    place.foldline("resume run.mcap").ends(0);
+    assert_ends_with(&place.log("run.mcap"), whole.chain, "until twice");
+}
+
+/// Programs read a resumed run as they read a run: one JSON object for each stage, and nothing else.
+#[test]
+fn json_of_a_resume_is_the_stages_that_it_made() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("cut.mcap", whole.cut_after(30));
+    let said = place.foldline("resume cut.mcap --json").ends(0);
+    assert_eq!(said.err, "");
+    let all = place.foldline("inspect cut.mcap --json").ends(0).out;
+    let expected: String = all.lines().skip(30).map(|line| format!("{line}\n")).collect();
+    assert_eq!(said.out, expected);
+    assert_eq!(all.lines().count(), whole.stages);
+}
+
+#[test]
+fn the_same_scene_again_goes_on_with_its_log() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.foldline("run small.toml -o run.mcap --resume --until 9").ends(0);
+    place.foldline("run small.toml -o run.mcap").ends(1).says(&["run.mcap exists and is not overwritten", "resume"]);
+    place.write("small.toml", format!("# another comment\n{SMALL}"));
+    place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["goes on from 10° with solve"]);
+    assert_ends_with(&place.log("run.mcap"), whole.chain, "run --resume");
+}
