@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     snap: bool,
     /// How well the jump is to be located, in degrees
-    #[arg(long, value_name = "DEG", default_value_t = 1e-4, requires = "snap", value_parser = super::run::positive)]
+    #[arg(long, value_name = "DEG", default_value_t = 1e-4, requires = "snap", value_parser = resolved)]
     tolerance: f64,
     /// Find the first stage whose report meets a condition, such as 'moment_n_mm < 100 and step > 3'
     #[arg(long, value_name = "CONDITION")]
@@ -106,6 +106,14 @@ impl Arguments {
     }
 }
 
+/// A tolerance that rotations are resolved to.
+fn resolved(text: &str) -> Result<f64, String> {
+    match super::run::positive(text)? {
+        tolerance if tolerance < 1e-8 => Err("jumps are not resolved more finely than 1e-8 degrees".to_string()),
+        tolerance => Ok(tolerance),
+    }
+}
+
 fn compared(comparison: &Comparison) -> String {
     match comparison {
         Comparison::Identical => "  the states are the same; the scenes that made them are not\n".to_string(),
@@ -133,7 +141,7 @@ fn told(report: &SnapReport) -> String {
     let [u, v, w] = report.mode.shape[report.mode.largest_at];
     let [n1, n2] = report.stable.mesh.element_counts();
     format!(
-        "critical rotation    {below:.6}° to {beyond:.6}°, on {n1} × {n2} elements, {} solves\n\
+        "critical rotation    {below:.9}° to {beyond:.9}°, on {n1} × {n2} elements, {} solves\n\
          moment               {before:.3} N·mm before, {after:.3} N·mm after\n\
          energy released      {:.4} N·mm of {:.4} N·mm\n\
          negative pivots      {stable} before, up to {most} on the way, {end} after\n\

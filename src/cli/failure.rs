@@ -71,6 +71,12 @@ pub(super) enum Failure {
     Condition(#[from] ConditionError),
     #[error(transparent)]
     Snap(#[from] Box<SnapError>),
+    #[error(
+        "{path} is part of the states in the log: it has no effect on a stage that is run again from one; run the changed scene instead"
+    )]
+    NoEffect { path: String },
+    #[error("the log cannot be started")]
+    CannotStart { source: Box<dyn std::error::Error + Send + Sync> },
     #[error("nothing can be timed")]
     Bench { source: Box<BenchError> },
     #[error("no stage of {} meets the condition `{condition}`", log.display())]
@@ -86,6 +92,8 @@ impl Failure {
             | Failure::UntilBeyondScene { .. }
             | Failure::NoSuchStep { .. }
             | Failure::NoSuchStage { .. }
+            | Failure::NoEffect { .. }
+            | Failure::CannotStart { .. }
             | Failure::Model(_)
             | Failure::Condition(_)
             | Failure::NoSuchTopic { .. } => 2,

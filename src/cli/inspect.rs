@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::failure::Failure;
+use super::failure::{EXIT_CODES, Failure};
 use super::json_line::json_line;
 use super::log_file::read_log;
 use super::output::print;
@@ -14,6 +14,7 @@ use crate::study::Summary;
 
 /// Show the stages of a log
 #[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
     /// Log to read (MCAP)
     log: PathBuf,

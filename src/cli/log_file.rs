@@ -54,6 +54,7 @@ impl ReadLog {
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
     let wrong =
         |source: Box<dyn std::error::Error + Send + Sync>| Failure::WrongLog { log: path.to_path_buf(), source };
+    std::fs::metadata(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
     let log = Log::read(path).map_err(|source| wrong(Box::new(source)))?;
     let scene = match (scene_of(&log, path), log.manifests().last()) {
         (Err(Failure::SceneLost { .. }), Some(manifest)) => scene_in(manifest, path, &[])?,

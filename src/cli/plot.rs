@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::failure::Failure;
+use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
 use super::output::{print, write_file};
 use crate::pipeline::Report;
@@ -17,6 +17,7 @@ const SMOOTH: usize = 120;
 
 /// Draw the moment–rotation curve and the deformed mesh of a log
 #[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
     /// Log to read (MCAP)
     log: PathBuf,

@@ -61,16 +61,13 @@ enum Display<'a> {
 }
 
 impl<'a, S: Sink> Shown<'a, S> {
-    /// Shows a run of `scene` that stands at `start_deg` (0, or where it is taken up again) to the streams of this
+    /// Shows a run of `scene` from a rotation (0, or where it is taken up again) to another, degrees, to the streams of this
     /// process.
-    pub fn new(inner: S, manner: Manner, scene: &Scene, start_deg: f64) -> Self {
+    pub fn new(inner: S, manner: Manner, scene: &Scene, [start_deg, target_deg]: [f64; 2]) -> Self {
         let gatherer = Gatherer::new(scene);
         let display = match manner {
             Manner::Quiet => Display::Quiet,
-            Manner::Live => {
-                let target_deg = scene.load.rotation_deg;
-                Display::Live { bar: live_bar(target_deg, start_deg), target_deg, gatherer }
-            }
+            Manner::Live => Display::Live { bar: live_bar(target_deg, start_deg), target_deg, gatherer },
             Manner::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
             Manner::Json => Display::Json(Some(Box::new(io::stdout()))),
         };

@@ -12,7 +12,7 @@ use super::trace;
 use crate::history::{Replayed, Verdict, replay_stage, verdict};
 use crate::journal::TraceRow;
 use crate::pipeline::Stages;
-use crate::scene::Stage;
+use crate::scene::{Scene, Stage};
 
 /// Run stages of a log again, from the state before each; exit code 0 if every bit is the same, 1 if within tolerance, 2 if not
 #[derive(Args, Debug)]
@@ -53,6 +53,7 @@ impl Arguments {
             let mesh = read.log.mesh(index).ok();
             // Each stretch of a log with the scene that it was run with.
             let scene = scene_at(&read.log, &self.log, index, &self.set)?;
+            self.check_settings(&scene_at(&read.log, &self.log, index, &[])?, &scene)?;
             let stages = match stages.take().filter(|stages| *stages.scene() == scene) {
                 Some(same) => stages.insert(same),
                 None => stages.insert(Stages::new(scene)),
@@ -80,6 +81,17 @@ impl Arguments {
         }
         self.write_trace(&rows)?;
         Ok(worst)
+    }
+
+    /// Settings of what a state already holds would be ignored in silence.
+    fn check_settings(&self, logged: &Scene, set: &Scene) -> Result<(), Failure> {
+        let fixed = |path: &str| {
+            ["geometry.", "mesh.degree", "mesh.elements", "symmetry."].iter().any(|it| path.starts_with(it))
+        };
+        match logged.differences(set).into_iter().find(|difference| fixed(&difference.path)) {
+            Some(difference) => Err(Failure::NoEffect { path: difference.path.to_string() }),
+            None => Ok(()),
+        }
     }
 
     fn write_trace(&self, rows: &[TraceRow]) -> Result<(), Failure> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::failure::Failure;
+use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{ReadLog, scene_of};
 use super::output::say;
 use super::progress::Manner;
@@ -17,17 +17,18 @@ use crate::study::Summary;
 
 /// Go on with a log from its last good stage, as if it had never stopped
 #[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
     /// Log to go on with (MCAP)
     log: PathBuf,
-    /// Stop at this rotation of each end, in degrees
+    /// Stop after the first step at or beyond this rotation of each end, in degrees
     #[arg(long, value_name = "DEG", value_parser = super::run::positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Threads; the result is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Show no progress, only the summary
-    #[arg(short, long, conflicts_with = "json")]
+    #[arg(short, long)]
     quiet: bool,
     /// Print a JSON object for each stage to standard output, and nothing else
     #[arg(long)]

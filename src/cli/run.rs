@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::failure::Failure;
+use super::failure::{EXIT_CODES, Failure};
 use super::output::say;
 use super::progress::Manner;
 use super::resume::{self, OldLog};
@@ -17,6 +17,7 @@ use crate::units::rounded;
 
 /// Run a scene, and log every stage
 #[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
     /// Scene file (TOML); `foldline help scene` describes its keys
     scene: PathBuf,
@@ -26,14 +27,14 @@ pub(super) struct Arguments {
     /// Threads; the result is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Stop at this rotation of each end, in degrees; `resume` goes on from there
+    /// Stop after the first step at or beyond this rotation of each end, in degrees; `resume` goes on from there
     #[arg(long, value_name = "DEG", value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Go on with the log if there is one, as far as it stands for this scene
     #[arg(long)]
     resume: bool,
     /// Show no progress, only the summary
-    #[arg(short, long, conflicts_with = "json")]
+    #[arg(short, long)]
     quiet: bool,
     /// Print a JSON object for each stage to standard output, and nothing else
     #[arg(long)]
@@ -84,7 +85,7 @@ impl Job {
         let manifest = Manifest::here(&file, &text, options.use_threads());
         make_default_folder(&options.log)?;
         let writer = JournalWriter::create(&options.log, &manifest, scene.output.sync)
-            .map_err(|source| Failure::WrongLog { log: options.log.clone(), source: Box::new(source) })?;
+            .map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         if options.is_shown() {
             let to = options.until_deg.unwrap_or(scene.load.rotation_deg);
             say(&format!("to {}° → {}", rounded(to), options.log.display()));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 
 use super::failure::{Failure, INTERRUPTED};
@@ -55,6 +55,8 @@ impl RunOptions {
 /// Raised by the first SIGINT or SIGTERM; the second ends the process at once.
 pub(super) fn watch_signals() -> Result<Arc<AtomicBool>, Failure> {
     let raised = Arc::new(AtomicBool::new(false));
+    // A file size limit is then an error that names the log, instead of the end of the process.
+    flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map_err(|source| Failure::Signals { source })?;
     for signal in [SIGINT, SIGTERM] {
         flag::register_conditional_shutdown(signal, i32::from(INTERRUPTED), raised.clone())
             .and_then(|_| flag::register(signal, raised.clone()))
@@ -72,7 +74,8 @@ pub(super) fn drive(
     raised: &AtomicBool,
 ) -> Result<Vec<Record>, Failure> {
     let start_deg = run.state().rotation_deg;
-    let mut sink = Shown::new(writer, options.manner, scene, start_deg);
+    let target_deg = options.until_deg.unwrap_or(scene.load.rotation_deg);
+    let mut sink = Shown::new(writer, options.manner, scene, [start_deg, target_deg]);
     let ending = run.to_end(options.until_deg, &|| raised.load(Ordering::Relaxed), &mut sink);
     let (writer, records) = sink.finish();
     let log = || options.log.clone();

@@ -36,6 +36,12 @@ pub enum WriteError {
         /// The log.
         log: String,
     },
+    /// There is something of that name that is no log.
+    #[error("{log} exists and is no log; it is not overwritten: write elsewhere with `-o OTHER`")]
+    InTheWay {
+        /// Where the log was to go.
+        log: String,
+    },
     /// The folder that the log should lie in is not there.
     #[error("there is no folder {folder} for {log}: make it, or choose another place with `-o OTHER`")]
     NoFolder {
@@ -165,8 +171,8 @@ impl JournalWriter {
     /// Where there is one, where another process writes it, or where it cannot be written.
     pub fn create(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
         let log = path.display().to_string();
-        if path.exists() {
-            return Err(WriteError::Exists { log });
+        if path.symlink_metadata().is_ok() {
+            return Err(if is_log(path) { WriteError::Exists { log } } else { WriteError::InTheWay { log } });
         }
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
             return Err(WriteError::NoFolder { folder: folder.display().to_string(), log });
@@ -360,4 +366,11 @@ impl Sink for JournalWriter {
     fn take(&mut self, state: &State, record: &Record) -> Result<(), SinkError> {
         Ok(self.commit(state, record)?)
     }
+}
+
+/// Whether a file begins as MCAP files do.
+fn is_log(path: &Path) -> bool {
+    let mut head = [0; mcap::MAGIC.len()];
+    let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
+    read.is_ok() && head == *mcap::MAGIC
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::adapt::{evaluate_indicators, project_displacements, refine_mesh};
 use crate::equilibrium::{Effort, Equilibrium, FactorError, Iterate, SolveError, Solved, Workspace, strain_energy};
 use crate::model::{MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, starting_mesh};
-use crate::pipeline::step_control::{Attempt, is_jump, next_attempt};
+use crate::pipeline::step_control::{Attempt, is_jump, is_jump_on_refinement, next_attempt};
 use crate::pipeline::{Outcome, Report};
 use crate::scene::{Scene, Stage};
 use crate::spline::Mesh;
@@ -47,7 +47,12 @@ pub enum StageError {
         cause: Box<SolveError>,
     },
     /// The refined mesh has no equilibrium at the load.
-    #[error("step {step}, re-equilibrate at {rotation_deg}° on {elements:?} elements: {cause}")]
+    #[error(
+        "step {step}, re-equilibrate at {rotation_deg}° on {} × {} elements: {cause}; raise solver.max_iterations, or adapt.threshold to \
+         refine less at once, and go on with `foldline run SCENE --resume`",
+        elements[0],
+        elements[1]
+    )]
     NotReEquilibrated {
         /// Load step.
         step: u64,
@@ -321,7 +326,7 @@ impl Stages {
         let mut report = self.report(&next, step);
         report.record(&next, &solved);
         // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
-        report.jumped = unstable_on_the_way && is_jump(released, state.strain_energy_n_mm, solved.energy);
+        report.jumped = unstable_on_the_way && is_jump_on_refinement(released, state.strain_energy_n_mm);
         if report.jumped {
             report.energy_released_n_mm = released;
         }

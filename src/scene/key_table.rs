@@ -131,7 +131,7 @@ pub(super) static YOUNGS_MODULUS: Key = Key {
     unit: Megapascal,
     kind: Kind::Number(Limits {
         low: Limit::excluded(0.0, "without stiffness there is no equilibrium to find"),
-        high: Limit::included(1e7, "far stiffer than diamond (1.2e6 MPa)"),
+        high: Limit::included(1e13, "far stiffer than anything (diamond: 1.2e6 MPa)"),
     }),
     presence: Required,
     reach: Everything,
@@ -183,7 +183,7 @@ pub(super) static DEGREE: Key = Key {
     }),
     presence: Default("3"),
     reach: Everything,
-    meaning: "Polynomial degree along the length and along the arc.",
+    meaning: "Polynomial degree along the length and along the arc; degree 2 locks on coarse meshes unless quadrature is reduced.",
     example: "[3, 3]",
     aliases: &["p", "order", "degrees"],
 };
@@ -344,7 +344,10 @@ pub(super) static TOLERANCE: Key = Key {
     unit: None,
     kind: Kind::Number(Limits {
         low: Limit::excluded(0.0, "rounding keeps every residual above zero"),
-        high: Limit::included(1e-2, "a residual of more than 1 % of the reactions is no equilibrium"),
+        high: Limit::included(
+            1e-4,
+            "beyond it moments and the rotation of a jump are off in the digits that are printed",
+        ),
     }),
     presence: Default("1e-7"),
     reach: Steps,
@@ -361,10 +364,10 @@ pub(super) static MAX_ITERATIONS: Key = Key {
         low: Limit::included(1.0, "without an iteration nothing is solved"),
         high: Limit::included(1e5, "a solve that has not converged by then will not"),
     }),
-    presence: Default("100"),
+    presence: Default("1000"),
     reach: Steps,
-    meaning: "Newton iterations after which a solve has failed.",
-    example: "100",
+    meaning: "Newton iterations after which a solve has failed; a smooth step takes 3 to 5, a snap some tens.",
+    example: "1000",
     aliases: &["iterations", "max_iter", "maxiter", "iteration_limit"],
 };
 
@@ -387,7 +390,10 @@ pub(super) static SNAP_TOLERANCE: Key = Key {
     section: "solver",
     name: "snap_tolerance_deg",
     unit: Degree,
-    kind: Kind::Number(Limits { low: Limit::excluded(0.0, "no jump can be located exactly"), high: Limit::NONE }),
+    kind: Kind::Number(Limits {
+        low: Limit::included(1e-9, "rotations of jumps are not resolved more finely"),
+        high: Limit::NONE,
+    }),
     presence: Default("0.01"),
     reach: Steps,
     meaning: "A jump is located to this rotation before the run goes on beyond it.",

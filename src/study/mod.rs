@@ -9,5 +9,5 @@ mod wuest;
 
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use path::{PathPoint, Snap, equilibrium_path, snaps};
-pub use summary::{FoldMean, MeasuredPeak, MeshChange, StageWork, Summary};
+pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, StageWork, Summary};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

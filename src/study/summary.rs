@@ -21,6 +21,8 @@ pub struct Summary {
     pub initial_stiffness_n_mm: Option<f64>,
     /// The highest moment before a jump; `None` where the moment was still rising at the end.
     pub peak: Option<MeasuredPeak>,
+    /// Work and energy before the first jump; `None` before the first equilibrium.
+    pub balance: Option<EnergyBalance>,
     /// The jumps, in order.
     pub snaps: Vec<Snap>,
     /// Moment of the fold; `None` where the shell did not jump.
@@ -71,6 +73,19 @@ pub struct MeshChange {
     pub unknowns: usize,
 }
 
+/// Work of both end moments against strain energy, up to the first jump.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EnergyBalance {
+    /// Rotation of the last equilibrium that is counted, degrees.
+    pub rotation_deg: f64,
+    /// ∫ 2M dθ, N·mm.
+    pub work_n_mm: f64,
+    /// Strain energy there, N·mm.
+    pub strain_energy_n_mm: f64,
+    /// Energy that refinement took out at fixed rotation: a coarse mesh stores too much, N·mm.
+    pub taken_out_by_refinement_n_mm: f64,
+}
+
 /// What the runs of one stage have cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageWork {
@@ -100,6 +115,7 @@ impl Summary {
             symmetric_parts: scene.symmetry.copies(),
             initial_stiffness_n_mm: initial_stiffness(&path[..before_jump]),
             peak: peak(&path[..before_jump], before_jump < path.len()),
+            balance: energy_balance(records),
             fold: fold_mean(&path, snaps.last()),
             snaps,
             meshes: mesh_changes(records),
@@ -119,6 +135,30 @@ impl Summary {
     pub fn stages(&self) -> usize {
         self.work.iter().map(|work| work.runs).sum()
     }
+}
+
+/// Work of the end moments up to the last equilibrium before a jump, by the trapezoidal rule, and where it went.
+fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
+    let mut sum = EnergyBalance::default();
+    let mut moment = 0.0;
+    for Record { report, .. } in records {
+        if report.jumped {
+            break;
+        }
+        match report.stage {
+            Stage::Solve if report.outcome == Outcome::Done => {
+                sum.work_n_mm += (moment + report.moment_n_mm) * (report.rotation_deg - sum.rotation_deg).to_radians();
+                sum.rotation_deg = report.rotation_deg;
+            }
+            // Refining integrates the energy anew, and re-equilibrating lowers it: neither is work of the ends.
+            Stage::RefineKnots | Stage::ReEquilibrate => {
+                sum.taken_out_by_refinement_n_mm += sum.strain_energy_n_mm - report.strain_energy_n_mm;
+            }
+            _ => continue,
+        }
+        (moment, sum.strain_energy_n_mm) = (report.moment_n_mm, report.strain_energy_n_mm);
+    }
+    (sum.work_n_mm != 0.0).then_some(sum)
 }
 
 /// dM/dθ at θ = 0: M/θ of up to three first points on one mesh, extrapolated by the polynomial through them.

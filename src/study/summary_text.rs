@@ -51,7 +51,9 @@ impl Summary {
             };
             return writeln!(f, "no equilibrium yet{turned_down}");
         };
-        let reached = if last.rotation_deg >= self.target_deg * (1.0 - 1e-9) {
+        let reached = if last.rotation_deg > self.target_deg * (1.0 + 1e-9) {
+            format!("{}°, beyond the {}° that the scene asks for", rounded(last.rotation_deg), rounded(self.target_deg))
+        } else if last.rotation_deg >= self.target_deg * (1.0 - 1e-9) {
             format!("{}°, as the scene asks", rounded(self.target_deg))
         } else {
             format!("{}° of {}°", rounded(last.rotation_deg), rounded(self.target_deg))
@@ -90,15 +92,38 @@ impl Summary {
                 format!("{:8.3}° on refining", snap.after_deg)
             };
             let drop = format!(
-                "{:.2} → {:.2} N·mm, released {:.2} N·mm; located to {:.3}°",
+                "{:.2} → {:.2} N·mm, released {:.2} N·mm{}",
                 snap.moment_before_n_mm,
                 snap.moment_after_n_mm,
                 snap.energy_released_n_mm,
-                snap.after_deg - snap.before_deg
+                if snap.after_deg > snap.before_deg {
+                    format!("; located to {:.3}°", snap.after_deg - snap.before_deg)
+                } else {
+                    String::new()
+                }
             );
             Line { name: "snap", measured, law: None, off: None, note: &drop }.write(f)?;
         }
-        self.fold.map_or(Ok(()), |fold| self.write_fold(f, fold))
+        self.fold.map_or(Ok(()), |fold| self.write_fold(f, fold))?;
+        self.write_balance(f)
+    }
+
+    /// Up to the first jump, or the end: work of both ends against strain energy.
+    fn write_balance(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Some(balance) = self.balance else { return Ok(()) };
+        let stored = balance.strain_energy_n_mm + balance.taken_out_by_refinement_n_mm;
+        let refinement = match balance.taken_out_by_refinement_n_mm {
+            0.0 => String::new(),
+            taken => format!(" + {taken:.3} that refining took out"),
+        };
+        Line {
+            name: "work of the ends",
+            measured: format!("{:8.3} N·mm to {}°", balance.work_n_mm, rounded(balance.rotation_deg)),
+            law: Some(("strain energy", format!("{:.3}{refinement}", balance.strain_energy_n_mm))),
+            off: Some(balance.work_n_mm / stored),
+            note: "",
+        }
+        .write(f)
     }
 
     fn write_peak(&self, f: &mut Formatter<'_>) -> fmt::Result {
