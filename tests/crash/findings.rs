@@ -28,24 +28,24 @@ fn findings_in_words() {
     };
     insta::assert_snapshot!(said(bytes.clone()), @"Info log: 5 commits, finished");
     insta::assert_snapshot!(said(bytes[..entries[3].start as usize + 700].to_vec()), @r"
-    Warning log: 3 commits; the 700 bytes from byte 13361 on are of one that was cut off
-    Warning byte 13361: the chunk is 1950 bytes long, and the file ends after 691 of them
+    Warning log: 3 commits; the 700 bytes from byte 13316 on are of one that was cut off
+    Warning byte 13316: the chunk is 1935 bytes long, and the file ends after 691 of them
     ");
     insta::assert_snapshot!(flipped(entries[2].start as usize + 100), @r"
-    Error log: 2 commits; 14809 bytes from byte 11337 on are lost, with 2 whole commits
-    Error byte 11337: the chunk cannot be read: Chunk CRC failed
-    Warning commit 3 (step 2, evaluate-indicators): whole at byte 13361, but what it follows on is lost: it is not used
-    Warning commit 4 (step 3, solve): whole at byte 15413, but what it follows on is lost: it is not used
+    Error log: 2 commits; 14764 bytes from byte 11307 on are lost, with 2 whole commits
+    Error byte 11307: the chunk cannot be read: Chunk CRC failed
+    Warning commit 3 (step 2, evaluate-indicators): whole at byte 13316, but what it follows on is lost: it is not used
+    Warning commit 4 (step 3, solve): whole at byte 15353, but what it follows on is lost: it is not used
     ");
     insta::assert_snapshot!(flipped(entries[2].start as usize + 2), @r"
-    Error log: 2 commits; 14809 bytes from byte 11337 on are lost, with 2 whole commits
-    Error byte 11337: the lengths in the chunk's header do not agree, or it is compressed, which foldline's logs are not
-    Warning commit 3 (step 2, evaluate-indicators): whole at byte 13361, but what it follows on is lost: it is not used
-    Warning commit 4 (step 3, solve): whole at byte 15413, but what it follows on is lost: it is not used
+    Error log: 2 commits; 14764 bytes from byte 11307 on are lost, with 2 whole commits
+    Error byte 11307: the lengths in the chunk's header do not agree, or it is compressed, which foldline's logs are not
+    Warning commit 3 (step 2, evaluate-indicators): whole at byte 13316, but what it follows on is lost: it is not used
+    Warning commit 4 (step 3, solve): whole at byte 15353, but what it follows on is lost: it is not used
     ");
     insta::assert_snapshot!(flipped(entries[1].end as usize), @r"
     Info log: 5 commits, finished
-    Warning byte 11244: a schema of 22 bytes stands where none belongs
+    Warning byte 11214: a schema of 22 bytes stands where none belongs
     ");
     insta::assert_snapshot!(flipped(150), @r"
     Info log: 5 commits, finished
@@ -54,11 +54,11 @@ fn findings_in_words() {
     ");
     insta::assert_snapshot!(flipped(entries[2].start as usize + 9), @r"
     Info log: 5 commits, finished
-    Warning byte 11346: not the byte that would be written here; no state depends on it, but viewers may. `foldline recover` writes the log anew
+    Warning byte 11316: not the byte that would be written here; no state depends on it, but viewers may. `foldline recover` writes the log anew
     ");
     insta::assert_snapshot!(flipped(bytes.len() - 30), @r"
     Info log: 5 commits, finished
-    Warning byte 26116: not the byte that would be written here; no state depends on it, but viewers may. `foldline recover` writes the log anew
+    Warning byte 26041: not the byte that would be written here; no state depends on it, but viewers may. `foldline recover` writes the log anew
     ");
     insta::assert_snapshot!(said(bytes[..20].to_vec()), @"the log has 20 bytes and no header to read: no stage is in it. Delete it and start the run again");
     insta::assert_snapshot!(said(b"# a scene, not a log".to_vec()), @"this is not a log: it does not begin like an MCAP file, and no commit of a run is in it");
@@ -74,12 +74,12 @@ fn all_findings_and_not_only_the_first() {
         bytes[entries[index].start as usize + 120] ^= 1;
     }
     insta::assert_snapshot!(said(bytes), @r"
-    Error log: 2 commits; 22861 bytes from byte 11337 on are lost, with 4 whole commits
-    Error byte 11337: the chunk cannot be read: Chunk CRC failed
-    Error byte 17520: the chunk cannot be read: Chunk CRC failed
-    Warning commit 3 (step 2, evaluate-indicators): whole at byte 13361, but what it follows on is lost: it is not used
-    Warning commit 4 (step 3, solve): whole at byte 15413, but what it follows on is lost: it is not used
-    Warning commit 6 (step 3, refine-knots): whole at byte 19671, but what it follows on is lost: it is not used
-    Warning commit 7 (step 3, project-displacements): whole at byte 22922, but what it follows on is lost: it is not used
+    Error log: 2 commits; 23692 bytes from byte 11307 on are lost, with 4 whole commits
+    Error byte 11307: the chunk cannot be read: Chunk CRC failed
+    Error byte 17445: the chunk cannot be read: Chunk CRC failed
+    Warning commit 3 (step 2, evaluate-indicators): whole at byte 13316, but what it follows on is lost: it is not used
+    Warning commit 4 (step 3, solve): whole at byte 15353, but what it follows on is lost: it is not used
+    Warning commit 6 (step 3, refine-knots): whole at byte 19581, but what it follows on is lost: it is not used
+    Warning commit 7 (step 3, project-displacements): whole at byte 22624, but what it follows on is lost: it is not used
     ");
 }

@@ -140,7 +140,7 @@ fn memory_for_the_largest_stage() {
     let (state, record) = synthetic::run(800, 1).remove(0);
     let error = writer.commit(&state, &record).unwrap_err();
     let cause = std::error::Error::source(&error).unwrap().to_string();
-    insta::assert_snapshot!(cause, @"the stage takes 36040520 bytes, and a chunk of a log holds 33554432: use a coarser mesh");
+    insta::assert_snapshot!(cause, @"the stage takes 36040505 bytes, and a chunk of a log holds 33554432: use a coarser mesh");
 }
 
 /// Records swapped, repeated and left out, each whole in itself.
