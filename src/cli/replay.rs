@@ -9,7 +9,7 @@ use super::log_file::{ReadLog, read_log, scene_at};
 use super::output::print;
 use super::scene_file::stage_named;
 use super::trace;
-use crate::history::{Replayed, Verdict, replay_stage, verdict};
+use crate::history::{ReplayError, Replayed, Verdict, replay_stage, verdict};
 use crate::journal::TraceRow;
 use crate::pipeline::Stages;
 use crate::scene::{Scene, Stage};
@@ -63,16 +63,19 @@ impl Arguments {
                     rows.push(trace::row(&commit, mesh, iterate));
                 }
             };
-            let replayed = replay_stage(&read.log, index, stages, &mut observer).map_err(|source| {
-                let (ordinal, stage, step) = (commit.ordinal, commit.stage, commit.step);
-                Failure::Replay { ordinal, stage, step, source: Box::new(source) }
-            });
-            let replayed = match replayed {
+            let (ordinal, stage, step) = (commit.ordinal, commit.stage, commit.step);
+            let replayed = match replay_stage(&read.log, index, stages, &mut observer) {
                 Ok(replayed) => replayed,
-                Err(failure) => {
+                // It did not fail when the log was written.
+                Err(ReplayError::Stage(error)) => {
+                    print(&format!("{ordinal:>5}  step {step} {stage}: different: it fails now: {error}\n"))?;
+                    worst = code(&Verdict::Different(String::new()));
+                    continue;
+                }
+                Err(source) => {
                     // What led there is what the trace is for.
                     self.write_trace(&rows)?;
-                    return Err(failure);
+                    return Err(Failure::Replay { ordinal, stage, step, source: Box::new(source) });
                 }
             };
             let verdict = verdict(&replayed.comparison);

@@ -63,6 +63,7 @@ pub(super) struct OldLog {
 
 impl OldLog {
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        std::fs::metadata(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
         let failed = |source| Failure::Resume { log: path.to_path_buf(), source: Box::new(source) };
         Ok(Self { claim: Resume::open(path).map_err(failed)? })
     }

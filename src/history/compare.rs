@@ -1,7 +1,7 @@
 //! Two states side by side: which field differs most, by how much, and where on the surface.
 
 use crate::spline::Mesh;
-use crate::state::State;
+use crate::state::{Rejection, State};
 
 /// Two values of a field that are not the same.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +55,14 @@ pub fn compare(a: &State, b: &State) -> Comparison {
 /// Why two states cannot be compared number by number.
 fn structure(a: &State, b: &State) -> Option<String> {
     let elements = |state: &State| state.mesh.element_counts();
+    if a.stage == b.stage && a.control.rejection != b.control.rejection {
+        let what = |state: &State| match state.control.rejection {
+            None => format!("a solve that reached {}°", state.rotation_deg),
+            Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
+            Some(Rejection::Jump) => "a solve that was turned down for a jump".to_string(),
+        };
+        return Some(format!("{} against {}", what(a), what(b)));
+    }
     if a.stage != b.stage || a.step != b.step {
         let name = |state: &State| state.stage.map_or("start", |stage| stage.name());
         return Some(format!("step {} {} against step {} {}", a.step, name(a), b.step, name(b)));

@@ -140,7 +140,7 @@ fn units() {
             ("youngs_modulus_mpa = 131000.0", "E_GPa = 131"),
             ("length_mm = 300.0", "length_mm = \"0.3 m\""),
             ("length_mm = 300.0", "length_m = \"long\""),
-            ("youngs_modulus_mpa = 131000.0", "youngs_modulus_mpa = 131e9"),
+            ("youngs_modulus_mpa = 131000.0", "youngs_modulus_mpa = 131e15"),
         ]),
     );
 }

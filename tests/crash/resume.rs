@@ -107,7 +107,7 @@ fn a_log_is_never_overwritten() {
     fs::write(&path, "not even a log").unwrap();
     let error = JournalWriter::create(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap_err();
     let text = error.to_string().replace(&path.display().to_string(), "run.mcap");
-    insta::assert_snapshot!(text, @"run.mcap exists and is not overwritten: `foldline resume run.mcap` goes on with it, `-o OTHER` writes elsewhere");
+    insta::assert_snapshot!(text, @"run.mcap exists and is no log; it is not overwritten: write elsewhere with `-o OTHER`");
     let error = JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap_err();
     let source = std::error::Error::source(&error).unwrap().to_string();
     insta::assert_snapshot!(source, @"this is not a log: it does not begin like an MCAP file, and no commit of a run is in it");

@@ -121,7 +121,7 @@ fn a_second_process_is_refused() {
     for command in ["resume run.mcap", "run small.toml -o run.mcap --resume"] {
         place.foldline(command).ends(1).says(&[&busy, "wait for it or stop it. Nothing was changed"]);
     }
-    place.foldline("run small.toml -o run.mcap").ends(1).says(&["run.mcap exists and is not overwritten"]);
+    place.foldline("run small.toml -o run.mcap").ends(2).says(&["run.mcap exists and is not overwritten"]);
     // Reading is free.
     place.foldline("inspect run.mcap").ends(0).says(&["unfinished"]);
     place.foldline("verify run.mcap").ends(0);
@@ -150,7 +150,7 @@ fn the_one_that_lost_the_lease_stops() {
     run.send("CONT");
     let (said, reported) = run.end();
     said.ends(1).says(&["run.mcap was taken over by process 1 (elsewhere): this run stops and adds nothing to it"]);
-    assert!(reported <= 9);
+    assert!(reported < whole.stages);
     assert_eq!(place.read("run.mcap"), after, "the loser adds nothing");
     place.foldline("resume run.mcap").ends(0);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "the other");

@@ -31,7 +31,7 @@ fn fuzz<S: Strategy>(
     strategy: S,
     test: impl Fn(S::Value) -> Result<(), TestCaseError>,
 ) where
-    S::Value: std::fmt::Debug,
+    S::Value: std::fmt::Debug + Clone,
 {
     let seconds = std::env::var("FOLDLINE_FUZZ_SECONDS").map_or(1, |text| text.parse().unwrap());
     let (began, cases) = (Instant::now(), Cell::new(0_u64));
@@ -43,10 +43,17 @@ fn fuzz<S: Strategy>(
         };
         let outcome = TestRunner::new(config).run(&strategy, |value| {
             cases.set(cases.get() + 1);
-            let case = Instant::now();
-            test(value)?;
-            prop_assert!(case.elapsed() < CASE_LIMIT, "took {:?}", case.elapsed());
-            Ok(())
+            // What is slow in itself is slow every time; what the machine held up is not.
+            let mut took = Duration::MAX;
+            for _ in 0..3 {
+                let case = Instant::now();
+                test(value.clone())?;
+                took = took.min(case.elapsed());
+                if took < CASE_LIMIT {
+                    return Ok(());
+                }
+            }
+            Err(TestCaseError::fail(format!("took {took:?}")))
         });
         if let Err(failure) = outcome {
             panic!("{name}, case {}: {failure}", cases.get());

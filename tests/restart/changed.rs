@@ -1,7 +1,7 @@
 //! A scene that changed between a run and its resume: what stands is said and kept, and nothing is mixed in silence.
 
-use foldline::journal::Log;
-use foldline::scene::Stage;
+use foldline::journal::{JournalWriter, Log, Manifest};
+use foldline::scene::{Stage, SyncPolicy};
 
 use crate::program::{Place, SMALL, Straight, assert_ends_with, scene, small_with};
 
@@ -143,6 +143,30 @@ fn geometry_and_the_like() {
     }
     place.foldline("resume run.mcap").ends(0);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "after refusals");
+}
+
+/// Another machine may round differently: allowed, said, and recorded.
+#[test]
+fn another_machine() {
+    let whole = Straight::small();
+    let (place, log) = (Place::new(), whole.log());
+    let elsewhere = Manifest { host: "elsewhere".into(), cpu: "abacus".into(), ..log.manifests()[0].clone() };
+    let mut writer = JournalWriter::create(&place.file("run.mcap"), &elsewhere, SyncPolicy::AtEnd).unwrap();
+    for (index, entry) in log.entries()[..25].iter().enumerate() {
+        writer.commit(&log.state(index).unwrap(), &entry.record).unwrap();
+    }
+    drop(writer);
+    let said = place.foldline("resume run.mcap").ends(0);
+    said.says(&["another machine: written on elsewhere (abacus", "goes on on", "the log records it"]);
+    let resumed = place.log("run.mcap");
+    let machines: Vec<_> =
+        resumed.manifests().iter().map(|manifest| (&*manifest.cpu, manifest.first_ordinal)).collect();
+    assert_eq!(machines, [("abacus", 0), (std::env::consts::ARCH, 25)]);
+    assert_ends_with(&resumed, whole.chain, "two machines that round alike");
+    place.foldline("verify run.mcap").ends(0).says(&["commit 25: from here on computed on another machine"]);
+    place.write("straight.mcap", &whole.bytes);
+    let said = place.foldline("bisect run.mcap straight.mcap").ends(0);
+    said.says(&["machine: elsewhere and", "processor: abacus"]);
 }
 
 /// Where the scene of the last stretch is lost, an earlier one does not silently take its place.

@@ -2,6 +2,7 @@
 
 mod bisect;
 mod changed;
+mod cost;
 mod cuts;
 mod program;
 mod reading;
