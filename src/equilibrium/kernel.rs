@@ -221,3 +221,69 @@ fn contract<const M: usize, const FMA: bool>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::starting_mesh;
+    use crate::scene::parse;
+
+    /// The build for AVX2 and FMA against the portable one, and the upper half against a plain double sum.
+    #[test]
+    fn fast_paths_agree_with_slow_ones() {
+        for degree in [[2, 2], [3, 3], [2, 4], [5, 5]] {
+            let mut scene = parse(include_str!("../../pipelines/baseline.toml"), "baseline.toml").unwrap();
+            scene.mesh.degree = degree;
+            let tables = Tables::new(&scene, &starting_mesh(&scene).unwrap());
+            let padded = tables.padded;
+            let functions = (degree[0] + 1) * (degree[1] + 1);
+            let integrate = |fma: bool| {
+                let mut buffers = ElementBuffers::new(padded);
+                for c in 0..3 {
+                    for a in 0..functions {
+                        buffers.displacement[c * padded + a] = 0.1 * ((a * 31 + c * 17) % 13) as f64 - 0.6;
+                    }
+                }
+                integrate_element(&tables, 5, Want::Stiffness, fma, &mut buffers);
+                buffers
+            };
+            let plain = integrate(false);
+            if has_fma_kernel() {
+                let fast = integrate(true);
+                let scale = plain.stiffness.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+                assert!((fast.energy / plain.energy - 1.0).abs() < 1e-12);
+                for (a, b) in fast.stiffness.iter().zip(&plain.stiffness) {
+                    assert!((a - b).abs() < 1e-12 * scale, "{degree:?}: {a} {b}");
+                }
+            }
+            check_against_double_sum(&tables, &plain, functions);
+        }
+    }
+
+    fn check_against_double_sum(tables: &Tables, buffers: &ElementBuffers, functions: usize) {
+        let padded = tables.padded;
+        let scale = buffers.stiffness.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        for (a, c, b, d) in [(0, 0, functions - 1, 2), (1, 1, 1, 1), (2, 0, 4, 1), (functions - 2, 2, functions - 1, 0)]
+        {
+            let mut expected = 0.0;
+            for (q, point) in tables.element_points(5).iter().enumerate() {
+                let f = |k: usize, a: usize| tables.element_functions(5)[(q * 5 + k) * padded + a];
+                let mut u = [[0.0; 3]; 5];
+                for k in 0..5 {
+                    for e in 0..3 {
+                        u[k][e] = (0..functions).map(|i| f(k, i) * buffers.displacement[e * padded + i]).sum();
+                    }
+                }
+                let mut hessian: Hessian = [[0.0; 16]; 15];
+                point.hessian(&u, &mut hessian);
+                for k in 0..5 {
+                    for l in 0..5 {
+                        expected += f(k, a) * hessian[3 * k + c][3 * l + d] * f(l, b);
+                    }
+                }
+            }
+            let found = buffers.stiffness[((a * 3 + c) * 3 + d) * padded + b];
+            assert!((found - expected).abs() < 1e-12 * scale, "({a}, {c}) ({b}, {d}): {found} {expected}");
+        }
+    }
+}

@@ -162,3 +162,63 @@ fn point_pairs(discretization: &Discretization) -> Vec<(usize, [usize; 2])> {
     }
     pairs
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::equilibrium::assembly::Want;
+    use crate::model::starting_mesh;
+    use crate::scene::{Geometry, Symmetry, parse};
+
+    /// K_q d against Tᵀ (K (T d)), which goes through none of the targets: in every symmetry, and on an arc with joints.
+    #[test]
+    fn the_matrix_is_the_projected_stiffness() {
+        for (symmetry, arc_deg) in [
+            (Symmetry::None, 110.0),
+            (Symmetry::HalfLength, 110.0),
+            (Symmetry::HalfArc, 110.0),
+            (Symmetry::Quarter, 110.0),
+            (Symmetry::None, 300.0),
+            (Symmetry::Quarter, 350.0),
+        ] {
+            let mut scene = parse(include_str!("../../pipelines/baseline.toml"), "baseline.toml").unwrap();
+            scene.symmetry = symmetry;
+            scene.geometry = Geometry::TapeSpring { length_mm: 100.0, radius_mm: 10.0, arc_deg };
+            scene.mesh.elements = [6, 6];
+            let mesh = Arc::new(starting_mesh(&scene).unwrap());
+            let discretization = Discretization::new(&scene, &mesh);
+            let placement = discretization.unknowns.at(0.3);
+            let count = discretization.unknowns.count();
+            let vector =
+                |seed: usize| (0..count).map(|i| ((i * 7919 + seed) % 1013) as f64 / 1013.0 - 0.5).collect::<Vec<_>>();
+            let state: Vec<f64> = vector(5).iter().map(|x| 0.02 * x).collect();
+            let mut assembled = Assembled::new(&discretization);
+            assembled.assemble(&discretization, &placement.displacement(&state), Want::Stiffness);
+
+            let direction = vector(11);
+            let (moved, still) = (placement.displacement(&direction), placement.displacement(&vec![0.0; count]));
+            let field: Vec<[f64; 3]> = moved.iter().zip(&still).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect();
+            let expected = placement.restrict(&assembled.multiply(&discretization, &field));
+
+            let pattern = Pattern::new(&discretization);
+            let mut values = vec![0.0; pattern.entry_count()];
+            pattern.fill(&discretization, &placement, &assembled, &mut values);
+            let mut product = vec![0.0; count];
+            for column in 0..count {
+                for entry in pattern.column_starts[column]..pattern.column_starts[column + 1] {
+                    let row = pattern.rows[entry];
+                    product[row] += values[entry] * direction[column];
+                    if row != column {
+                        product[column] += values[entry] * direction[row];
+                    }
+                }
+            }
+            let scale = expected.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            for (a, b) in product.iter().zip(&expected) {
+                assert!((a - b).abs() < 1e-11 * scale, "{symmetry:?} {arc_deg}°: {a} {b}");
+            }
+        }
+    }
+}
