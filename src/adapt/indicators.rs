@@ -1,6 +1,7 @@
-//! Refinement indicators (Canales & Pellegrino): r_i = max|κ_i| h_i over an element, with κ_i the physical bending strain
-//! along local axis i and h_i the element's length along it. An axis is refined where r_i > r₀ and h_i / 2 exceeds the
-//! length limit, each axis on its own. The mesh is a tensor product, so a marked element marks its whole knot span.
+//! Refinement indicators (Canales & Pellegrino): r_i = max|κ_i| h_i over an element, with κ_i the physical bending
+//! strain along local axis i and h_i the element's length along it. An axis is refined where r_i > r₀ and h_i / 2
+//! exceeds the length limit, each axis on its own. The mesh is a tensor product, so a marked element marks its whole
+//! knot span.
 
 use rayon::prelude::*;
 
@@ -72,8 +73,8 @@ fn element_indicators(discretization: &Discretization, displacement: &[[f64; 3]]
     [0, 1].map(|axis| largest[axis] * discretization.tables.lengths[element][axis])
 }
 
-/// Strains at the quadrature points of an element, in the parameter basis, each with |A₁|, |A₂|: physical components are
-/// strains over the lengths.
+/// Strains at the quadrature points of an element, in the parameter basis, each with |A₁|, |A₂|: physical components
+/// are strains over the lengths.
 pub fn element_strains(
     discretization: &Discretization,
     displacement: &[[f64; 3]],

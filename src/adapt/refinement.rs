@@ -1,5 +1,6 @@
 //! Exact refinement: knots are inserted into the geometry, and later into the displacement, both in homogeneous
-//! coordinates, since the weights change too. The old displacement lies in the new space, so the energy is the same to rounding.
+//! coordinates, since the weights change too. The old displacement lies in the new space, so the energy is the same to
+//! rounding.
 
 use crate::spline::{Mesh, insert_knots_into_net};
 

@@ -50,7 +50,8 @@ impl ReadLog {
     }
 }
 
-/// Reads a log and the scene of its last stretch, and says what of it is lost; where that is lost, an earlier one serves to show what is there.
+/// Reads a log and the scene of its last stretch, and says what of it is lost; where that is lost, an earlier one
+/// serves to show what is there.
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
     let wrong =
         |source: Box<dyn std::error::Error + Send + Sync>| Failure::WrongLog { log: path.to_path_buf(), source };
@@ -80,8 +81,8 @@ pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
     }
 }
 
-/// The scene that stage `index` was run with, with settings laid over it: that of its stretch, and held against the hash in its
-/// commit, so that no other takes its place where it is lost.
+/// The scene that stage `index` was run with, with settings laid over it: that of its stretch, and held against the
+/// hash in its commit, so that no other takes its place where it is lost.
 pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
     let expected = log.entries()[index].record.commit.scene_hash;
     for manifest in log.manifests().iter().rev().filter(|manifest| manifest.first_ordinal <= index as u64) {

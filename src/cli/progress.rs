@@ -61,8 +61,8 @@ enum Display<'a> {
 }
 
 impl<'a, S: Sink> Shown<'a, S> {
-    /// Shows a run of `scene` from a rotation (0, or where it is taken up again) to another, degrees, to the streams of this
-    /// process.
+    /// Shows a run of `scene` from a rotation (0, or where it is taken up again) to another, degrees, to the streams
+    /// of this process.
     pub fn new(inner: S, manner: Manner, scene: &Scene, [start_deg, target_deg]: [f64; 2]) -> Self {
         let gatherer = Gatherer::new(scene);
         let display = match manner {

@@ -14,7 +14,8 @@ use crate::journal::TraceRow;
 use crate::pipeline::Stages;
 use crate::scene::{Scene, Stage};
 
-/// Run stages of a log again, from the state before each; exit code 0 if every bit is the same, 1 if within tolerance, 2 if not
+/// Run stages of a log again, from the state before each; exit code 0 if every bit is the same, 1 if within tolerance,
+/// 2 if not
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// Log to read (MCAP)

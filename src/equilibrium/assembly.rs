@@ -1,11 +1,11 @@
 //! Sums over elements: energy, residual and stiffness on control points.
 //!
-//! The stiffness on control points is stored as a stencil: control point i = i₁ n₂ + i₂ has a 3 × 3 block for each j = i + (d₁, d₂)
-//! with j ≥ i that it can share an element with: d₁ = 0, 0 ≤ d₂ ≤ p₂, or 0 < d₁ ≤ p₁, −p₂ ≤ d₂ ≤ p₂.
+//! The stiffness on control points is stored as a stencil: control point i = i₁ n₂ + i₂ has a 3 × 3 block for each j =
+//! i + (d₁, d₂) with j ≥ i that it can share an element with: d₁ = 0, 0 ≤ d₂ ≤ p₂, or 0 < d₁ ≤ p₁, −p₂ ≤ d₂ ≤ p₂.
 //!
-//! Threads work on columns of elements (all elements with the same place along the length). A column touches p₁ + 1 rows of control
-//! points; columns p₁ + 1 apart share none, so they are one colour and run at once, each on its own slice. Colours follow each other.
-//! Every sum is therefore formed in one order, whatever the number of threads.
+//! Threads work on columns of elements (all elements with the same place along the length). A column touches p₁ + 1
+//! rows of control points; columns p₁ + 1 apart share none, so they are one colour and run at once, each on its own
+//! slice. Colours follow each other. Every sum is therefore formed in one order, whatever the number of threads.
 
 use rayon::prelude::*;
 

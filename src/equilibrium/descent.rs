@@ -1,14 +1,16 @@
 //! Newton's method as a descent on the strain energy.
 //!
-//! Backtracking on the energy (Nocedal & Wright, *Numerical Optimization*, 2nd ed., algorithm 3.1). Where the stiffness is not
-//! positive definite, the negative pivots of its L D Lᵀ factor are replaced by their magnitudes: that matrix differs from K by one of the
-//! rank of its negative part, costs no second factorization, and gives a descent direction that reverses Newton's where the curvature is
-//! negative (section 3.4 there, modified factorizations). The energy never rises by more than rounding over two steps.
+//! Backtracking on the energy (Nocedal & Wright, *Numerical Optimization*, 2nd ed., algorithm 3.1). Where the
+//! stiffness is not positive definite, the negative pivots of its L D Lᵀ factor are replaced by their magnitudes: that
+//! matrix differs from K by one of the rank of its negative part, costs no second factorization, and gives a descent
+//! direction that reverses Newton's where the curvature is negative (section 3.4 there, modified factorizations). The
+//! energy never rises by more than rounding over two steps.
 //!
-//! A full Newton step that does not lower the energy is taken all the same for one more step (a watchdog, section 15.6 there): in a
-//! thin shell the valley of low energy is curved, a straight step leaves it at the cost of membrane energy, and the next step returns to
-//! it. Backtracking at once follows the valley in many small steps: the snap of the baseline's quarter model took 64 iterations that
-//! way and 31 with one step of patience; two and four steps of patience took 33 and 37.
+//! A full Newton step that does not lower the energy is taken all the same for one more step (a watchdog, section 15.6
+//! there): in a thin shell the valley of low energy is curved, a straight step leaves it at the cost of membrane
+//! energy, and the next step returns to it. Backtracking at once follows the valley in many small steps: the snap of
+//! the baseline's quarter model took 64 iterations that way and 31 with one step of patience; two and four steps of
+//! patience took 33 and 37.
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::newton::{Effort, Iterate, SolveError, Workspace};

@@ -1,9 +1,9 @@
 //! Energy, residual and stiffness of one element.
 //!
-//! With F_k(a) the k-th derivative of basis function a at a quadrature point, g the gradient (5 × 3) and H the Hessian (15 × 15) of
-//! the point's energy: r(a, c) = Σ_k F_k(a) g(k, c) and K(a c, b d) = Σ_kl F_k(a) H(k c, l d) F_l(b), formed as
-//! P(l, d) = Σ_k F_k(a) H(k c, l d) and then Σ_l P(l, d) F_l(b) with the basis function index b contiguous. Only blocks
-//! b ≥ a (rounded down to a whole vector) are formed.
+//! With F_k(a) the k-th derivative of basis function a at a quadrature point, g the gradient (5 × 3) and H the Hessian
+//! (15 × 15) of the point's energy: r(a, c) = Σ_k F_k(a) g(k, c) and K(a c, b d) = Σ_kl F_k(a) H(k c, l d) F_l(b),
+//! formed as P(l, d) = Σ_k F_k(a) H(k c, l d) and then Σ_l P(l, d) F_l(b) with the basis function index b contiguous.
+//! Only blocks b ≥ a (rounded down to a whole vector) are formed.
 
 use crate::model::Tables;
 use crate::shell::{Hessian, PointReference};
@@ -179,8 +179,8 @@ fn displacement_derivatives<const M: usize, const FMA: bool>(lanes: &[Lane], dis
     u
 }
 
-/// Adds Fᵀ H F to the stiffness. `half` takes Fᵀ H of all functions first: formed one by one in registers it was compiled to scalar
-/// code, which took as long as all the rest.
+/// Adds Fᵀ H F to the stiffness. `half` takes Fᵀ H of all functions first: formed one by one in registers it was
+/// compiled to scalar code, which took as long as all the rest.
 #[inline(always)]
 fn contract<const M: usize, const FMA: bool>(
     lanes: &[Lane],

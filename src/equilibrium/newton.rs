@@ -1,7 +1,7 @@
 //! Equilibrium under a prescribed end rotation: a minimum of the strain energy over the free unknowns.
 //!
-//! Predictor: the tangent one, K Δq = −∂g/∂θ Δθ, after which three Newton iterations a step reach 1e-7 of the reactions; moving
-//! the ends alone needs 8 to 11. Corrector: [`Descent`].
+//! Predictor: the tangent one, K Δq = −∂g/∂θ Δθ, after which three Newton iterations a step reach 1e-7 of the
+//! reactions; moving the ends alone needs 8 to 11. Corrector: [`Descent`].
 
 use std::sync::Arc;
 

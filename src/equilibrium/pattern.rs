@@ -1,7 +1,7 @@
 //! From the stencil on control points to the sparse matrix on free unknowns: K_q = Tᵀ K T, lower triangle by columns.
 //!
-//! Built once per mesh. Almost every block belongs to two control points whose components are unknowns of their own, and is
-//! copied; the others (supports, symmetry, joints) go through their directions.
+//! Built once per mesh. Almost every block belongs to two control points whose components are unknowns of their own,
+//! and is copied; the others (supports, symmetry, joints) go through their directions.
 
 use crate::equilibrium::assembly::{Assembled, neighbour, stencil};
 use crate::model::{Discretization, Placement};
@@ -172,7 +172,8 @@ mod tests {
     use crate::model::starting_mesh;
     use crate::scene::{Geometry, Symmetry, parse};
 
-    /// K_q d against Tᵀ (K (T d)), which goes through none of the targets: in every symmetry, and on an arc with joints.
+    /// K_q d against Tᵀ (K (T d)), which goes through none of the targets: in every symmetry, and on an arc with
+    /// joints.
     #[test]
     fn the_matrix_is_the_projected_stiffness() {
         for (symmetry, arc_deg) in [

@@ -1,8 +1,9 @@
 //! Sparse symmetric factorization: the only file that names faer.
 //!
-//! Supernodal L D Lᵀ without pivoting, in the natural order along the length (the mesh is long and narrow, so the matrix
-//! is nearly banded). The signs of D give the inertia (Sylvester). faer's `SymmetricOrdering::Identity` panics on a lower triangle, hence
-//! an explicit identity permutation. Factor and solve with `Par::Seq`: other settings may differ in bits between thread counts.
+//! Supernodal L D Lᵀ without pivoting, in the natural order along the length (the mesh is long and narrow, so the
+//! matrix is nearly banded). The signs of D give the inertia (Sylvester). faer's `SymmetricOrdering::Identity` panics
+//! on a lower triangle, hence an explicit identity permutation. Factor and solve with `Par::Seq`: other settings may
+//! differ in bits between thread counts.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltError;

@@ -3,7 +3,8 @@
 use crate::equilibrium::newton::{SolveError, Workspace};
 use crate::shell::dot;
 
-/// Inverse iterations at most; near a limit point the lowest eigenvalue stands far below the next, and a handful suffice.
+/// Inverse iterations at most; near a limit point the lowest eigenvalue stands far below the next, and a handful
+/// suffice.
 const MAX_ITERATIONS: usize = 200;
 /// The eigenvalue has settled when it changes by less than this, relatively.
 const SETTLED: f64 = 1e-10;
@@ -21,8 +22,8 @@ pub struct SoftMode {
     pub iterations: usize,
 }
 
-/// Inverse iteration (Golub & Van Loan, *Matrix Computations*, 4th ed., section 8.2.2) with the L D Lᵀ factor at a state; the sign of the
-/// Rayleigh quotient tells a stable state from an unstable one.
+/// Inverse iteration (Golub & Van Loan, *Matrix Computations*, 4th ed., section 8.2.2) with the L D Lᵀ factor at a
+/// state; the sign of the Rayleigh quotient tells a stable state from an unstable one.
 ///
 /// # Errors
 /// Where the stiffness has no factor.

@@ -86,8 +86,8 @@ pub enum ConditionError {
 }
 
 impl Condition {
-    /// Reads `FIELD OPERATOR VALUE`, several joined by `and`. Fields are those of a report in JSON; `elements`, `marked` stand for the
-    /// product or sum of their two numbers, `elements_1` and `elements_2` for one of them.
+    /// Reads `FIELD OPERATOR VALUE`, several joined by `and`. Fields are those of a report in JSON; `elements`,
+    /// `marked` stand for the product or sum of their two numbers, `elements_1` and `elements_2` for one of them.
     ///
     /// # Errors
     /// Where it has another form or names a field that reports do not have.
@@ -97,7 +97,8 @@ impl Condition {
         Ok(Self { terms })
     }
 
-    /// Whether it holds for a report. What is not a number (a residual after a failed solve) meets no condition but `!=`.
+    /// Whether it holds for a report. What is not a number (a residual after a failed solve) meets no condition but
+    /// `!=`.
     pub fn holds(&self, report: &Report) -> bool {
         let fields = fields_of(report);
         self.terms.iter().all(|term| {

@@ -15,10 +15,12 @@ pub struct Parting {
     pub comparison: Comparison,
 }
 
-/// Finds the first stage whose states differ, by their hashes; `None` where the shorter run is the beginning of the longer.
+/// Finds the first stage whose states differ, by their hashes; `None` where the shorter run is the beginning of the
+/// longer.
 ///
-/// The chain hash binds a stage to all before it, so runs of one scene are bisected by it. Chains of different scenes differ
-/// from the first stage on; those runs are bisected by the state hash, on the premise that runs that have parted do not meet again.
+/// The chain hash binds a stage to all before it, so runs of one scene are bisected by it. Chains of different scenes
+/// differ from the first stage on; those runs are bisected by the state hash, on the premise that runs that have
+/// parted do not meet again.
 ///
 /// # Errors
 /// Where a state cannot be read.

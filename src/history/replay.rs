@@ -7,8 +7,8 @@ use crate::journal::{Log, StateError};
 use crate::pipeline::{Report, StageError, Stages};
 use crate::state::State;
 
-/// States that agree to this many bits are the same within what another processor or another kernel may do to rounding. The
-/// solver's default tolerance of 1e-7 leaves some 23 bits.
+/// States that agree to this many bits are the same within what another processor or another kernel may do to
+/// rounding. The solver's default tolerance of 1e-7 leaves some 23 bits.
 pub const TOLERATED_BITS: f64 = 20.0;
 
 /// A stage that ran again.

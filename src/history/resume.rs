@@ -63,9 +63,9 @@ pub struct NothingStands {
 
 /// What stands of a log written for `old` when it goes on with `new`.
 ///
-/// Output may change freely. The target may: what was cut short at the old target goes, and what lies beyond a nearer one. A change of
-/// what steps are made with keeps every complete step and drops a step in hand. A change of geometry, material, mesh, symmetry or sense keeps
-/// nothing.
+/// Output may change freely. The target may: what was cut short at the old target goes, and what lies beyond a nearer
+/// one. A change of what steps are made with keeps every complete step and drops a step in hand. A change of geometry,
+/// material, mesh, symmetry or sense keeps nothing.
 ///
 /// # Errors
 /// [`NothingStands`] in the last case; [`StateError`] where a state that decides it cannot be read.
@@ -107,8 +107,8 @@ pub fn shown_value(value: &Option<serde_json::Value>) -> String {
     value.as_ref().map_or_else(|| "not set".to_string(), ToString::to_string)
 }
 
-/// Number of stages before the first solve that the new target would not try: the old one cut it short, or the new one does, or it lies
-/// beyond the new one.
+/// Number of stages before the first solve that the new target would not try: the old one cut it short, or the new one
+/// does, or it lies beyond the new one.
 fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, StateError> {
     let nearer = old.load.rotation_deg.min(new.load.rotation_deg);
     for (index, entry) in log.entries().iter().enumerate().skip(1) {
@@ -136,8 +136,8 @@ fn complete_steps(log: &Log, keep: usize, scene: &Scene) -> Result<usize, StateE
     Ok(0)
 }
 
-/// The scene of a log's last stretch where the log has lost it and `scene`, which decides the same states, takes its place. Its target is
-/// not known any more; what was attempted says which steps it may have cut short.
+/// The scene of a log's last stretch where the log has lost it and `scene`, which decides the same states, takes its
+/// place. Its target is not known any more; what was attempted says which steps it may have cut short.
 pub fn restored_scene(log: &Log, scene: &Scene) -> Option<Scene> {
     let last = log.last_commit()?;
     let attempts = log.entries().iter().map(|entry| entry.record.report.attempted_rotation_deg);

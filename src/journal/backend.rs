@@ -56,8 +56,8 @@ impl FileBackend {
         Ok(Self { file, path: path.to_owned(), publish_as: None, replaces: None, folder_synced: false })
     }
 
-    /// The same, but the file has this name only from its first bytes on, so that no log is ever there without its manifest. A
-    /// file of that name that comes to be meanwhile is not overwritten.
+    /// The same, but the file has this name only from its first bytes on, so that no log is ever there without its
+    /// manifest. A file of that name that comes to be meanwhile is not overwritten.
     pub(super) fn publish_as(mut self, target: &Path) -> Self {
         self.publish_as = Some(target.to_owned());
         self

@@ -9,16 +9,16 @@
 //! | `/foldline/commit` | `json` | `foldline.Commit` | per stage, the last of its chunk |
 //! | `/foldline/finished` | `json` | `foldline.Finished` | at the end of a run that reached its end |
 //!
-//! A state names its mesh and its displacements by hash, so a stage that changes neither (indicators that mark nothing, a
-//! solve that is turned down) writes some hundred bytes and its report.
+//! A state names its mesh and its displacements by hash, so a stage that changes neither (indicators that mark
+//! nothing, a solve that is turned down) writes some hundred bytes and its report.
 //!
 //! Before the first chunk, and again wherever a run was taken up again, stands a metadata record `foldline.manifest`.
 //!
 //! # Times
-//! `log_time` is the place in the run, not the clock: stage k stands at (k + 1) · 100 ms after 1970. A viewer then plays
-//! ten stages a second, whatever a stage cost and however many nights lie between an interruption and the resume, and
-//! equal runs have equal times. The clock goes into `publish_time` (nanoseconds since 1970), which nothing reads back.
-//! No hash covers either.
+//! `log_time` is the place in the run, not the clock: stage k stands at (k + 1) · 100 ms after 1970. A viewer then
+//! plays ten stages a second, whatever a stage cost and however many nights lie between an interruption and the
+//! resume, and equal runs have equal times. The clock goes into `publish_time` (nanoseconds since 1970), which nothing
+//! reads back. No hash covers either.
 
 /// Version of the layout that this module describes. A reader refuses a newer one.
 pub const FORMAT_VERSION: u32 = 1;

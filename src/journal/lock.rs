@@ -1,10 +1,10 @@
 //! One writer at a time, in two layers.
 //!
-//! The operating system's lock on `LOG.lock` goes with the process, however it ends: a stale lock cannot be. Where a file
-//! system does not honour such locks, the lease in `LOG.lease` stands in: whoever comes writes a random token, and a
-//! writer looks before every commit whether the token is still its own. The one that has lost it stops. It could not
-//! do harm even between the look and the write: whoever takes a log over copies it to a new file, and the loser only
-//! ever writes to the old one.
+//! The operating system's lock on `LOG.lock` goes with the process, however it ends: a stale lock cannot be. Where a
+//! file system does not honour such locks, the lease in `LOG.lease` stands in: whoever comes writes a random token,
+//! and a writer looks before every commit whether the token is still its own. The one that has lost it stops. It could
+//! not do harm even between the look and the write: whoever takes a log over copies it to a new file, and the loser
+//! only ever writes to the old one.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::hash::{BuildHasher, RandomState};

@@ -3,8 +3,8 @@
 //! A log is an ordinary MCAP file, so that viewers can open it, and three things more:
 //!
 //! 1. **One chunk is one commit.** A chunk holds the state that a stage made (its mesh and its displacements only where
-//!    the log does not have them yet), the stage's report, and at its end a commit message. It reaches the file in one write. A process that
-//!    dies loses the stage in flight and nothing else.
+//!    the log does not have them yet), the stage's report, and at its end a commit message. It reaches the file in one
+//! write. A process that    dies loses the stage in flight and nothing else.
 //! 2. **Every commit vouches for its chunk.** The commit message is sealed with the hash of its own bytes and names the
 //!    hash of every other message in the chunk; its chain hash follows from the commit before it. A log that was cut or
 //!    changed anywhere is read up to the last commit for which all of that holds, and [`Log::completeness`] says what
@@ -54,9 +54,9 @@
 //! `v<format>-<program version>-<what happened to it>.mcap`: a finished one, an unfinished one, and damaged ones. The
 //! `README.md` there says how each was made and what it must give, and a test holds every later version to that table,
 //! to the last state. A change of what is written takes these steps: raise [`format::FORMAT_VERSION`] (or
-//! [`CODEC_VERSION`], where only states or meshes change); keep the old structs and decode both; write the logs with the
-//! last program before the change, by the command that the `README.md` names, and add them with their rows. A golden
-//! log is never written again.
+//! [`CODEC_VERSION`], where only states or meshes change); keep the old structs and decode both; write the logs with
+//! the last program before the change, by the command that the `README.md` names, and add them with their rows. A
+//! golden log is never written again.
 mod backend;
 mod chunk;
 mod codec;

@@ -32,8 +32,8 @@ pub struct TraceRow {
     pub relative_residual: f64,
     /// Length of the last step along its direction; 1 is a full Newton step.
     pub step_length: f64,
-    /// Largest amount added to the negative pivots to make the stiffness positive definite: 0 where it is; twice the largest magnitude
-    /// of a negative pivot where it is not, N/mm.
+    /// Largest amount added to the negative pivots to make the stiffness positive definite: 0 where it is; twice the
+    /// largest magnitude of a negative pivot where it is not, N/mm.
     pub shift_n_per_mm: f64,
     /// Negative pivots of the stiffness.
     pub negative_pivots: usize,

@@ -37,8 +37,8 @@ impl Tables {
         Self::on_elements_of(scene, mesh, mesh)
     }
 
-    /// Tables of the functions of `mesh` at the quadrature points of the elements of `finer`, which is `mesh` with knots
-    /// inserted: what a displacement on `mesh` has for an energy where `finer` is integrated.
+    /// Tables of the functions of `mesh` at the quadrature points of the elements of `finer`, which is `mesh` with
+    /// knots inserted: what a displacement on `mesh` has for an energy where `finer` is integrated.
     pub fn on_elements_of(scene: &Scene, mesh: &Mesh, finer: &Mesh) -> Self {
         let spans = [0, 1].map(|k| {
             let mut spans = Spans::of(&finer.knots[k], mesh.degree[k]);

@@ -1,14 +1,15 @@
 //! Free unknowns, and how the displacement of every control point follows from them and from the end rotation.
 //!
 //! Each control point has a *frame*: space, or an end section that turns by θ. In its frame its displacement has three
-//! components v; linear homogeneous constraints between components of one frame (a support, a plane of symmetry, a C¹ joint)
-//! are eliminated once per mesh, so that v = C q with free unknowns q, and
+//! components v; linear homogeneous constraints between components of one frame (a support, a plane of symmetry, a C¹
+//! joint) are eliminated once per mesh, so that v = C q with free unknowns q, and
 //!
 //! u(θ, q) = rigid(θ) + Q(θ) C q + slide,   T = ∂u/∂q,   u,θ = rigid' + Q' C q.
 //!
 //! A clamped end (theory: Kirchhoff–Love support without membrane strain) holds its row of control points rigidly; the
-//! second row keeps its offset normal to the shell in the turned section's frame and is free along the turned axis (stretch) and along the
-//! turned arc tangent (shear). Holding that row rigidly instead would fix the membrane strain at the end.
+//! second row keeps its offset normal to the shell in the turned section's frame and is free along the turned axis
+//! (stretch) and along the turned arc tangent (shear). Holding that row rigidly instead would fix the membrane strain
+//! at the end.
 
 use std::collections::BTreeMap;
 
@@ -266,8 +267,9 @@ fn constraints(scene: &Scene, mesh: &Mesh, points: &[[f64; 3]]) -> Vec<Expressio
     let [half_length, half_arc] = scene.symmetry.cuts();
     let at = |i1: usize, i2: usize, c: usize| 3 * (i1 * n2 + i2) + c;
     let joints = joints(mesh);
-    // The normal of a cylinder at a control point is radial in the section plane. Control points that a plane of symmetry or a C¹ joint
-    // holds on one line span the tangent there and share its normal: their own would take a free motion away.
+    // The normal of a cylinder at a control point is radial in the section plane. Control points that a plane of
+    // symmetry or a C¹ joint holds on one line span the tangent there and share its normal: their own would take a
+    // free motion away.
     let mut normal_like: Vec<usize> = (0..n2).collect();
     if half_arc {
         normal_like[1] = 0;

@@ -184,12 +184,14 @@ impl Stages {
         Ok((&self.scene, self.work.insert(work)))
     }
 
-    /// Moves the load on by one increment. Where that fails or jumps too coarsely, the state stays and only its step control changes.
+    /// Moves the load on by one increment. Where that fails or jumps too coarsely, the state stays and only its step
+    /// control changes.
     fn solve(&mut self, state: &State, observer: &mut dyn FnMut(&Iterate)) -> Result<(State, Report), StageError> {
         let step = state.step + 1;
         let attempt = next_attempt(&self.scene, state);
         let (scene, work) = self.workspace(&state.mesh, step, Stage::Solve)?;
-        // A run that stands on an unstable branch (and says so) follows it; what ends an attempt is a further loss of stability.
+        // A run that stands on an unstable branch (and says so) follows it; what ends an attempt is a further loss of
+        // stability.
         let mut watch = |iterate: &Iterate| {
             observer(iterate);
             !attempt.may_jump && iterate.negative_pivots as u64 > state.negative_pivots

@@ -9,20 +9,21 @@
 //! | passed an unstable shape or released energy | the rotation where it did | the middle between here and there |
 //! | the same, within `snap_tolerance_deg` of here | the same | there, and the jump is taken |
 //!
-//! A success inside a bracket forgets the bracket and tries the whole step again: what looked like a jump may have been a step
-//! too large for a sharp turn of the path, and for a real one the second look costs two or three iterations.
+//! A success inside a bracket forgets the bracket and tries the whole step again: what looked like a jump may have
+//! been a step too large for a sharp turn of the path, and for a real one the second look costs two or three
+//! iterations.
 
 use crate::equilibrium::Solved;
 use crate::scene::{Scene, Stage};
 use crate::state::{Rejection, State, StepControl};
 
-/// Energy that leaves the balance of a step, relative to the strain energy, above which the step jumped. The baseline's snap
-/// releases half of the energy; the trapezoidal rule over its smooth steps of 0.4° is off by less than 1e-4. Steps so large that
-/// the rule is off by more are cut, until it is not.
+/// Energy that leaves the balance of a step, relative to the strain energy, above which the step jumped. The
+/// baseline's snap releases half of the energy; the trapezoidal rule over its smooth steps of 0.4° is off by less than
+/// 1e-4. Steps so large that the rule is off by more are cut, until it is not.
 const JUMP_SHARE: f64 = 0.01;
 
-/// The same for re-equilibrating, where a finer mesh lowers the energy by itself: degree 2 on coarse meshes by up to 3 %, the
-/// baseline's fold, when the snap goes on during refinement, by 6 to 17 %.
+/// The same for re-equilibrating, where a finer mesh lowers the energy by itself: degree 2 on coarse meshes by up to 3
+/// %, the baseline's fold, when the snap goes on during refinement, by 6 to 17 %.
 const REFINEMENT_JUMP_SHARE: f64 = 0.05;
 
 /// Rotations closer than this, relative to the increment, are one: multiples of decimal numbers are not exact.
@@ -104,8 +105,8 @@ impl Attempt {
         StepControl { jump_seen_at_deg: Some(self.target_deg), rejection: Some(Rejection::Jump), ..*before }
     }
 
-    /// Step control after the attempt found no equilibrium; `None` where an increment below the scene's least one would be needed, or
-    /// where a located jump could not be followed.
+    /// Step control after the attempt found no equilibrium; `None` where an increment below the scene's least one
+    /// would be needed, or where a located jump could not be followed.
     pub fn control_after_failure(&self, scene: &Scene, state: &State) -> Option<StepControl> {
         if state.control.jump_seen_at_deg.is_some() && self.may_jump {
             return None;
@@ -194,7 +195,8 @@ mod tests {
         assert_eq!(smooth(&scene(5.0, 1.0)), [1.0]);
     }
 
-    /// Runs with a shell that jumps at `critical`, one way; returns the bracket in which the jump was taken, and the attempts.
+    /// Runs with a shell that jumps at `critical`, one way; returns the bracket in which the jump was taken, and the
+    /// attempts.
     fn locate(scene: &Scene, critical: f64) -> ([f64; 2], usize) {
         let mut state = at(0.0, StepControl::default());
         for attempts in 1..10_000 {

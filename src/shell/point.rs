@@ -1,8 +1,8 @@
 //! Strain energy of a point of the shell, its gradient and Hessian with respect to five vectors.
 //!
 //! Kirchhoff–Love, St. Venant–Kirchhoff, after Kiendl, *Isogeometric Analysis and Shape Optimal Design of Shell
-//! Structures* (TU München, 2011), section 3: the energy depends on the derivatives a₁, a₂, a₁₁, a₂₂, a₁₂ of the deformed
-//! mid-surface only. With w = a₁ × a₂, J = |w|, n = w / J:
+//! Structures* (TU München, 2011), section 3: the energy depends on the derivatives a₁, a₂, a₁₁, a₂₂, a₁₂ of the
+//! deformed mid-surface only. With w = a₁ × a₂, J = |w|, n = w / J:
 //!
 //! ε_αβ = ½(a_α·a_β − A_α·A_β),  κ_αβ = B_αβ − b_αβ,  b_αβ = a_αβ·n.
 //!

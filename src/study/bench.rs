@@ -1,8 +1,10 @@
-//! How fast the kernels are, beside what the machine can do: each figure also as a fraction of a limit measured in the same run.
+//! How fast the kernels are, beside what the machine can do: each figure also as a fraction of a limit measured in the
+//! same run.
 //!
-//! Limits: the floating-point rate of a dense product (faer), for the assembly and the factorization; the rate of a memory copy, for
-//! the solve, which reads the factor twice. Floating-point operations are those that the method needs (the upper half of Fᵀ H F with
-//! the Hessian's own cost left out, the squares of the column counts of the factor), not those that padding adds.
+//! Limits: the floating-point rate of a dense product (faer), for the assembly and the factorization; the rate of a
+//! memory copy, for the solve, which reads the factor twice. Floating-point operations are those that the method needs
+//! (the upper half of Fᵀ H F with the Hessian's own cost left out, the squares of the column counts of the factor),
+//! not those that padding adds.
 
 use std::sync::Arc;
 use std::time::Instant;

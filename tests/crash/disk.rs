@@ -68,7 +68,8 @@ fn mount(arguments: &[&str], folder: &Path) -> bool {
     status.is_ok_and(|status| status.success())
 }
 
-/// A disk that is full in earnest, and a disk that becomes read-only. Needs the right to mount; elsewhere the limit above stands in.
+/// A disk that is full in earnest, and a disk that becomes read-only. Needs the right to mount; elsewhere the limit
+/// above stands in.
 #[test]
 fn a_full_disk_and_a_read_only_one() {
     let whole = Straight::small();

@@ -134,7 +134,8 @@ fn a_second_process_is_refused() {
     assert_eq!(place.logs(), ["copy.mcap", "run.mcap"]);
 }
 
-/// Where locks do not work another machine may take the log over: the one that lost it stops, and the other ends as if alone.
+/// Where locks do not work another machine may take the log over: the one that lost it stops, and the other ends as if
+/// alone.
 #[test]
 fn the_one_that_lost_the_lease_stops() {
     let whole = Straight::small();

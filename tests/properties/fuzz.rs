@@ -7,9 +7,9 @@
 //! Each target then runs for that long; without the variable a second. Seeds of cases that failed are kept in
 //! `tests/properties/regressions-*.txt`, which belong into the repository and are tried first from then on.
 //!
-//! The reader gets golden logs with pieces cut out, moved, repeated, taken from another log of the same run, and with the
-//! checksums of MCAP made right again, so that what refuses them is foldline's own hashes. What it accepts must be a
-//! beginning of the run, state by state.
+//! The reader gets golden logs with pieces cut out, moved, repeated, taken from another log of the same run, and with
+//! the checksums of MCAP made right again, so that what refuses them is foldline's own hashes. What it accepts must be
+//! a beginning of the run, state by state.
 
 use std::cell::Cell;
 use std::path::Path;

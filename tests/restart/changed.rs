@@ -63,7 +63,8 @@ fn a_nearer_target() {
     }
 }
 
-/// What steps are made with: complete steps stand, a step in hand is begun anew, and the log says which scene made what.
+/// What steps are made with: complete steps stand, a step in hand is begun anew, and the log says which scene made
+/// what.
 #[test]
 fn solver_tolerance() {
     let whole = Straight::small();

@@ -33,7 +33,8 @@ fn length(vector: &[f64]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Along random directions, at a deformed state with turned ends: energy → residual → stiffness, link by link, in the free unknowns.
+/// Along random directions, at a deformed state with turned ends: energy → residual → stiffness, link by link, in the
+/// free unknowns.
 #[test]
 fn residual_and_stiffness_are_derivatives_of_the_energy() {
     for (symmetry, degree) in [
@@ -133,8 +134,8 @@ fn moment_is_the_derivative_of_the_energy_with_respect_to_the_rotation() {
     }
 }
 
-/// The parts of the shell agree with the whole on one mesh: the spaces differ only in how the end's second row is tied at
-/// the plane of symmetry.
+/// The parts of the shell agree with the whole on one mesh: the spaces differ only in how the end's second row is tied
+/// at the plane of symmetry.
 #[test]
 fn symmetric_parts_agree_with_the_whole() {
     let moment = |symmetry| {

@@ -1,5 +1,5 @@
-//! The paper's baseline case, L = 300, R = 10, t = 0.1 mm: stiffness, peak, snap, fold, mesh growth, and the moment against an
-//! independent isogeometric solver (quartic, 256 × 32 elements over the whole shell).
+//! The paper's baseline case, L = 300, R = 10, t = 0.1 mm: stiffness, peak, snap, fold, mesh growth, and the moment
+//! against an independent isogeometric solver (quartic, 256 × 32 elements over the whole shell).
 
 use foldline::pipeline::Record;
 use foldline::scene::{Scene, Stage};
