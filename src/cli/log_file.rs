@@ -5,7 +5,7 @@ use std::path::Path;
 use super::failure::Failure;
 use super::output::say;
 use super::scene_file::checked;
-use crate::journal::{Completeness, Log, Manifest};
+use crate::journal::{Completeness, Log, Manifest, ReadError};
 use crate::pipeline::Record;
 use crate::scene::Scene;
 
@@ -55,8 +55,10 @@ impl ReadLog {
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
     let wrong =
         |source: Box<dyn std::error::Error + Send + Sync>| Failure::WrongLog { log: path.to_path_buf(), source };
-    std::fs::metadata(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
-    let log = Log::read(path).map_err(|source| wrong(Box::new(source)))?;
+    let log = Log::read(path).map_err(|error| match error {
+        ReadError::Io { source, .. } => Failure::Read { path: path.to_path_buf(), source },
+        error => wrong(Box::new(error)),
+    })?;
     let scene = match (scene_of(&log, path), log.manifests().last()) {
         (Err(Failure::SceneLost { .. }), Some(manifest)) => scene_in(manifest, path, &[])?,
         (scene, _) => scene?,

@@ -63,9 +63,7 @@ pub(super) struct OldLog {
 
 impl OldLog {
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
-        std::fs::metadata(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
-        let failed = |source| Failure::Resume { log: path.to_path_buf(), source: Box::new(source) };
-        Ok(Self { claim: Resume::open(path).map_err(failed)? })
+        Ok(Self { claim: Resume::open(path).map_err(|error| refused(path, error))? })
     }
 
     /// The same; `None` where the file has not even a header, as a power cut may leave it.
@@ -73,8 +71,15 @@ impl OldLog {
         match Resume::open(path) {
             Ok(claim) => Ok(Some(Self { claim })),
             Err(ResumeError::Read { source: ReadError::TooShort { .. }, .. }) => Ok(None),
-            Err(source) => Err(Failure::Resume { log: path.to_path_buf(), source: Box::new(source) }),
+            Err(error) => Err(refused(path, error)),
         }
+    }
+}
+
+fn refused(path: &Path, error: ResumeError) -> Failure {
+    match error {
+        ResumeError::NoLog { source, .. } => Failure::Read { path: path.to_path_buf(), source },
+        error => Failure::Resume { log: path.to_path_buf(), source: Box::new(error) },
     }
 }
 

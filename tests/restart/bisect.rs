@@ -142,7 +142,7 @@ fn one_question_at_a_time() {
     place.foldline("bisect run.mcap").ends(2);
     place.foldline("bisect run.mcap --snap --when step>3").ends(2);
     place.foldline("bisect run.mcap run.mcap --snap").ends(2);
-    place.foldline("bisect run.mcap none.mcap").ends(1).says(&["none.mcap", "No such file"]);
+    place.foldline("bisect run.mcap none.mcap").ends(2).says(&["none.mcap", "No such file"]);
     place.write("scene.mcap", SMALL);
     place.foldline("bisect run.mcap scene.mcap").ends(1).says(&["this is not a log"]);
 }
