@@ -107,7 +107,7 @@ fn the_same_scene_again_goes_on_with_its_log() {
     let whole = Straight::small();
     let place = Place::new();
     place.foldline("run small.toml -o run.mcap --resume --until 9").ends(0);
-    place.foldline("run small.toml -o run.mcap").ends(1).says(&["run.mcap exists and is not overwritten", "resume"]);
+    place.foldline("run small.toml -o run.mcap").ends(2).says(&["run.mcap exists and is not overwritten", "resume"]);
     place.write("small.toml", format!("# another comment\n{SMALL}"));
     place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["goes on from 10° with solve"]);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "run --resume");

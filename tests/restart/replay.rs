@@ -42,13 +42,13 @@ fn a_step_or_a_stage_of_it() {
     let (place, whole) = with_whole_run();
     let log = whole.log();
     let of_step = |step| log.entries().iter().filter(move |entry| entry.record.report.step == step).count();
-    for step in [1, 3, 6, 9, 12] {
+    for step in [1, 3, 6, 9, 11] {
         let said = place.foldline(&format!("replay run.mcap --step {step}")).ends(0);
         assert_eq!(said.out.lines().count(), of_step(step), "{}", said.out);
     }
     let said = place.foldline("replay run.mcap --step 3 --stage re-equilibrate").ends(0);
     assert!(said.out.lines().all(|line| line.contains("step 3 re-equilibrate")), "{}", said.out);
-    place.foldline("replay run.mcap --step 13").ends(2).says(&["no load step 13; it has 1 to 12"]);
+    place.foldline("replay run.mcap --step 13").ends(2).says(&["no load step 13; it has 1 to 11"]);
     place.foldline("replay run.mcap --step 1 --stage refine-knots").ends(2).says(&["no refine-knots", "solve"]);
     place.foldline("replay run.mcap --step 1 --stage sovle").ends(2).says(&["the stages are solve,"]);
     place.foldline("replay run.mcap").ends(2);
@@ -85,15 +85,17 @@ fn a_trace_of_the_snap() {
     let csv = String::from_utf8(place.read("snap.csv")).unwrap();
     let mut lines = csv.lines();
     let head: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
-    assert!(rows.iter().all(|row| row.len() == head.len()), "{csv}");
+    let all: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    assert!(all.iter().all(|row| row.len() == head.len()), "{csv}");
+    said.says(&[&format!("{} iterates: snap.mcap, snap.csv", all.len())]);
+    // Solves of the same step that were turned down come before the one that jumped.
+    let rows: Vec<Vec<&str>> = all.iter().filter(|row| row[0] == jump.to_string()).cloned().collect();
+    assert!(!rows.is_empty());
     let column = |name: &str| -> Vec<f64> {
         let at = head.iter().position(|other| *other == name).unwrap_or_else(|| panic!("no {name} in {head:?}"));
         rows.iter().map(|row| row[at].parse().unwrap()).collect()
     };
-    said.says(&[&format!("{} iterates: snap.mcap, snap.csv", rows.len())]);
     assert!(column("step").iter().all(|value| *value == step as f64));
-    assert!(column("ordinal").iter().all(|value| *value == jump as f64));
     let iteration = column("iteration");
     assert_eq!(iteration.last(), Some(&(report.iterations as f64)));
     assert!(iteration.windows(2).all(|pair| pair[1] >= pair[0]));
@@ -111,8 +113,9 @@ fn a_trace_of_the_snap() {
 
     let mcap = place.read("snap.mcap");
     let messages: Vec<mcap::Message> = mcap::MessageStream::new(&mcap).unwrap().map(Result::unwrap).collect();
-    assert_eq!(messages.len(), rows.len());
-    for (row, message) in messages.iter().enumerate() {
+    assert_eq!(messages.len(), all.len());
+    let of_jump = messages.iter().skip(all.len() - rows.len());
+    for (row, message) in of_jump.enumerate() {
         assert_eq!(message.channel.topic, ITERATE_TOPIC);
         let value: serde_json::Value = serde_json::from_slice(&message.data).unwrap();
         assert_eq!(value["residual_n"].as_f64(), Some(residual[row]));
