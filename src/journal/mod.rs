@@ -4,7 +4,7 @@
 //!
 //! 1. **One chunk is one commit.** A chunk holds the state that a stage made (its mesh and its displacements only where
 //!    the log does not have them yet), the stage's report, and at its end a commit message. It reaches the file in one
-//! write. A process that    dies loses the stage in flight and nothing else.
+//!    write. A process that dies loses the stage in flight and nothing else.
 //! 2. **Every commit vouches for its chunk.** The commit message is sealed with the hash of its own bytes and names the
 //!    hash of every other message in the chunk; its chain hash follows from the commit before it. A log that was cut or
 //!    changed anywhere is read up to the last commit for which all of that holds, and [`Log::completeness`] says what
