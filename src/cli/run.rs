@@ -12,6 +12,7 @@ use super::scene_file::{SceneFile, read_scene};
 use super::session::{RunOptions, drive, watch_signals};
 use crate::journal::{JournalWriter, Manifest};
 use crate::pipeline::{Run, Stages};
+use crate::scene::Quadrature;
 use crate::study::Summary;
 use crate::units::rounded;
 
@@ -89,6 +90,11 @@ impl Job {
         if options.is_shown() {
             let to = options.until_deg.unwrap_or(scene.load.rotation_deg);
             say(&format!("to {}° → {}", rounded(to), options.log.display()));
+        }
+        if options.is_shown() && scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
+            say(
+                "warning: degree 2 with full quadrature locks on coarse meshes, and stays too stiff; mesh.quadrature = \"reduced\" helps",
+            );
         }
         let records = drive(Run::new(stages, start, None), &scene, writer, &options, &raised)?;
         options.sum_up(&Summary::new(&scene, &records))

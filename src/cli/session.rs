@@ -82,6 +82,9 @@ pub(super) fn drive(
     let closed = if matches!(ending, Ok(Ending::Finished)) { writer.finish() } else { writer.close() };
     let ending = ending.map_err(|source| Failure::Stopped { log: log(), source: Box::new(source) })?;
     closed.map_err(|source| Failure::WrongLog { log: log(), source: Box::new(source) })?;
+    if !options.log.exists() {
+        return Err(Failure::LogGone { log: log() });
+    }
     match ending {
         Ending::Interrupted => Err(Failure::Interrupted { log: log() }),
         Ending::Finished | Ending::Until => Ok(records),

@@ -156,3 +156,12 @@ fn the_one_that_lost_the_lease_stops() {
     place.foldline("resume run.mcap").ends(0);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "the other");
 }
+
+/// A log that is removed while it is written is missed at the end, not passed over in silence.
+#[test]
+fn a_log_that_is_removed_is_missed() {
+    let place = Place::new();
+    let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), 3);
+    std::fs::remove_file(place.file("run.mcap")).unwrap();
+    run.end().0.ends(1).says(&["run.mcap was removed while it was written"]);
+}
