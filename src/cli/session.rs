@@ -14,6 +14,7 @@ use crate::journal::JournalWriter;
 use crate::pipeline::{Ending, Record, Run};
 use crate::scene::Scene;
 use crate::study::Summary;
+use crate::view::MeshHistory;
 
 /// What a run is given beside its scene; none of it changes a state, except where the run stops.
 pub(super) struct RunOptions {
@@ -74,6 +75,10 @@ pub(super) fn drive(
     raised: &AtomicBool,
 ) -> Result<Vec<Record>, Failure> {
     let start_deg = run.state().rotation_deg;
+    let writer = match scene.output.mesh_history {
+        true => writer.with_viewer(Box::new(MeshHistory::new(scene))),
+        false => writer,
+    };
     let target_deg = options.until_deg.unwrap_or(scene.load.rotation_deg);
     let mut sink = Shown::new(writer, options.manner, scene, [start_deg, target_deg]);
     let ending = run.to_end(options.until_deg, &|| raised.load(Ordering::Relaxed), &mut sink);

@@ -3,6 +3,7 @@
 mod camera;
 mod colour;
 mod deformed_surface;
+mod mesh_history;
 mod mesh_picture;
 mod plot;
 mod samples;
@@ -11,6 +12,7 @@ mod vtu;
 
 pub use camera::ViewDirection;
 pub use deformed_surface::deformed_surface;
+pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};
 pub use plot::{PlotError, moment_rotation_plot};
 pub use samples::{SamplesError, SurfaceSamples};

@@ -112,3 +112,27 @@ fn the_same_scene_again_goes_on_with_its_log() {
     place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["goes on from 10° with solve"]);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "run --resume");
 }
+
+/// Meshes for viewers go into the log beside the states and change none of them.
+#[test]
+fn mesh_history_changes_no_hash() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("small.toml", format!("{SMALL}\n[output]\nmesh_history = true\n"));
+    place.foldline("run small.toml -o run.mcap").ends(0);
+    assert_ends_with(&place.log("run.mcap"), whole.chain, "with viewers' topics");
+    let bytes = place.read("run.mcap");
+    let messages = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+    let scenes: Vec<_> =
+        messages.filter(|message| message.channel.topic == foldline::view::MESH_HISTORY_TOPIC).collect();
+    let equilibria = place.log("run.mcap").entries().iter().filter(|entry| entry.record.report.residual > 0.0).count();
+    assert!(scenes.len() > 10 && scenes.len() <= equilibria, "{} of {equilibria}", scenes.len());
+    let last: serde_json::Value = serde_json::from_slice(&scenes[scenes.len() - 1].data).unwrap();
+    let triangles = &last["entities"][0]["triangles"][0];
+    let points = triangles["points"].as_array().unwrap();
+    assert_eq!(points.len(), triangles["colors"].as_array().unwrap().len());
+    let indices = triangles["indices"].as_array().unwrap();
+    assert!(indices.iter().all(|index| (index.as_u64().unwrap() as usize) < points.len()));
+    let schema = scenes[0].channel.schema.as_ref().unwrap();
+    assert_eq!((schema.name.as_str(), schema.encoding.as_str()), ("foxglove.SceneUpdate", "jsonschema"));
+}
