@@ -98,7 +98,8 @@ fn the_second_signal_ends_at_once() {
     let second = Instant::now();
     run.send("TERM");
     let (said, reported) = run.end();
-    assert!(second.elapsed() < Duration::from_millis(500), "{:?}", second.elapsed());
+    // The stage in hand would take far longer.
+    assert!(second.elapsed() < Duration::from_secs(5), "{:?}", second.elapsed());
     said.ends(75);
     assert_eq!(reported, 0);
     let log = place.log("run.mcap");
