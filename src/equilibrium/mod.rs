@@ -11,7 +11,7 @@ mod timing;
 
 pub use assembly::{Assembled, Want, strain_energy};
 pub use newton::{Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Workspace};
+pub use sparse::DenseProduct;
 pub use sparse::FactorError;
-pub use sparse::dense_product;
 pub use stability::{SoftMode, soft_mode};
 pub use timing::{KernelCost, KernelRun};

@@ -173,12 +173,25 @@ impl SparseSolver {
     }
 }
 
-/// A dense product of two square matrices on one thread: what the processor can do at best. Returns one of its numbers.
-pub fn dense_product(size: usize) -> f64 {
-    let matrix = faer::Mat::from_fn(size, size, |i, j| ((i * 7 + j * 3) % 11) as f64);
-    let mut product = faer::Mat::zeros(size, size);
-    faer::linalg::matmul::matmul(product.as_mut(), faer::Accum::Replace, &matrix, &matrix, 1.0, Par::Seq);
-    product[(size / 2, size / 3)]
+/// A dense product of two square matrices on one thread: what the processor can do at best.
+pub struct DenseProduct {
+    matrix: faer::Mat<f64>,
+    product: faer::Mat<f64>,
+}
+
+impl DenseProduct {
+    /// Matrices of this size, ready to be multiplied.
+    pub fn new(size: usize) -> Self {
+        let matrix = faer::Mat::from_fn(size, size, |i, j| ((i * 7 + j * 3) % 11) as f64);
+        Self { matrix, product: faer::Mat::zeros(size, size) }
+    }
+
+    /// Multiplies; returns one number of the product.
+    pub fn run(&mut self) -> f64 {
+        let (factor, product) = (&self.matrix, self.product.as_mut());
+        faer::linalg::matmul::matmul(product, faer::Accum::Replace, factor, factor, 1.0, Par::Seq);
+        self.product[(0, 0)]
+    }
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::equilibrium::{Equilibrium, FactorError, KernelRun, SolveError, Workspace, dense_product};
+use crate::equilibrium::{DenseProduct, Equilibrium, FactorError, KernelRun, SolveError, Workspace};
 use crate::model::{ModelError, starting_mesh};
 use crate::pipeline::{MemorySink, Run, RunError, Stages};
 use crate::scene::Scene;
@@ -85,7 +85,8 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
         fraction_of_peak,
     };
     let threads = rayon::current_num_threads() as f64;
-    let product = median(repeats, || dense_product(PRODUCT_SIZE));
+    let mut dense = DenseProduct::new(PRODUCT_SIZE);
+    let product = median(repeats, || dense.run());
     let flops_per_s = 2.0 * (PRODUCT_SIZE as f64).powi(3) / product;
     let copy = copy_seconds(repeats);
     let bytes_per_s = 16.0 * COPY_LEN as f64 / copy;
