@@ -4,4 +4,4 @@ mod indicators;
 mod refinement;
 
 pub use indicators::{Indicators, element_strains, evaluate_indicators};
-pub use refinement::{project_displacements, refine_mesh};
+pub use refinement::project_displacements;

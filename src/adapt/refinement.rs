@@ -4,25 +4,6 @@
 
 use crate::spline::{Mesh, insert_knots_into_net};
 
-/// The mesh with `new` knots (ascending, each way) inserted.
-pub fn refine_mesh(mesh: &Mesh, new: &[Vec<f64>; 2]) -> Mesh {
-    let mut finer = mesh.clone();
-    for direction in 0..2 {
-        let counts = finer.control_counts();
-        let (knots, net) = insert_knots_into_net(
-            &finer.knots[direction],
-            finer.degree[direction],
-            &finer.control_points,
-            counts,
-            direction,
-            &new[direction],
-        );
-        finer.knots[direction] = knots;
-        finer.control_points = net;
-    }
-    finer
-}
-
 /// Carries a displacement over from `mesh` to `finer`, which is `mesh` with knots inserted.
 pub fn project_displacements(mesh: &Mesh, finer: &Mesh, displacement: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let weights = mesh.control_points.iter().map(|point| point[3]);
@@ -59,7 +40,7 @@ mod tests {
         let mesh = Mesh { degree: [3, 3], knots: [along.knots, across.knots], control_points };
         let displacement: Vec<[f64; 3]> =
             (0..16).map(|i| [0.1 * i as f64, ((i * 7) % 5) as f64, -0.3 * ((i * 3) % 4) as f64]).collect();
-        let finer = refine_mesh(&mesh, &[vec![0.25, 0.5], vec![0.5, 0.75]]);
+        let finer = mesh.with_knots(&[vec![0.25, 0.5], vec![0.5, 0.75]]);
         let projected = project_displacements(&mesh, &finer, &displacement);
         for sample in 0..50 {
             let at = [(sample % 7) as f64 / 6.0, (sample / 7) as f64 / 7.0];

@@ -5,11 +5,9 @@
 //! formed as P(l, d) = Σ_k F_k(a) H(k c, l d) and then Σ_l P(l, d) F_l(b) with the basis function index b contiguous.
 //! Only blocks b ≥ a (rounded down to a whole vector) are formed.
 
-use crate::model::Tables;
+use crate::model::{LANES, Tables};
 use crate::shell::{Hessian, PointReference};
 
-/// Doubles in a vector of the kernel; the tables are padded to a multiple.
-const LANES: usize = 4;
 type Lane = [f64; LANES];
 /// Columns of the Hessian with its padding.
 const HALF_ROW: usize = 16;

@@ -7,6 +7,7 @@ mod unknowns;
 
 pub use ends::RigidEnd;
 pub use patch::{MOST_CONTROL_POINTS, ModelError, starting_mesh};
+pub(crate) use tables::LANES;
 pub use tables::Tables;
 pub use unknowns::{Entry, Placement, Unknowns};
 

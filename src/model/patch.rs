@@ -1,7 +1,7 @@
 //! The mesh that a scene starts from: an exact NURBS surface with the scene's elements.
 
 use crate::scene::{Geometry, Scene};
-use crate::spline::{HomogeneousCurve, Mesh, circular_arc, insert_knots_into_net, segment_count, straight_line};
+use crate::spline::{HomogeneousCurve, Mesh, circular_arc, segment_count, straight_line};
 
 /// A scene that cannot be made discrete.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -80,22 +80,11 @@ fn tensor_product(along: &HomogeneousCurve, across: &HomogeneousCurve) -> Mesh {
 }
 
 /// Inserts uniform knots so that there are at least `elements` each way, the same number in each segment.
-fn subdivide(mut mesh: Mesh, segments: [usize; 2], elements: [usize; 2]) -> Mesh {
-    for direction in 0..2 {
+fn subdivide(mesh: Mesh, segments: [usize; 2], elements: [usize; 2]) -> Mesh {
+    let new = [0, 1].map(|direction| {
         let pieces = elements[direction].div_ceil(segments[direction]);
         let total = pieces * segments[direction];
-        let new: Vec<f64> = (1..total).filter(|k| k % pieces != 0).map(|k| k as f64 / total as f64).collect();
-        let counts = mesh.control_counts();
-        let (knots, net) = insert_knots_into_net(
-            &mesh.knots[direction],
-            mesh.degree[direction],
-            &mesh.control_points,
-            counts,
-            direction,
-            &new,
-        );
-        mesh.knots[direction] = knots;
-        mesh.control_points = net;
-    }
-    mesh
+        (1..total).filter(|k| k % pieces != 0).map(|k| k as f64 / total as f64).collect()
+    });
+    mesh.with_knots(&new)
 }

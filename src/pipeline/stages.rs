@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::adapt::{evaluate_indicators, project_displacements, refine_mesh};
+use crate::adapt::{evaluate_indicators, project_displacements};
 use crate::equilibrium::{Effort, Equilibrium, FactorError, Iterate, SolveError, Solved, Workspace, strain_energy};
 use crate::model::{MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, starting_mesh};
 use crate::pipeline::step_control::{Attempt, is_jump, is_jump_on_refinement, next_attempt};
@@ -266,7 +266,7 @@ impl Stages {
         if state.marked.iter().all(Vec::is_empty) {
             return Err(out_of_order(state, Stage::RefineKnots, "no knot span is marked"));
         }
-        let finer = refine_mesh(&state.mesh, &state.marked);
+        let finer = state.mesh.with_knots(&state.marked);
         if finer.control_points.len() > MOST_CONTROL_POINTS {
             let (step, elements, count) = (state.step, finer.element_counts(), finer.control_points.len());
             return Err(StageError::RefinedTooFar { step, elements, count });

@@ -1,6 +1,7 @@
 //! The spline space with its geometry: what knot insertion changes.
 
 use crate::digest::{Feed, Hash};
+use crate::spline::insert_knots_into_net;
 
 /// Tensor-product NURBS mid-surface. Control points are ordered with the second direction (arc) fastest:
 /// index = i₁ · n₂ + i₂.
@@ -23,6 +24,25 @@ impl Mesh {
     /// Non-empty knot spans (elements) each way.
     pub fn element_counts(&self) -> [usize; 2] {
         [0, 1].map(|k| self.knots[k].windows(2).filter(|pair| pair[0] < pair[1]).count())
+    }
+
+    /// The same surface with `new` knots (ascending, each way) inserted.
+    pub fn with_knots(&self, new: &[Vec<f64>; 2]) -> Self {
+        let mut finer = self.clone();
+        for direction in 0..2 {
+            let counts = finer.control_counts();
+            let (knots, net) = insert_knots_into_net(
+                &finer.knots[direction],
+                finer.degree[direction],
+                &finer.control_points,
+                counts,
+                direction,
+                &new[direction],
+            );
+            finer.knots[direction] = knots;
+            finer.control_points = net;
+        }
+        finer
     }
 
     /// Content hash; independent of how a log encodes the mesh.
