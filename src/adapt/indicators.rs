@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use crate::model::Discretization;
-use crate::scene::{Adapt, Geometry, LengthLimit, Material, Scene};
+use crate::scene::{Adapt, Geometry, LengthLimit, Scene};
 use crate::shell::{PointReference, Strains};
 use crate::spline::Spans;
 
@@ -39,7 +39,7 @@ pub fn evaluate_indicators(
         let place = [element / tables.elements[1], element % tables.elements[1]];
         for axis in 0..2 {
             largest[axis] = largest[axis].max(value[axis]);
-            if value[axis] > adapt.threshold && tables.lengths[element][axis] / 2.0 > limit {
+            if value[axis] > adapt.threshold[axis] && tables.lengths[element][axis] / 2.0 > limit[axis] {
                 spans_marked[axis][place[axis]] = true;
             }
         }
@@ -53,11 +53,11 @@ pub fn evaluate_indicators(
 }
 
 /// Elements are not halved below this, mm.
-fn length_limit(scene: &Scene, rule: LengthLimit) -> f64 {
-    let Geometry::TapeSpring { radius_mm, .. } = scene.geometry;
-    let Material::Isotropic { thickness_mm, .. } = scene.material;
+fn length_limit(scene: &Scene, rule: LengthLimit) -> [f64; 2] {
+    let Geometry::TapeSpring { radius_mm, .. } = scene.geometry else { todo!() };
+    let thickness_mm = scene.material.thickness_mm();
     match rule {
-        LengthLimit::SqrtRadiusThickness => (radius_mm * thickness_mm).sqrt(),
+        LengthLimit::SqrtRadiusThickness => [(radius_mm * thickness_mm).sqrt(); 2],
         LengthLimit::Millimetres(length) => length,
     }
 }

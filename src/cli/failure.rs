@@ -32,7 +32,7 @@ pub(super) enum Failure {
     /// Everything that is wrong with a scene, rendered with its lines.
     #[error("{rendered}")]
     WrongScene { rendered: String },
-    #[error("--until {until_deg} is beyond the {}° that the scene asks for; raise `load.rotation_deg` there", scene.load.rotation_deg)]
+    #[error("--until {until_deg} is beyond the {}° that the scene asks for; raise `load.rotation_deg` there", scene.load.target())]
     UntilBeyondScene { until_deg: f64, scene: Box<Scene> },
     #[error("cannot use the log {}", log.display())]
     WrongLog { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },

@@ -40,7 +40,7 @@ impl Arguments {
     pub(super) fn run(self) -> Result<(), Failure> {
         let old = OldLog::open(&self.log)?;
         let scene = scene_of(old.claim.log(), &self.log)?;
-        if let Some(until_deg) = self.until.filter(|until| *until > scene.load.rotation_deg) {
+        if let Some(until_deg) = self.until.filter(|until| *until > scene.load.target()) {
             return Err(Failure::UntilBeyondScene { until_deg, scene: Box::new(scene) });
         }
         let options = RunOptions {

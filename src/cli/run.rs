@@ -54,7 +54,7 @@ impl Arguments {
     /// Checks everything that can be checked before the run.
     pub(super) fn prepare(self) -> Result<Job, Failure> {
         let scene = read_scene(&self.scene)?;
-        if let Some(until_deg) = self.until.filter(|until| *until > scene.scene.load.rotation_deg) {
+        if let Some(until_deg) = self.until.filter(|until| *until > scene.scene.load.target()) {
             return Err(Failure::UntilBeyondScene { until_deg, scene: Box::new(scene.scene) });
         }
         let options = RunOptions {
@@ -88,7 +88,7 @@ impl Job {
         let writer = JournalWriter::create(&options.log, &manifest, scene.output.sync)
             .map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         if options.is_shown() {
-            let to = options.until_deg.unwrap_or(scene.load.rotation_deg);
+            let to = options.until_deg.unwrap_or(scene.load.target());
             say(&format!("to {}° → {}", rounded(to), options.log.display()));
         }
         if options.is_shown() && scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {

@@ -79,7 +79,7 @@ pub(super) fn drive(
         true => writer.with_viewer(Box::new(MeshHistory::new(scene))),
         false => writer,
     };
-    let target_deg = options.until_deg.unwrap_or(scene.load.rotation_deg);
+    let target_deg = options.until_deg.unwrap_or(scene.load.target());
     let mut sink = Shown::new(writer, options.manner, scene, [start_deg, target_deg]);
     let ending = run.to_end(options.until_deg, &|| raised.load(Ordering::Relaxed), &mut sink);
     let (writer, records) = sink.finish();

@@ -80,7 +80,7 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     }
     let mut keep = log.entries().len();
     let mut changes = Vec::new();
-    if old.load.rotation_deg != new.load.rotation_deg {
+    if old.load.target() != new.load.target() {
         keep = keep.min(before_clipped_step(log, old, new)?);
     }
     let steps: Vec<&Difference> = differences.iter().filter(|difference| difference.reach == Reach::Steps).collect();
@@ -110,7 +110,7 @@ pub fn shown_value(value: &Option<serde_json::Value>) -> String {
 /// Number of stages before the first solve that the new target would not try: the old one cut it short, or the new one
 /// does, or it lies beyond the new one.
 fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, StateError> {
-    let nearer = old.load.rotation_deg.min(new.load.rotation_deg);
+    let nearer = old.load.target().min(new.load.target());
     for (index, entry) in log.entries().iter().enumerate().skip(1) {
         let report = &entry.record.report;
         if report.stage == Stage::Solve && report.attempted_rotation_deg >= nearer {
@@ -142,6 +142,6 @@ pub fn restored_scene(log: &Log, scene: &Scene) -> Option<Scene> {
     let last = log.last_commit()?;
     let attempts = log.entries().iter().map(|entry| entry.record.report.attempted_rotation_deg);
     let mut restored = scene.clone();
-    restored.load.rotation_deg = attempts.fold(f64::MIN, f64::max);
+    restored.load.set_target(attempts.fold(f64::MIN, f64::max));
     (last.scene_hash == scene.hash()).then_some(restored)
 }

@@ -17,11 +17,11 @@ impl RigidEnd {
     /// The ends of the whole shell at x = 0 and x = length. The first slides, so that there is no axial force; the
     /// other, or the plane of symmetry in its place, holds the shell along x.
     pub fn both(scene: &Scene) -> [Self; 2] {
-        let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry;
+        let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry else { todo!() };
         let half = arc_deg.to_radians() / 2.0;
         let height = radius_mm * half.sin() / half;
         // Opposite sense: the free edges (below the centroid) are stretched, so the end at x = length turns by −θ.
-        let sign = match scene.load.sense {
+        let sign = match scene.end_rotation().unwrap().sense {
             Sense::Opposite => 1.0,
             Sense::Equal => -1.0,
         };

@@ -46,7 +46,7 @@ pub const MOST_CONTROL_POINTS: usize = 500_000;
 /// # Errors
 /// Where the ends leave no free control points between them.
 pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
-    let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry;
+    let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry else { todo!() };
     let [degree, arc_degree] = scene.mesh.degree;
     let [half_length, half_arc] = scene.symmetry.cuts();
     let length = if half_length { length_mm / 2.0 } else { length_mm };

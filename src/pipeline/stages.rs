@@ -244,7 +244,7 @@ impl Stages {
         match state.control.jump_seen_at_deg {
             Some(_) => StageError::JumpNotFollowed { step, rotation_deg, attempted_deg, cause },
             None => {
-                let least_deg = self.scene.solver.least_increment_deg;
+                let least_deg = self.scene.least_increment();
                 StageError::NoEquilibrium { step, rotation_deg, attempted_deg, least_deg, cause }
             }
         }

@@ -41,22 +41,22 @@ pub struct Attempt {
 /// The solve that follows a state.
 pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
     let here = state.rotation_deg;
-    let tolerance = scene.solver.snap_tolerance_deg;
+    let tolerance = scene.snap_tolerance();
     if let Some(beyond) = state.control.jump_seen_at_deg {
         let middle = 0.5 * (here + beyond);
         let located = beyond - here <= tolerance || middle <= here || middle >= beyond;
         return Attempt { target_deg: if located { beyond } else { middle }, may_jump: located };
     }
-    let increment = scene.load.increment_deg / 2.0_f64.powi(state.control.halvings as i32);
+    let increment = scene.load.increment() / 2.0_f64.powi(state.control.halvings as i32);
     let multiple = ((here / increment + SAME).floor() + 1.0) * increment;
-    let last = scene.load.rotation_deg;
+    let last = scene.load.target();
     let target_deg = if multiple > last - SAME * increment { last } else { multiple };
     Attempt { target_deg, may_jump: target_deg - here <= tolerance }
 }
 
 /// Whether a rotation is reached, to the rounding of its steps.
 pub fn has_reached(scene: &Scene, state: &State, rotation_deg: f64) -> bool {
-    state.rotation_deg >= rotation_deg - SAME * scene.load.increment_deg
+    state.rotation_deg >= rotation_deg - SAME * scene.load.increment()
 }
 
 /// The stage that follows a state; `None` where the run has reached its target.
@@ -76,7 +76,7 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
     if has(Stage::RefineKnots) && state.marked.iter().any(|knots| !knots.is_empty()) {
         return Some(Stage::RefineKnots);
     }
-    (!has_reached(scene, state, scene.load.rotation_deg)).then_some(Stage::Solve)
+    (!has_reached(scene, state, scene.load.target())).then_some(Stage::Solve)
 }
 
 impl Attempt {
@@ -113,16 +113,12 @@ impl Attempt {
         }
         let half = 0.5 * self.increment_deg(state);
         let mut halvings = state.control.halvings;
-        while scene.load.increment_deg / 2.0_f64.powi(halvings as i32) > half * (1.0 + SAME) {
+        while scene.load.increment() / 2.0_f64.powi(halvings as i32) > half * (1.0 + SAME) {
             halvings += 1;
         }
-        let increment = scene.load.increment_deg / 2.0_f64.powi(halvings as i32);
+        let increment = scene.load.increment() / 2.0_f64.powi(halvings as i32);
         let rejection = Some(Rejection::NoEquilibrium);
-        (increment >= scene.solver.least_increment_deg).then_some(StepControl {
-            halvings,
-            jump_seen_at_deg: None,
-            rejection,
-        })
+        (increment >= scene.least_increment()).then_some(StepControl { halvings, jump_seen_at_deg: None, rejection })
     }
 }
 
@@ -141,15 +137,15 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::scene::parse;
+    use crate::scene::{EndRotation, Load, parse};
     use crate::spline::Mesh;
 
     fn scene(increment_deg: f64, rotation_deg: f64) -> Scene {
         let mut scene = parse(include_str!("../../pipelines/baseline-uniform.toml"), "baseline-uniform.toml").unwrap();
-        scene.load.increment_deg = increment_deg;
-        scene.load.rotation_deg = rotation_deg;
-        scene.solver.snap_tolerance_deg = 0.01;
-        scene.solver.least_increment_deg = 1e-4;
+        let sense = scene.end_rotation().unwrap().sense;
+        scene.load = Load::EndRotation(EndRotation { sense, rotation_deg, increment_deg });
+        scene.solver.snap_tolerance_deg = Some(0.01);
+        scene.solver.least_increment_deg = Some(1e-4);
         scene
     }
 
@@ -224,7 +220,7 @@ mod tests {
         }
         let mut fine = scene(0.4, 20.0);
         // Finer than numbers are: the bracket of two neighbours ends it.
-        fine.solver.snap_tolerance_deg = 1e-18;
+        fine.solver.snap_tolerance_deg = Some(1e-18);
         let ([below, beyond], _) = locate(&fine, 3.217);
         assert!(below < beyond && beyond - below < 1e-14);
     }

@@ -1,7 +1,7 @@
 //! Entries to a scene, and what must hold between keys.
 
 use super::data::{
-    Adapt, EndRotation, Geometry, LengthLimit, Material, MeshSpec, Output, Scene, Solver, Stage, Symmetry,
+    Adapt, EndRotation, Geometry, LengthLimit, Load, Material, MeshSpec, Output, Scene, Solver, Stage, Symmetry,
 };
 use super::document::Document;
 use super::error::{Checked, Direction, Fault, Place, Problem, SceneError, Source};
@@ -48,7 +48,20 @@ fn scene(reader: &Reader<'_, '_>) -> Checked<Scene> {
     let solver = solver(reader, &increment)?;
     let output =
         Output { sync: reader.word(&keys::SYNC)?.value, mesh_history: reader.switch(&keys::MESH_HISTORY)?.value };
-    Ok(Scene { geometry, material, mesh, symmetry, load, adapt, solver, pipeline: pipeline.value, output })
+    Ok(Scene {
+        geometry,
+        material,
+        mesh,
+        symmetry,
+        load,
+        supports: vec![],
+        actions: vec![],
+        probes: vec![],
+        adapt,
+        solver,
+        pipeline: pipeline.value,
+        output,
+    })
 }
 
 fn missing_section(document: &Document<'_>, section: &'static str) -> Box<Fault> {
@@ -74,7 +87,7 @@ fn material(reader: &Reader<'_, '_>, geometry: &Geometry) -> Checked<Material> {
     let poissons_ratio = reader.number(&keys::POISSONS_RATIO)?.value;
     let thickness = reader.number(&keys::THICKNESS)?;
     let thickness_mm = thickness.value;
-    let Geometry::TapeSpring { radius_mm, .. } = *geometry;
+    let Geometry::TapeSpring { radius_mm, .. } = *geometry else { todo!() };
     if thickness_mm >= radius_mm {
         let radius = reader.number(&keys::RADIUS)?.place;
         return Err(between(Problem::NotThin { thickness_mm, radius_mm }, thickness.place, radius, reader));
@@ -110,7 +123,7 @@ fn element_place(reader: &Reader<'_, '_>, index: usize) -> Option<Place> {
     Some(entry.place_of(item.span()))
 }
 
-fn load(reader: &Reader<'_, '_>) -> Checked<(EndRotation, Found<f64>)> {
+fn load(reader: &Reader<'_, '_>) -> Checked<(Load, Found<f64>)> {
     reader.bare_word(&keys::LOAD_KIND)?;
     let sense = reader.word(&keys::SENSE)?.value;
     let rotation = reader.number(&keys::ROTATION)?;
@@ -120,7 +133,7 @@ fn load(reader: &Reader<'_, '_>) -> Checked<(EndRotation, Found<f64>)> {
         let problem = Problem::IncrementPastTarget { increment_deg, rotation_deg };
         return Err(between(problem, increment.place, rotation.place, reader));
     }
-    Ok((EndRotation { sense, rotation_deg, increment_deg }, increment))
+    Ok((Load::EndRotation(EndRotation { sense, rotation_deg, increment_deg }), increment))
 }
 
 fn stages(reader: &Reader<'_, '_>) -> Checked<Found<Vec<Stage>>> {
@@ -141,11 +154,11 @@ fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>) -> Checked<Optio
         return Err(Fault::new(problem, &length.place).also(Some(&rule.place)));
     }
     let length_limit = match length {
-        Some(_) => LengthLimit::Millimetres(reader.number(&keys::LENGTH_LIMIT_MM)?.value),
+        Some(_) => LengthLimit::Millimetres([reader.number(&keys::LENGTH_LIMIT_MM)?.value; 2]),
         None => reader.word(&keys::LENGTH_LIMIT)?.value,
     };
     if pipeline.value.contains(&Stage::EvaluateIndicators) {
-        return Ok(Some(Adapt { threshold, length_limit }));
+        return Ok(Some(Adapt { threshold: [threshold; 2], length_limit }));
     }
     match reader.document.header(keys::THRESHOLD.section) {
         None => Ok(None),
@@ -167,7 +180,12 @@ fn solver(reader: &Reader<'_, '_>, increment: &Found<f64>) -> Checked<Solver> {
         let problem = Problem::SnapToleranceTooSmall { snap_tolerance_deg, least_increment_deg };
         return Err(between(problem, snap.place, least.place, reader));
     }
-    Ok(Solver { tolerance, max_iterations, least_increment_deg, snap_tolerance_deg })
+    Ok(Solver {
+        tolerance,
+        max_iterations,
+        least_increment_deg: Some(least_increment_deg),
+        snap_tolerance_deg: Some(snap_tolerance_deg),
+    })
 }
 
 /// The error for two values that do not go together; either may be a default, which stands nowhere.

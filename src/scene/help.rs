@@ -106,7 +106,7 @@ mod tests {
         let text: Vec<_> =
             example_scene().lines().filter(|line| !line.starts_with("length_limit =")).map(String::from).collect();
         let scene = parse(&text.join("\n").replace("# or: ", ""), "example.toml").unwrap();
-        assert_eq!(scene.adapt.unwrap().length_limit, LengthLimit::Millimetres(1.0));
+        assert_eq!(scene.adapt.unwrap().length_limit, LengthLimit::Millimetres([1.0; 2]));
     }
 
     #[test]

@@ -35,8 +35,9 @@ mod write;
 
 pub use check::{parse, parse_with_settings};
 pub use data::{
-    Adapt, EndRotation, Geometry, LengthLimit, Material, MeshSpec, Output, Quadrature, Scene, Sense, Solver, Stage,
-    Symmetry, SyncPolicy,
+    Action, ActionKind, Adapt, Axis, Component, Edge, EndRotation, FreeWord, Geometry, History, Hold, LengthLimit,
+    Load, LoadSteps, Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply,
+    Probe, ProbeKind, Quadrature, Reaction, Scene, Seam, Sense, Solver, Stage, Support, Symmetry, SyncPolicy,
 };
 pub use error::{Direction, Problem, SceneError, StageOrderProblem, SyntaxSlip, ValueType};
 pub use help::help_text;

@@ -18,7 +18,7 @@ pub struct ShellStiffness {
 /// St. Venant–Kirchhoff in plane stress: C^αβγδ = E/(1−ν²) [ν A^αβ A^γδ + ½(1−ν)(A^αγ A^βδ + A^αδ A^βγ)], with t C for
 /// the membrane and t³/12 C for bending (Kiendl 2011, section 3.3).
 pub fn shell_stiffness(material: &Material, tangents: [[f64; 3]; 2]) -> ShellStiffness {
-    let Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm } = *material;
+    let Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm } = *material else { todo!() };
     let metric = inverse_metric(tangents);
     let pairs = [[0, 0], [1, 1], [0, 1]];
     let modulus = youngs_modulus_mpa / (1.0 - poissons_ratio * poissons_ratio);

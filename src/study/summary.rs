@@ -111,7 +111,7 @@ impl Summary {
         steps.dedup();
         Self {
             spring: TapeSpring::of_scene(scene),
-            target_deg: scene.load.rotation_deg,
+            target_deg: scene.load.target(),
             symmetric_parts: scene.symmetry.copies(),
             initial_stiffness_n_mm: initial_stiffness(&path[..before_jump]),
             peak: peak(&path[..before_jump], before_jump < path.len()),

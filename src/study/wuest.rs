@@ -78,8 +78,8 @@ pub struct FoldMoments {
 impl TapeSpring {
     /// The tape spring that a scene describes, whatever part of it the scene models.
     pub fn of_scene(scene: &Scene) -> Self {
-        let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry;
-        let Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm } = scene.material;
+        let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry else { todo!() };
+        let Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm } = scene.material else { todo!() };
         Self {
             length_mm,
             radius_mm,
@@ -87,7 +87,7 @@ impl TapeSpring {
             thickness_mm,
             youngs_modulus_mpa,
             poissons_ratio,
-            sense: scene.load.sense,
+            sense: scene.end_rotation().unwrap().sense,
         }
     }
 

@@ -66,7 +66,7 @@ impl ViewerTopics for MeshHistory {
 
 /// One entity, which replaces that of the state before.
 fn scene_update(samples: &SurfaceSamples, scene: &Scene) -> Value {
-    let crate::scene::Geometry::TapeSpring { radius_mm, .. } = scene.geometry;
+    let crate::scene::Geometry::TapeSpring { radius_mm, .. } = scene.geometry else { todo!() };
     let colours: Vec<Value> = vertex_values(samples)
         .iter()
         .map(|value| {

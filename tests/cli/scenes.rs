@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use foldline::scene::{Geometry, LengthLimit, Material, Quadrature, Scene, Sense, Stage, Symmetry, parse};
+use foldline::scene::{Geometry, LengthLimit, Quadrature, Scene, Sense, Stage, Symmetry, parse};
 
 fn read(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines").join(name);
@@ -12,9 +12,8 @@ fn read(name: &str) -> Scene {
 }
 
 fn sizes(scene: &Scene) -> [f64; 3] {
-    let Geometry::TapeSpring { length_mm, radius_mm, .. } = scene.geometry;
-    let Material::Isotropic { thickness_mm, .. } = scene.material;
-    [length_mm, radius_mm, thickness_mm]
+    let Geometry::TapeSpring { length_mm, radius_mm, .. } = scene.geometry else { panic!() };
+    [length_mm, radius_mm, scene.material.thickness_mm()]
 }
 
 #[test]
@@ -37,7 +36,7 @@ fn every_scene_parses_and_opens_with_what_it_shows() {
 fn the_cases_of_the_paper_differ_from_the_baseline_in_their_sizes_alone() {
     let baseline = read("baseline.toml");
     assert_eq!(sizes(&baseline), [300.0, 10.0, 0.1]);
-    assert_eq!(baseline.load.sense, Sense::Opposite);
+    assert_eq!(baseline.end_rotation().unwrap().sense, Sense::Opposite);
     assert_eq!(baseline.mesh.elements, [4, 4]);
     assert_eq!(baseline.mesh.quadrature, Quadrature::Full);
     assert_eq!(baseline.pipeline, Stage::ALL);

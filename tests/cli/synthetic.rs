@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use foldline::pipeline::{Commit, Outcome, Record, Report};
 use foldline::scene::{
-    Adapt, EndRotation, Geometry, LengthLimit, Material, MeshSpec, Output, Quadrature, Scene, Sense, Solver, Stage,
-    Symmetry, SyncPolicy,
+    Adapt, EndRotation, Geometry, LengthLimit, Load, Material, MeshSpec, Output, Quadrature, Scene, Sense, Solver,
+    Stage, Symmetry, SyncPolicy,
 };
 use foldline::state::{Hash, Mesh, State, StepControl};
 
@@ -35,9 +35,17 @@ pub fn scene() -> Scene {
         material: Material::Isotropic { youngs_modulus_mpa: 131e3, poissons_ratio: 0.3, thickness_mm: 0.1 },
         mesh: MeshSpec { degree: [3, 3], elements: [4, 4], quadrature: Quadrature::Full },
         symmetry: Symmetry::Quarter,
-        load: EndRotation { sense: Sense::Opposite, rotation_deg: 20.0, increment_deg: 0.8 },
-        adapt: Some(Adapt { threshold: 0.019, length_limit: LengthLimit::SqrtRadiusThickness }),
-        solver: Solver { tolerance: 1e-7, max_iterations: 60, least_increment_deg: 1e-3, snap_tolerance_deg: 0.02 },
+        load: Load::EndRotation(EndRotation { sense: Sense::Opposite, rotation_deg: 20.0, increment_deg: 0.8 }),
+        supports: vec![],
+        actions: vec![],
+        probes: vec![],
+        adapt: Some(Adapt { threshold: [0.019; 2], length_limit: LengthLimit::SqrtRadiusThickness }),
+        solver: Solver {
+            tolerance: 1e-7,
+            max_iterations: 60,
+            least_increment_deg: Some(1e-3),
+            snap_tolerance_deg: Some(0.02),
+        },
         pipeline: Stage::ALL.to_vec(),
         output: Output { sync: SyncPolicy::EachSecond, mesh_history: false },
     }

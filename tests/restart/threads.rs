@@ -6,7 +6,7 @@ use crate::support::{run, scene};
 
 fn chain_on(threads: usize) -> Hash {
     let mut quarter = scene("baseline-quarter.toml");
-    quarter.load.rotation_deg = 12.0;
+    quarter.load.set_target(12.0);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let stages = pool.install(|| run(quarter));
     assert!(stages.iter().any(|(_, record)| record.report.jumped), "the run goes through the snap");

@@ -142,7 +142,7 @@ fn work_of_the_end_moment_is_the_strain_energy() {
     uniform.adapt = None;
     uniform.pipeline = vec![Stage::Solve];
     uniform.mesh.elements = [32, 16];
-    uniform.load.rotation_deg = 9.6;
+    uniform.load.set_target(9.6);
     let stages = run(uniform);
     let (mut work, mut rotation, mut moment) = (0.0, 0.0_f64, 0.0);
     for (state, _) in &stages {

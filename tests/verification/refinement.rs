@@ -9,7 +9,7 @@ use crate::support::{run, scene};
 #[test]
 fn projecting_keeps_the_energy_and_re_equilibrating_lowers_it() {
     let mut quarter = scene("baseline-quarter.toml");
-    quarter.load.rotation_deg = 12.0;
+    quarter.load.set_target(12.0);
     let stages = run(quarter.clone());
     let mut refinements = 0;
     for index in 1..stages.len() {
@@ -40,7 +40,7 @@ fn projecting_keeps_the_energy_and_re_equilibrating_lowers_it() {
 fn a_uniform_scene_runs_nothing_but_solves() {
     let mut uniform = scene("baseline-uniform.toml");
     uniform.mesh.elements = [8, 4];
-    uniform.load.rotation_deg = 2.0;
+    uniform.load.set_target(2.0);
     let stages = run(uniform);
     assert!(stages.iter().all(|(_, record)| record.report.stage == Stage::Solve));
     assert!(stages.iter().all(|(state, _)| state.mesh == stages[0].0.mesh));

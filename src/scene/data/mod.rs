@@ -1,5 +1,15 @@
 //! What a scene holds: plain data, every default filled in.
 
+mod boundary;
+mod geometry;
+mod material;
+mod probe;
+
+pub use boundary::{Action, ActionKind, Edge, FreeWord, History, Hold, Motion, ParametricDirection, Place, Support};
+pub use geometry::{Geometry, NurbsPatch, Seam};
+pub use material::{Material, OrthotropicLaw, Ply};
+pub use probe::{Axis, Component, Probe, ProbeKind, Reaction};
+
 use serde::{Deserialize, Serialize};
 
 /// Everything a run is a function of.
@@ -13,8 +23,17 @@ pub struct Scene {
     pub mesh: MeshSpec,
     /// Which part of the shell is modelled.
     pub symmetry: Symmetry,
-    /// What moves the shell.
-    pub load: EndRotation,
+    /// What drives the run: how far, and in which steps.
+    pub load: Load,
+    /// Where and how the shell is held; empty where [`Load::EndRotation`] holds its ends.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub supports: Vec<Support>,
+    /// Forces, moments and pressures.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub actions: Vec<Action>,
+    /// Quantities that every equilibrium reports by name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<Probe>,
     /// When and how far the mesh is refined; `None` where no stage of the pipeline refines.
     pub adapt: Option<Adapt>,
     /// Tolerances and limits of the equilibrium solver.
@@ -23,36 +42,6 @@ pub struct Scene {
     pub pipeline: Vec<Stage>,
     /// What is written beside the states; never changes a state.
     pub output: Output,
-}
-
-/// Undeformed mid-surface.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Geometry {
-    /// Open circular cylinder: axis along x, apex of the arc up (+z), edges down.
-    TapeSpring {
-        /// Length along the axis.
-        length_mm: f64,
-        /// Radius of the mid-surface of the cross-section.
-        radius_mm: f64,
-        /// Angle subtended by the whole cross-section.
-        arc_deg: f64,
-    },
-}
-
-/// Constitutive law and thickness.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Material {
-    /// St. Venant–Kirchhoff, isotropic.
-    Isotropic {
-        /// Young's modulus E.
-        youngs_modulus_mpa: f64,
-        /// Poisson's ratio ν, in (−1, ½).
-        poissons_ratio: f64,
-        /// Shell thickness t.
-        thickness_mm: f64,
-    },
 }
 
 /// Spline space and quadrature that the run starts with. Pairs are (along the length, along the arc).
@@ -128,6 +117,48 @@ pub enum Sense {
     Equal,
 }
 
+/// What drives a run. Its *parameter* grows from 0 by increments: the rotation θ of the ends in degrees, or the load
+/// factor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Load {
+    /// The ends of a tape spring turn.
+    EndRotation(EndRotation),
+    /// Actions and given motions of supports follow the load factor, each by its own history.
+    Steps(LoadSteps),
+}
+
+impl Load {
+    /// Parameter at which the run stops.
+    pub fn target(&self) -> f64 {
+        match self {
+            Load::EndRotation(load) => load.rotation_deg,
+            Load::Steps(load) => load.factor,
+        }
+    }
+
+    /// Increment of the parameter in one load step.
+    pub fn increment(&self) -> f64 {
+        match self {
+            Load::EndRotation(load) => load.increment_deg,
+            Load::Steps(load) => load.increment,
+        }
+    }
+}
+
+/// Steps of the load factor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadSteps {
+    /// Load factor at which the run stops, > 0.
+    pub factor: f64,
+    /// Increment of the load factor in one load step.
+    pub increment: f64,
+    /// Increments are not cut below this; then the run stops with all good steps kept.
+    pub least_increment: f64,
+    /// A jump is located to this load factor before the run goes on beyond it.
+    pub snap_tolerance: f64,
+}
+
 /// The end sections turn by +θ and −θ about the transverse axis through their centroids.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EndRotation {
@@ -142,8 +173,10 @@ pub struct EndRotation {
 /// When and how far the mesh is refined.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adapt {
-    /// r₀: a knot span is marked where max|κ| h exceeds it (dimensionless).
-    pub threshold: f64,
+    /// r₀ each way: a knot span is marked where max|κ| h exceeds it (dimensionless). One number in the JSON form where
+    /// both are equal.
+    #[serde(with = "one_or_pair")]
+    pub threshold: [f64; 2],
     /// Elements are not halved below this length.
     pub length_limit: LengthLimit,
 }
@@ -152,10 +185,11 @@ pub struct Adapt {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LengthLimit {
-    /// √(R t), the decay length of bending in the cross-section.
+    /// √(R t) with the least radius of curvature R of the undeformed shell: the decay length of bending.
     SqrtRadiusThickness,
-    /// A length in mm.
-    Millimetres(f64),
+    /// A length each way in mm. One number in the JSON form where both are equal.
+    #[serde(with = "one_or_pair")]
+    Millimetres([f64; 2]),
 }
 
 /// Tolerances and limits of the equilibrium solver.
@@ -165,10 +199,69 @@ pub struct Solver {
     pub tolerance: f64,
     /// Newton iterations after which a solve has failed.
     pub max_iterations: usize,
-    /// Increments are not cut below this; then the run stops with all good steps kept (degrees).
-    pub least_increment_deg: f64,
-    /// A jump is located to this rotation before the run goes on beyond it (degrees).
-    pub snap_tolerance_deg: f64,
+    /// [`Load::EndRotation`]: increments are not cut below this; then the run stops with all good steps kept (degrees).
+    pub least_increment_deg: Option<f64>,
+    /// [`Load::EndRotation`]: a jump is located to this rotation before the run goes on beyond it (degrees).
+    pub snap_tolerance_deg: Option<f64>,
+}
+
+impl Load {
+    /// Sets the parameter at which the run stops.
+    pub fn set_target(&mut self, target: f64) {
+        match self {
+            Load::EndRotation(load) => load.rotation_deg = target,
+            Load::Steps(load) => load.factor = target,
+        }
+    }
+}
+
+impl Scene {
+    /// The turn of the ends, where that drives the run.
+    pub fn end_rotation(&self) -> Option<&EndRotation> {
+        match &self.load {
+            Load::EndRotation(load) => Some(load),
+            Load::Steps(_) => None,
+        }
+    }
+
+    /// Increments of the parameter are not cut below this.
+    pub fn least_increment(&self) -> f64 {
+        match &self.load {
+            Load::EndRotation(_) => self.solver.least_increment_deg.unwrap_or(0.0),
+            Load::Steps(load) => load.least_increment,
+        }
+    }
+
+    /// A jump is located to this interval of the parameter.
+    pub fn snap_tolerance(&self) -> f64 {
+        match &self.load {
+            Load::EndRotation(_) => self.solver.snap_tolerance_deg.unwrap_or(0.0),
+            Load::Steps(load) => load.snap_tolerance,
+        }
+    }
+}
+
+/// Two numbers as one where they are equal.
+mod one_or_pair {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum OneOrPair {
+        One(f64),
+        Pair([f64; 2]),
+    }
+
+    pub fn serialize<S: Serializer>(pair: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
+        if pair[0] == pair[1] { pair[0].serialize(serializer) } else { pair.serialize(serializer) }
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {
+        Ok(match OneOrPair::deserialize(deserializer)? {
+            OneOrPair::One(both) => [both; 2],
+            OneOrPair::Pair(pair) => pair,
+        })
+    }
 }
 
 /// A stage of the pipeline.

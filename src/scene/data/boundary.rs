@@ -1,0 +1,197 @@
+//! Where and how the shell is held, and what acts on it.
+
+use serde::{Deserialize, Serialize};
+
+/// A parametric direction of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ParametricDirection {
+    /// The first.
+    U,
+    /// The second.
+    V,
+}
+
+/// An edge of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Edge {
+    /// u = 0.
+    UStart,
+    /// u = 1.
+    UEnd,
+    /// v = 0.
+    VStart,
+    /// v = 1.
+    VEnd,
+}
+
+impl Edge {
+    /// The direction that is constant along the edge, and whether it is at its end.
+    pub fn side(self) -> (ParametricDirection, bool) {
+        match self {
+            Edge::UStart => (ParametricDirection::U, false),
+            Edge::UEnd => (ParametricDirection::U, true),
+            Edge::VStart => (ParametricDirection::V, false),
+            Edge::VEnd => (ParametricDirection::V, true),
+        }
+    }
+}
+
+/// A part of the surface. Fractions are of the length or of the angle that the direction spans (of the parameter for
+/// [`super::Geometry::Nurbs`]).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Place {
+    /// A whole edge.
+    Edge(Edge),
+    /// A point (u, v), a corner for instance; fractions in [0, 1].
+    Point([f64; 2]),
+    /// The line on which one direction has a fraction, strictly inside (0, 1).
+    Line(ParametricDirection, f64),
+}
+
+/// A part of the shell that is held or moved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Support {
+    /// What reports and errors call it; no two supports have the same name.
+    pub name: String,
+    /// Where.
+    pub on: Place,
+    /// How.
+    #[serde(flatten)]
+    pub hold: Hold,
+    /// Factor of the given motions over the load factor.
+    #[serde(default, skip_serializing_if = "History::is_proportional")]
+    pub history: History,
+}
+
+/// How a support holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Hold {
+    /// Components of the displacement are given (0: held), others are free; slopes are free. Anywhere. The words
+    /// `hinged` (all three 0), `fixed` (those that `hold` lists are 0) and `displacement` of a scene all come to this.
+    Displacement {
+        /// Displacement in x, y, z at factor 1, mm; `None` is free.
+        displacement_mm: [Option<f64>; 3],
+    },
+    /// The edge lies in a plane of symmetry: displacements across the plane and turns about the edge are zero. The
+    /// edge must be plane, and the surface must cross the plane at right angles. Edges only.
+    Symmetric,
+    /// The edge is a rigid section with a pose of its own. `clamped` in a scene is one with all six motions held. The
+    /// membrane strain at the edge stays free. Edges only.
+    Rigid {
+        /// Translations along x, y, z (mm) of the reference point and the rotation vector about x, y, z (degrees), at
+        /// factor 1.
+        motions: [Motion; 6],
+        /// The point of the section whose translation is meant and about which it turns; `None`: the centroid of the
+        /// undeformed edge.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        reference_mm: Option<[f64; 3]>,
+        /// Whether the shell's normal turns with the section; otherwise the shell is hinged to it.
+        normals_turn: bool,
+    },
+}
+
+/// One motion of a rigid section.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Motion {
+    /// Its value at factor 1, mm or degrees; 0 is held.
+    Given(f64),
+    /// Free: found by equilibrium.
+    Free(FreeWord),
+}
+
+/// The word `free`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FreeWord {
+    /// The only one.
+    Free,
+}
+
+impl Motion {
+    /// A free motion.
+    pub const FREE: Self = Motion::Free(FreeWord::Free);
+}
+
+/// Forces, moments and pressures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Action {
+    /// What errors call it.
+    pub name: String,
+    /// What acts, at factor 1.
+    #[serde(flatten)]
+    pub kind: ActionKind,
+    /// Factor over the load factor.
+    #[serde(default, skip_serializing_if = "History::is_proportional")]
+    pub history: History,
+}
+
+/// What acts, at factor 1.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum ActionKind {
+    /// A dead force on a point.
+    Force {
+        /// Fractions (u, v).
+        on: [f64; 2],
+        /// Components in x, y, z.
+        force_n: [f64; 3],
+    },
+    /// A dead force per undeformed length of an edge or a line.
+    LineForce {
+        /// Edge or line.
+        on: Place,
+        /// Components in x, y, z.
+        force_n_per_mm: [f64; 3],
+    },
+    /// A moment per undeformed length of an edge, about the tangent of the deformed edge in the direction of
+    /// growing u or v (right-hand rule); it turns with the shell.
+    EdgeMoment {
+        /// The edge.
+        on: Edge,
+        /// N·mm per mm.
+        moment_n: f64,
+    },
+    /// A pressure on the whole surface; positive along the normal.
+    Pressure {
+        /// N/mm².
+        pressure_mpa: f64,
+        /// Whether it acts along the deformed normal on the deformed area, or keeps the direction and the area of the
+        /// undeformed shell (dead).
+        follower: bool,
+    },
+}
+
+/// Factor over the load factor: straight between (load factor, factor) pairs, constant beyond the last. Empty: the
+/// load factor itself.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct History(pub Vec<[f64; 2]>);
+
+impl History {
+    /// Whether the factor is the load factor itself.
+    pub fn is_proportional(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Factor at a load factor.
+    pub fn at(&self, load_factor: f64) -> f64 {
+        let points = &self.0;
+        let Some(first) = points.first() else { return load_factor };
+        let after = points.partition_point(|point| point[0] <= load_factor);
+        match (after.checked_sub(1).map(|before| points[before]), points.get(after)) {
+            (None, _) => first[1],
+            (Some(last), None) => last[1],
+            (Some([from, low]), Some([to, high])) => low + (high - low) * (load_factor - from) / (to - from),
+        }
+    }
+
+    /// Load factors at which the factor has a kink.
+    pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
+        self.0.iter().map(|point| point[0])
+    }
+}

@@ -1,0 +1,91 @@
+//! The undeformed mid-surface. Its parametric directions are u and v; places on it are fractions in [0, 1] of each.
+
+use serde::{Deserialize, Serialize};
+
+/// Undeformed mid-surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Geometry {
+    /// Open circular cylinder: axis along x, apex of the arc up (+z), edges down. u runs along the axis, v along the
+    /// arc towards +y; the normal points outwards.
+    TapeSpring {
+        /// Length along the axis.
+        length_mm: f64,
+        /// Radius of the mid-surface of the cross-section.
+        radius_mm: f64,
+        /// Angle subtended by the whole cross-section, less than 360.
+        arc_deg: f64,
+    },
+    /// Rectangle 0 ≤ x ≤ length, 0 ≤ y ≤ width in the plane z = 0. u runs along x, v along y; the normal is +z.
+    Plate {
+        /// Extent in x.
+        length_mm: f64,
+        /// Extent in y.
+        width_mm: f64,
+    },
+    /// As [`Geometry::TapeSpring`], of any arc up to the full turn.
+    CylinderPanel {
+        /// Length along the axis.
+        length_mm: f64,
+        /// Radius of the mid-surface.
+        radius_mm: f64,
+        /// Angle subtended, up to 360.
+        arc_deg: f64,
+        /// What a full turn does where it meets itself; given exactly where `arc_deg` is 360.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        seam: Option<Seam>,
+    },
+    /// Ring, or a sector of it, in the plane z = 0 about the origin. u runs from the inner to the outer radius, v
+    /// counterclockwise from the +x axis; the normal is +z.
+    Annulus {
+        /// Inner radius, > 0.
+        inner_radius_mm: f64,
+        /// Outer radius.
+        outer_radius_mm: f64,
+        /// Angle, up to 360.
+        arc_deg: f64,
+        /// As for [`Geometry::CylinderPanel`].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        seam: Option<Seam>,
+    },
+    /// Part of a sphere about the origin between two latitudes. u runs along the longitude, counterclockwise from the
+    /// +x axis seen from +z; v along the latitude towards +z; the normal points outwards.
+    SphereZone {
+        /// Radius of the mid-surface.
+        radius_mm: f64,
+        /// From and to, in (−90, 90): the poles are not part of it.
+        latitude_deg: [f64; 2],
+        /// Longitudes, up to 360.
+        arc_deg: f64,
+        /// As for [`Geometry::CylinderPanel`].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        seam: Option<Seam>,
+    },
+    /// Any surface of one patch.
+    Nurbs(NurbsPatch),
+}
+
+/// What a full turn does where it meets itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Seam {
+    /// Closed: displacement and slope go on across it.
+    Smooth,
+    /// Slit: both lips are free edges.
+    Free,
+}
+
+/// A NURBS surface as the user gives it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NurbsPatch {
+    /// Polynomial degree of the geometry in u and v, 1 to 5; the mesh may be of a higher one.
+    pub degrees: [usize; 2],
+    /// Open (clamped) knot vector in u; ascending.
+    pub knots_u: Vec<f64>,
+    /// Open (clamped) knot vector in v; ascending.
+    pub knots_v: Vec<f64>,
+    /// (x, y, z) of the control points, mm, not multiplied by their weights; v fastest.
+    pub control_points_mm: Vec<[f64; 3]>,
+    /// Weights of the control points, > 0, in the same order.
+    pub weights: Vec<f64>,
+}

@@ -1,0 +1,92 @@
+//! Quantities that reports give by name.
+
+use serde::{Deserialize, Serialize};
+
+use super::Place;
+
+/// A quantity that every equilibrium reports.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Probe {
+    /// Its name in reports; no two probes have the same.
+    pub name: String,
+    /// What it is.
+    #[serde(flatten)]
+    pub kind: ProbeKind,
+}
+
+/// What a probe measures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum ProbeKind {
+    /// Displacement of a point, mm.
+    Displacement {
+        /// Fractions (u, v).
+        on: [f64; 2],
+        /// Which component.
+        component: Component,
+    },
+    /// What a support exerts on the shell: force (N), or moment (N·mm) about the displaced reference point of a rigid
+    /// section, or for another support about the centroid of the undeformed place.
+    Reaction {
+        /// Name of the support.
+        support: String,
+        /// Which component.
+        component: Reaction,
+    },
+    /// Moment that the side of larger u or v exerts on the other across a line, about the line's displaced middle,
+    /// N·mm.
+    SectionMoment {
+        /// A line.
+        on: Place,
+        /// Which component.
+        component: Axis,
+    },
+    /// Strain energy of the model, N·mm.
+    Energy,
+    /// Largest magnitude of the physical bending strain along u or v, 1/mm, and where it is.
+    BendingStrain,
+}
+
+/// A component of a vector, or its length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Component {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+    /// Along z.
+    Z,
+    /// The length of the vector.
+    Magnitude,
+}
+
+/// A component of a vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Axis {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+    /// Along z.
+    Z,
+}
+
+/// A component of force and moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reaction {
+    /// Force along x.
+    ForceX,
+    /// Force along y.
+    ForceY,
+    /// Force along z.
+    ForceZ,
+    /// Moment about x.
+    MomentX,
+    /// Moment about y.
+    MomentY,
+    /// Moment about z.
+    MomentZ,
+}
