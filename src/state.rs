@@ -22,9 +22,11 @@ pub struct State {
     pub step: u64,
     /// The stage that made this state; `None` for the state that the scene starts from.
     pub stage: Option<Stage>,
-    /// Rotation of each end, degrees.
-    pub rotation_deg: f64,
-    /// End moment dΠ/dθ / 2 (of each end, whole section), N·mm.
+    /// The scene's parameter: rotation of each end in degrees, or the load factor.
+    pub parameter: f64,
+    /// Rotation vectors of the rigid sections where one of them turns freely, radians; empty otherwise.
+    pub turns: Vec<[f64; 3]>,
+    /// Turning ends: moment dΠ/dθ / 2 (of each end, whole section), N·mm. Otherwise 0.
     pub moment_n_mm: f64,
     /// Strain energy of the whole shell, N·mm.
     pub strain_energy_n_mm: f64,
@@ -70,7 +72,7 @@ impl State {
         }
         feed.integer(self.step);
         feed.integer(self.stage.map_or(0, |stage| 1 + stage as u64));
-        feed.number(self.rotation_deg);
+        feed.number(self.parameter);
         feed.number(self.moment_n_mm);
         feed.number(self.strain_energy_n_mm);
         feed.integer(self.negative_pivots);
@@ -82,6 +84,11 @@ impl State {
             Some(Rejection::NoEquilibrium) => 1,
             Some(Rejection::Jump) => 2,
         });
+        // Only where there are any, so that states without them hash as they always did.
+        if !self.turns.is_empty() {
+            feed.bytes(b"turns");
+            self.turns.iter().flatten().for_each(|value| feed.number(*value));
+        }
         feed.finish()
     }
 }

@@ -59,7 +59,7 @@ impl Arguments {
                 let report = &a.log.entries()[parting.index].record.report;
                 text.push_str(&format!(
                     "part at stage {}: step {} {} at {}° (found in {} looks)\n",
-                    parting.index, report.step, report.stage, report.attempted_rotation_deg, parting.looks
+                    parting.index, report.step, report.stage, report.attempted_parameter, parting.looks
                 ));
                 text.push_str(&compared(&parting.comparison));
             }

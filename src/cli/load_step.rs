@@ -21,10 +21,10 @@ pub(super) struct LoadStep {
 impl LoadStep {
     /// One line: step, rotation, moment, elements, iterations, time, and what else happened.
     pub(super) fn line(&self) -> String {
-        let Report { step, rotation_deg, moment_n_mm, elements: [n1, n2], .. } = self.report;
+        let Report { step, parameter, moment_n_mm, elements: [n1, n2], .. } = self.report;
         let elements = format!("{n1} × {n2}");
         let mut line = format!(
-            "step {step:>4}  {rotation_deg:>8.3}°  {moment_n_mm:>9.3} N·mm  {elements:>9}  {:>3} iterations  {:>8}",
+            "step {step:>4}  {parameter:>8.3}°  {moment_n_mm:>9.3} N·mm  {elements:>9}  {:>3} iterations  {:>8}",
             self.iterations,
             duration(self.wall_s)
         );

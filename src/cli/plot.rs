@@ -80,8 +80,8 @@ fn cells_per_element(mesh: &Mesh) -> usize {
 
 /// The numbers of the state that a picture shows.
 fn subtitle(report: &Report) -> String {
-    let Report { rotation_deg, moment_n_mm, elements: [n1, n2], .. } = report;
-    format!("θ {}°, M {moment_n_mm:.2} N·mm, {n1} × {n2} elements in the model", rounded(*rotation_deg))
+    let Report { parameter, moment_n_mm, elements: [n1, n2], .. } = report;
+    format!("θ {}°, M {moment_n_mm:.2} N·mm, {n1} × {n2} elements in the model", rounded(*parameter))
 }
 
 /// "AZIMUTH,ELEVATION".

@@ -111,8 +111,8 @@ impl<'a, S: Sink> Shown<'a, S> {
                 for step in gatherer.take(record).into_iter().filter(|step| step.is_eventful()) {
                     bar.println(step.line());
                 }
-                bar.set_position(thousandths(record.report.rotation_deg));
-                bar.set_prefix(live_prefix(record.report.rotation_deg, *target_deg));
+                bar.set_position(thousandths(record.report.parameter));
+                bar.set_prefix(live_prefix(record.report.parameter, *target_deg));
                 bar.set_message(live_message(&record.report));
             }
             Display::Lines { out, gatherer } => {
@@ -154,8 +154,8 @@ fn write_or_forget(out: &mut dyn Write, line: &str) {
 }
 
 /// Rotation as a position of the bar.
-fn thousandths(rotation_deg: f64) -> u64 {
-    (rotation_deg * 1000.0).max(0.0) as u64
+fn thousandths(parameter: f64) -> u64 {
+    (parameter * 1000.0).max(0.0) as u64
 }
 
 fn live_bar(target_deg: f64, start_deg: f64) -> ProgressBar {
@@ -171,8 +171,8 @@ fn live_bar(target_deg: f64, start_deg: f64) -> ProgressBar {
 }
 
 /// What stands before the bar.
-fn live_prefix(rotation_deg: f64, target_deg: f64) -> String {
-    format!("{rotation_deg:.3}° of {}°", rounded(target_deg))
+fn live_prefix(parameter: f64, target_deg: f64) -> String {
+    format!("{parameter:.3}° of {}°", rounded(target_deg))
 }
 
 /// What stands after the bar: the last stage and the numbers of the state that it made.
@@ -181,9 +181,9 @@ fn live_message(report: &Report) -> String {
     let outcome = match report.outcome {
         Outcome::Done if report.iterations > 0 => format!(", {iterations} iterations"),
         Outcome::Done => String::new(),
-        Outcome::RejectedJump => format!(" turned down at {:.3}°: jump", report.attempted_rotation_deg),
+        Outcome::RejectedJump => format!(" turned down at {:.3}°: jump", report.attempted_parameter),
         Outcome::RejectedNoEquilibrium => {
-            format!(" turned down at {:.3}°: no equilibrium", report.attempted_rotation_deg)
+            format!(" turned down at {:.3}°: no equilibrium", report.attempted_parameter)
         }
     };
     format!("{moment_n_mm:.2} N·mm  {n1}×{n2}  {stage}{outcome}")
@@ -200,8 +200,11 @@ mod tests {
             step: 7,
             stage: Stage::Solve,
             outcome: Outcome::Done,
-            rotation_deg: 9.6,
-            attempted_rotation_deg: 9.615,
+            driven_by: crate::pipeline::Parameter::Rotation,
+            work_n_mm: 0.0,
+            probes: vec![],
+            parameter: 9.6,
+            attempted_parameter: 9.615,
             moment_n_mm: 289.1247,
             strain_energy_n_mm: 63.0,
             elements: [16, 8],
@@ -215,7 +218,7 @@ mod tests {
             marked: [0, 0],
             largest_indicator: [0.0, 0.0],
         };
-        assert_eq!(live_prefix(report.rotation_deg, 20.0), "9.600° of 20°");
+        assert_eq!(live_prefix(report.parameter, 20.0), "9.600° of 20°");
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve, 5 iterations");
         report.outcome = Outcome::RejectedJump;
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve turned down at 9.615°: jump");

@@ -108,7 +108,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let basis = basis(log, plan.keep, &stages).map_err(|source| unusable(Box::new(source)))?;
     let before: Vec<Record> = log.entries()[..plan.keep].iter().map(|entry| entry.record.clone()).collect();
     let run = Run::new(stages, basis.state, basis.commit);
-    let reached = run.state().rotation_deg;
+    let reached = run.state().parameter;
     let until_deg = options.until_deg;
     let next = run.next_stage().filter(|_| until_deg.is_none_or(|until| reached < until));
     match next {

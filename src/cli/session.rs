@@ -74,7 +74,7 @@ pub(super) fn drive(
     options: &RunOptions,
     raised: &AtomicBool,
 ) -> Result<Vec<Record>, Failure> {
-    let start_deg = run.state().rotation_deg;
+    let start_deg = run.state().parameter;
     let writer = match scene.output.mesh_history {
         true => writer.with_viewer(Box::new(MeshHistory::new(scene))),
         false => writer,

@@ -58,7 +58,7 @@ fn cells(record: &Record) -> [String; COLUMNS.len()] {
         commit.ordinal.to_string(),
         report.step.to_string(),
         report.stage.name().to_string(),
-        format!("{:.3}", report.rotation_deg),
+        format!("{:.3}", report.parameter),
         format!("{:.3}", report.moment_n_mm),
         format!("{:.3}", report.strain_energy_n_mm),
         format!("{}×{}", report.elements[0], report.elements[1]),
@@ -74,7 +74,7 @@ fn cells(record: &Record) -> [String; COLUMNS.len()] {
 
 /// What else happened, in few words.
 fn note(report: &Report) -> String {
-    let attempted = report.attempted_rotation_deg;
+    let attempted = report.attempted_parameter;
     match report.outcome {
         Outcome::RejectedJump => format!("✗ jump at {attempted:.3}°"),
         Outcome::RejectedNoEquilibrium => format!("✗ no solution {attempted:.3}°"),
@@ -117,10 +117,10 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
     let mut lines = vec![
         ("", format!("stage {}: {}, load step {}", commit.ordinal, report.stage, report.step)),
         ("outcome", outcome),
-        ("rotation", format!("{}°", report.rotation_deg)),
+        ("rotation", format!("{}°", report.parameter)),
     ];
-    if report.attempted_rotation_deg != report.rotation_deg {
-        lines.push(("attempted rotation", format!("{}°", report.attempted_rotation_deg)));
+    if report.attempted_parameter != report.parameter {
+        lines.push(("attempted rotation", format!("{}°", report.attempted_parameter)));
     }
     lines.extend([
         ("end moment", format!("{} N·mm", report.moment_n_mm)),

@@ -135,6 +135,16 @@ pub fn neighbour(i: usize, offset: [isize; 2], n2: usize, count: usize) -> Optio
     (0 <= column && column < n2 as isize && j < count as isize).then_some(j as usize)
 }
 
+/// Slot of the block of two control points i ≤ j that share an element.
+pub fn neighbour_slot(degree: [usize; 2], n2: usize, i: usize, j: usize) -> usize {
+    let [_, p2] = degree;
+    let rows = j / n2 - i / n2;
+    match rows {
+        0 => j - i,
+        _ => p2 + 1 + (rows - 1) * (2 * p2 + 1) + p2 + j % n2 - i % n2,
+    }
+}
+
 /// Disjoint slices of `height` rows from each of the ascending `starts`.
 fn take_rows<T>(mut data: &mut [T], row: usize, height: usize, starts: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
     let mut taken = 0;

@@ -6,6 +6,11 @@
 //! direction that reverses Newton's where the curvature is negative (section 3.4 there, modified factorizations). The
 //! energy never rises by more than rounding over two steps.
 //!
+//! With loads, what descends is strain energy less the work of the loads since the start, by the trapezoidal rule over
+//! the steps: exact for dead loads, and of third order in the step for those that turn with the shell, so that it needs
+//! no potential. Where such loads have a skew tangent, the direction solves the whole system (GMRES on the factor of
+//! the symmetric part).
+//!
 //! A full Newton step that does not lower the energy is taken all the same for one more step (a watchdog, section 15.6
 //! there): in a thin shell the valley of low energy is curved, a straight step leaves it at the cost of membrane
 //! energy, and the next step returns to it. Backtracking at once follows the valley in many small steps: the snap of
@@ -13,6 +18,8 @@
 //! patience took 33 and 37.
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
+use crate::equilibrium::external::{External, work};
+use crate::equilibrium::gmres::gmres;
 use crate::equilibrium::newton::{Effort, Iterate, SolveError, Workspace};
 use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::sparse::SparseSolver;
@@ -27,10 +34,15 @@ const ENERGY_ROUNDING: f64 = 1e-12;
 const MAX_BACKTRACKS: usize = 30;
 /// Doublings of a step along negative curvature.
 const MAX_DOUBLINGS: usize = 6;
+/// Residual of the direction where the tangent has a skew part, relative; Newton's convergence asks for no more.
+const SKEW_TOLERANCE: f64 = 1e-9;
+/// Iterations at most there: the skew part comes from free edges alone, so that its rank, in effect, is small.
+const SKEW_ITERATIONS: usize = 100;
 
 /// A descent under way: residual and stiffness are assembled at the point in hand.
 pub(super) struct Descent<'a> {
     placement: Placement<'a>,
+    parameter: f64,
     discretization: &'a Discretization,
     assembled: &'a mut Assembled,
     pattern: &'a Pattern,
@@ -38,6 +50,9 @@ pub(super) struct Descent<'a> {
     values: &'a mut [f64],
     unknowns: Vec<f64>,
     displacement: Vec<[f64; 3]>,
+    external: External,
+    /// Work of the loads since the start, N·mm.
+    work: f64,
     gradient: Vec<f64>,
     step_length: f64,
     /// Where a step started that has not lowered the energy yet.
@@ -48,6 +63,10 @@ pub(super) struct Descent<'a> {
 /// A point with a descent direction.
 struct Start {
     unknowns: Vec<f64>,
+    displacement: Vec<[f64; 3]>,
+    /// Forces of the loads, and their work so far.
+    forces: Vec<[f64; 3]>,
+    work: f64,
     direction: Vec<f64>,
     /// Derivative of the energy along the direction; negative.
     slope: f64,
@@ -59,22 +78,31 @@ impl Start {
         self.unknowns.iter().zip(&self.direction).map(|(q, d)| q + length * d).collect()
     }
 
+    /// Strain energy less work of the loads.
+    fn merit(&self) -> f64 {
+        self.iterate.energy - self.work
+    }
+
     /// Sufficient decrease for a step of this length.
-    fn is_enough(&self, length: f64, energy: f64) -> bool {
-        let start = self.iterate.energy;
-        energy <= start + SUFFICIENT_DECREASE * length * self.slope + ENERGY_ROUNDING * start.abs()
+    fn is_enough(&self, length: f64, merit: f64) -> bool {
+        let rounding = ENERGY_ROUNDING * (self.iterate.energy.abs() + self.work.abs());
+        merit <= self.merit() + SUFFICIENT_DECREASE * length * self.slope + rounding
     }
 }
 
 impl<'a> Descent<'a> {
-    pub(super) fn new(work: &'a mut Workspace, theta: f64, unknowns: Vec<f64>) -> Self {
-        let Workspace { discretization, pattern, solver, assembled, values, .. } = work;
+    pub(super) fn new(workspace: &'a mut Workspace, parameter: f64, unknowns: Vec<f64>) -> Self {
+        let Workspace { discretization, pattern, solver, assembled, values, .. } = workspace;
         let discretization = &*discretization;
-        let placement = discretization.unknowns.at(theta);
-        let displacement = placement.displacement(&unknowns);
+        let placement = discretization.unknowns.place(&unknowns, parameter);
+        let displacement = placement.displacement();
         assembled.assemble(discretization, &displacement, Want::Stiffness);
+        let external = External::new(discretization, &displacement, parameter, assembled);
         Self {
             placement,
+            parameter,
+            external,
+            work: 0.0,
             discretization,
             assembled,
             pattern,
@@ -92,12 +120,13 @@ impl<'a> Descent<'a> {
     /// Factors the stiffness at the point in hand and says where the descent stands.
     pub(super) fn iterate(&mut self) -> Result<Iterate, SolveError> {
         let assembled = &*self.assembled;
-        self.gradient = self.placement.restrict(&assembled.residual);
+        let forces = self.external.subtract_from(&assembled.residual);
+        self.gradient = self.placement.restrict(&forces);
         let mut last = Iterate {
             iteration: self.effort.iterations,
             energy: assembled.energy,
             residual: self.gradient.iter().map(|g| g * g).sum::<f64>().sqrt(),
-            reactions: assembled.residual.iter().map(|force| dot(*force, *force)).sum::<f64>().sqrt(),
+            reactions: length(&assembled.residual).max(length(&self.external.forces)),
             negative_pivots: 0,
             step_length: self.step_length,
             shift: 0.0,
@@ -107,6 +136,7 @@ impl<'a> Descent<'a> {
             return Err(SolveError::NotANumber { last, effort: self.effort });
         }
         self.pattern.fill(self.discretization, &self.placement, assembled, self.values);
+        self.pattern.add(&self.placement.curvature(&forces), self.values);
         self.effort.factorizations += 1;
         let negative =
             self.solver.factorize(self.values).map_err(|cause| SolveError::Factor { cause, effort: self.effort })?;
@@ -121,10 +151,17 @@ impl<'a> Descent<'a> {
         if indefinite {
             self.solver.make_positive();
         }
-        let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
-        self.solver.solve(&mut direction);
-        let slope = self.gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();
-        let here = Start { unknowns: self.unknowns.clone(), direction, slope, iterate: *last };
+        let direction = self.direction(indefinite);
+        let slope = product(&self.gradient, &direction);
+        let here = Start {
+            unknowns: self.unknowns.clone(),
+            displacement: self.displacement.clone(),
+            forces: self.external.forces.clone(),
+            work: self.work,
+            direction,
+            slope,
+            iterate: *last,
+        };
         self.effort.iterations += 1;
 
         if indefinite {
@@ -141,6 +178,28 @@ impl<'a> Descent<'a> {
         self.judge(here, 1.0, energy)
     }
 
+    /// Newton's direction, or the modified one.
+    fn direction(&mut self, indefinite: bool) -> Vec<f64> {
+        let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
+        if self.external.has_skew() && !indefinite {
+            let Self { solver, placement, external, discretization, assembled, pattern, values, .. } = self;
+            let _ = assembled;
+            let whole = |x: &[f64]| {
+                let mut product = pattern.multiply(values, x);
+                let moved = placement.velocity(x, &[]);
+                let skew = placement.restrict(&external.multiply_skew(discretization, &moved));
+                product.iter_mut().zip(skew).for_each(|(a, b)| *a += b);
+                product
+            };
+            let solved = gmres(&direction, whole, |x| solver.solve(x), SKEW_TOLERANCE, SKEW_ITERATIONS);
+            if product(&self.gradient, &solved) < 0.0 {
+                return solved;
+            }
+        }
+        self.solver.solve(&mut direction);
+        direction
+    }
+
     /// Keeps a step that lowered the energy, watches one that did not, and goes back where a watched one did not pay.
     fn judge(&mut self, here: Start, length: f64, energy: f64) -> Result<(), SolveError> {
         match self.watched.take() {
@@ -155,11 +214,16 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Displacement, dΠ/dθ of the model at fixed unknowns, and what the descent cost.
-    pub(super) fn finish(self) -> (Vec<[f64; 3]>, f64, Effort) {
-        let rate = self.placement.rate(&self.unknowns);
-        let power = rate.iter().zip(&self.assembled.residual).map(|(u, force)| dot(*u, *force)).sum();
-        (self.displacement, power, self.effort)
+    /// Where the descent ended, and what it cost.
+    pub(super) fn finish(self) -> Ended {
+        let forces = self.external.subtract_from(&self.assembled.residual);
+        Ended {
+            reactions: self.placement.reactions(&forces),
+            turns: self.placement.turns(),
+            displacement: self.displacement,
+            forces: self.external.forces,
+            effort: self.effort,
+        }
     }
 
     /// Goes back to where a step started and takes the first shorter one that pays.
@@ -194,7 +258,7 @@ impl<'a> Descent<'a> {
     /// Shorter steps, by the minimum of the parabola through energy, slope and the failed trial.
     fn backtrack(&self, from: &Start, mut length: f64, mut energy: f64) -> Option<f64> {
         for _ in 0..MAX_BACKTRACKS {
-            let curvature = energy - from.iterate.energy - length * from.slope;
+            let curvature = energy - from.merit() - length * from.slope;
             let minimum = -0.5 * from.slope * length * length / curvature;
             length = if minimum.is_finite() { minimum.clamp(0.1 * length, 0.5 * length) } else { 0.1 * length };
             energy = self.energy_at(from, length);
@@ -205,19 +269,48 @@ impl<'a> Descent<'a> {
         None
     }
 
+    /// Strain energy less work of the loads.
     fn energy_at(&self, from: &Start, length: f64) -> f64 {
-        let displacement = self.placement.displacement(&from.moved(length));
-        strain_energy(&self.discretization.mesh, &self.discretization.tables, &displacement)
+        let displacement = self.discretization.unknowns.place(&from.moved(length), self.parameter).displacement();
+        let energy = strain_energy(&self.discretization.mesh, &self.discretization.tables, &displacement);
+        let forces = External::forces_at(self.discretization, &displacement, self.parameter);
+        energy - from.work - work(&from.forces, &forces, &from.displacement, &displacement)
     }
 
-    /// Moves to a point and assembles everything there; returns the energy.
+    /// Moves to a point and assembles everything there; returns the strain energy less the work of the loads.
     fn settle(&mut self, from: &Start, length: f64) -> f64 {
         self.unknowns = from.moved(length);
-        self.displacement = self.placement.displacement(&self.unknowns);
+        self.placement = self.discretization.unknowns.place(&self.unknowns, self.parameter);
+        self.displacement = self.placement.displacement();
         self.step_length = length;
         self.assembled.assemble(self.discretization, &self.displacement, Want::Stiffness);
-        self.assembled.energy
+        self.external = External::new(self.discretization, &self.displacement, self.parameter, self.assembled);
+        self.work = from.work + work(&from.forces, &self.external.forces, &from.displacement, &self.displacement);
+        self.assembled.energy - self.work
     }
+}
+
+/// Where a descent ended.
+pub(super) struct Ended {
+    /// Displacement of the control points, mm.
+    pub displacement: Vec<[f64; 3]>,
+    /// Rotation vectors of the sections, radians; see [`Placement::turns`].
+    pub turns: Vec<[f64; 3]>,
+    /// Forces of the loads, N; empty where nothing acts.
+    pub forces: Vec<[f64; 3]>,
+    /// Forces conjugate to the given coordinates, N.
+    pub reactions: Vec<f64>,
+    /// What it took.
+    pub effort: Effort,
+}
+
+pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Euclidean length of forces on all control points.
+fn length(forces: &[[f64; 3]]) -> f64 {
+    forces.iter().map(|force| dot(*force, *force)).sum::<f64>().sqrt()
 }
 
 /// Index of the largest magnitude; the first of equals.

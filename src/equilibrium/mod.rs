@@ -2,6 +2,8 @@
 
 mod assembly;
 mod descent;
+mod external;
+mod gmres;
 mod kernel;
 mod newton;
 mod pattern;
@@ -10,7 +12,7 @@ mod stability;
 mod timing;
 
 pub use assembly::{Assembled, Want, strain_energy};
-pub use newton::{Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Workspace};
+pub use newton::{Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Standing, Workspace, WorkspaceError};
 pub use sparse::DenseProduct;
 pub use sparse::FactorError;
 pub use stability::{SoftMode, soft_mode};

@@ -1,17 +1,20 @@
-//! Equilibrium under a prescribed end rotation: a minimum of the strain energy over the free unknowns.
+//! Equilibrium at a value of the scene's parameter: a minimum of the strain energy, less the work of loads, over the free
+//! unknowns.
 //!
-//! Predictor: the tangent one, K Δq = −∂g/∂θ Δθ, after which three Newton iterations a step reach 1e-7 of the
+//! Predictor: the tangent one, K Δq = Δf − ∂g/∂m Δm for loads f and given motions m, after which three Newton iterations a step reach 1e-7 of the
 //! reactions; moving the ends alone needs 8 to 11. Corrector: [`Descent`].
 
 use std::sync::Arc;
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
-use crate::equilibrium::descent::Descent;
+use crate::equilibrium::descent::{Descent, product};
+use crate::equilibrium::external::{External, subtract, work};
 use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::sparse::{FactorError, SparseSolver};
-use crate::model::Discretization;
+use crate::model::{Discretization, ModelError};
 use crate::scene::Scene;
 use crate::spline::Mesh;
+use crate::state::State;
 
 /// What is known after an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,9 +23,10 @@ pub struct Iterate {
     pub iteration: usize,
     /// Strain energy of the model, N·mm.
     pub energy: f64,
-    /// |Tᵀ g|, N.
+    /// |Tᵀ (g − f)|, N.
     pub residual: f64,
-    /// |g| on all control points: at equilibrium, the reactions, N.
+    /// |g| of internal forces on all control points, or |f| of the loads if that is larger, N: at equilibrium, reactions
+    /// and loads.
     pub reactions: f64,
     /// Negative pivots of the last factored stiffness.
     pub negative_pivots: usize,
@@ -39,9 +43,13 @@ pub struct Iterate {
 pub struct Solved {
     /// Displacement of the control points, mm.
     pub displacement: Vec<[f64; 3]>,
+    /// Rotation vectors of the rigid sections where one of them turns freely, radians.
+    pub turns: Vec<[f64; 3]>,
     /// Strain energy of the whole shell, N·mm.
     pub energy: f64,
-    /// Moment at each end of the whole shell, dΠ/dθ / 2, N·mm.
+    /// Work of loads and given motions on the whole shell since the start of the solve, N·mm (trapezoidal rule).
+    pub work: f64,
+    /// Turning ends: moment at each end of the whole shell, dΠ/dθ / 2, N·mm. Otherwise 0.
     pub moment: f64,
     /// Negative pivots of the stiffness there; 0 where the equilibrium is stable.
     pub negative_pivots: usize,
@@ -129,6 +137,35 @@ impl SolveError {
     }
 }
 
+/// Why a scene has no buffers on a mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WorkspaceError {
+    /// Supports or loads do not fit the mesh.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The factor does not fit in memory.
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+}
+
+/// Where a solve starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct Standing<'s> {
+    /// Displacement of the control points, mm.
+    pub displacement: &'s [[f64; 3]],
+    /// Rotation vectors of the rigid sections where one of them turns freely; empty otherwise.
+    pub turns: &'s [[f64; 3]],
+    /// The scene's parameter.
+    pub parameter: f64,
+}
+
+impl<'s> Standing<'s> {
+    /// A state.
+    pub fn of(state: &'s State) -> Self {
+        Self { displacement: &state.displacement, turns: &state.turns, parameter: state.parameter }
+    }
+}
+
 /// Buffers for one mesh. Holds nothing that decides a result: a new one gives the same bits.
 #[derive(Debug)]
 pub struct Workspace {
@@ -138,16 +175,24 @@ pub struct Workspace {
     pub(super) assembled: Assembled,
     pub(super) values: Vec<f64>,
     /// Where the stiffness in `assembled` and its factor were formed, and its negative pivots.
-    factored_at: Option<(f64, Vec<[f64; 3]>, usize)>,
+    factored_at: Option<Factored>,
+}
+
+#[derive(Debug)]
+struct Factored {
+    parameter: f64,
+    displacement: Vec<[f64; 3]>,
+    turns: Vec<[f64; 3]>,
+    negative: usize,
 }
 
 impl Workspace {
     /// Tables, structure and symbolic factor for a mesh.
     ///
     /// # Errors
-    /// Where the factor does not fit in memory.
-    pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, FactorError> {
-        let discretization = Discretization::new(scene, mesh);
+    /// Where supports or loads do not fit the mesh, or the factor does not fit in memory.
+    pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, WorkspaceError> {
+        let discretization = Discretization::new(scene, mesh)?;
         let pattern = Pattern::new(&discretization);
         let solver = SparseSolver::new(pattern.column_starts.clone(), pattern.rows.clone())?;
         let assembled = Assembled::new(&discretization);
@@ -165,22 +210,46 @@ impl Workspace {
         strain_energy(&self.discretization.mesh, &self.discretization.tables, displacement)
     }
 
+    /// Internal forces less loads on the control points, N: at equilibrium, the reactions of the supports.
+    pub fn forces(&mut self, at: Standing) -> Vec<[f64; 3]> {
+        let known = self.factored_at.as_ref().is_some_and(|known| known.is_at(&at));
+        if !known {
+            self.factored_at = None;
+            self.assembled.assemble(&self.discretization, at.displacement, Want::Residual);
+        }
+        let loads = External::forces_at(&self.discretization, at.displacement, at.parameter);
+        subtract(&self.assembled.residual, &loads)
+    }
+
     /// Stiffness and factor at a displacement, unless the last solve left them there; returns the negative pivots. Not
     /// counted in the effort of a solve, which would then depend on what ran before in the same process.
-    pub(super) fn factorize_at(&mut self, theta: f64, displacement: &[[f64; 3]]) -> Result<usize, SolveError> {
-        if let Some((at, known, negative)) = &self.factored_at
-            && *at == theta
-            && known == displacement
-        {
-            return Ok(*negative);
+    pub(super) fn factorize_at(&mut self, at: Standing) -> Result<usize, SolveError> {
+        if let Some(known) = self.factored_at.as_ref().filter(|known| known.is_at(&at)) {
+            return Ok(known.negative);
         }
-        self.assembled.assemble(&self.discretization, displacement, Want::Stiffness);
-        let placement = self.discretization.unknowns.at(theta);
-        self.pattern.fill(&self.discretization, &placement, &self.assembled, &mut self.values);
+        self.factored_at = None;
+        let Self { discretization, pattern, solver, assembled, values, .. } = self;
+        assembled.assemble(discretization, at.displacement, Want::Stiffness);
+        let external = External::new(discretization, at.displacement, at.parameter, assembled);
+        let free = discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
+        let placement = discretization.unknowns.place(&free, at.parameter);
+        pattern.fill(discretization, &placement, assembled, values);
+        pattern.add(&placement.curvature(&external.subtract_from(&assembled.residual)), values);
         let effort = Effort::default();
-        let negative = self.solver.factorize(&self.values).map_err(|cause| SolveError::Factor { cause, effort })?.count;
-        self.factored_at = Some((theta, displacement.to_vec(), negative));
+        let negative = solver.factorize(values).map_err(|cause| SolveError::Factor { cause, effort })?.count;
+        self.factored_at = Some(Factored::new(at, negative));
         Ok(negative)
+    }
+}
+
+impl Factored {
+    fn new(at: Standing, negative: usize) -> Self {
+        let (displacement, turns) = (at.displacement.to_vec(), at.turns.to_vec());
+        Self { parameter: at.parameter, displacement, turns, negative }
+    }
+
+    fn is_at(&self, at: &Standing) -> bool {
+        self.parameter == at.parameter && self.displacement == at.displacement && self.turns == at.turns
     }
 }
 
@@ -194,77 +263,88 @@ pub struct Equilibrium<'a> {
 /// Watches iterates; `true` stops the solve.
 pub type Observer<'o> = &'o mut dyn FnMut(&Iterate) -> bool;
 
+/// Forces at the start of a solve, for the work done on the way.
+struct Before {
+    reactions: Vec<f64>,
+    loads: Vec<[f64; 3]>,
+}
+
 impl<'a> Equilibrium<'a> {
     /// Works in these buffers.
     pub fn new(scene: &'a Scene, work: &'a mut Workspace) -> Self {
         Self { scene, work }
     }
 
-    /// From an equilibrium at `from_deg` to one at `to_deg`.
+    /// From an equilibrium to one at another parameter.
     ///
     /// # Errors
     /// Where none is found within the limits, or the observer stops the solve.
-    pub fn advance(
-        &mut self,
-        displacement: &[[f64; 3]],
-        from_deg: f64,
-        to_deg: f64,
-        observer: Observer,
-    ) -> Result<Solved, SolveError> {
-        let start = self.predict(displacement, from_deg.to_radians(), to_deg.to_radians());
-        self.minimize(start, to_deg.to_radians(), observer)
+    pub fn advance(&mut self, from: Standing, to: f64, observer: Observer) -> Result<Solved, SolveError> {
+        let (start, before) = self.predict(from, to);
+        self.minimize(start, from, to, &before, observer)
     }
 
-    /// Equilibrium at a fixed rotation from a displacement that may be out of balance.
+    /// Equilibrium at the same parameter from a displacement that may be out of balance.
     ///
     /// # Errors
     /// As for [`Self::advance`].
-    pub fn relax(
-        &mut self,
-        displacement: &[[f64; 3]],
-        rotation_deg: f64,
-        observer: Observer,
-    ) -> Result<Solved, SolveError> {
-        let theta = rotation_deg.to_radians();
-        let Workspace { discretization, .. } = &*self.work;
-        let start = discretization.unknowns.at(theta).unknowns_of(displacement);
-        self.minimize(start, theta, observer)
+    pub fn relax(&mut self, from: Standing, observer: Observer) -> Result<Solved, SolveError> {
+        let discretization = &self.work.discretization;
+        let start = discretization.unknowns.of_displacement(from.displacement, from.turns, from.parameter);
+        let loads = External::forces_at(discretization, from.displacement, from.parameter);
+        let before = Before { reactions: vec![0.0; discretization.unknowns.given_count()], loads };
+        self.minimize(start, from, from.parameter, &before, observer)
     }
 
     /// Unknowns at `to`: along the tangent of the path where it is stable, or the old ones, whichever has less energy.
-    fn predict(&mut self, displacement: &[[f64; 3]], from: f64, to: f64) -> Vec<f64> {
-        let (rate, old) = {
-            // Where the stiffness has no factor (exactly at a limit point), the old unknowns are as good a start.
-            let negative = self.work.factorize_at(from, displacement).unwrap_or(usize::MAX);
-            let Workspace { discretization, solver, assembled, .. } = &mut *self.work;
-            let placement = discretization.unknowns.at(from);
-            let old = placement.unknowns_of(displacement);
-            if negative > 0 {
-                return old;
-            }
-            let moved = placement.rate(&old);
-            let forces = assembled.multiply(discretization, &moved);
-            let mut rate = placement.restrict(&forces);
-            for (sum, turned) in rate.iter_mut().zip(placement.restrict_rate(&assembled.residual)) {
-                *sum = -(*sum + turned);
-            }
-            solver.solve(&mut rate);
-            (rate, old)
-        };
-        let along: Vec<f64> = old.iter().zip(&rate).map(|(q, slope)| q + slope * (to - from)).collect();
-        let (moved, kept) = (self.energy_at(to, &along), self.energy_at(to, &old));
-        if moved <= kept { along } else { old }
+    fn predict(&mut self, from: Standing, to: f64) -> (Vec<f64>, Before) {
+        // Where the stiffness has no factor (exactly at a limit point), the old unknowns are as good a start.
+        let negative = self.work.factorize_at(from).unwrap_or(usize::MAX);
+        let Workspace { discretization, solver, assembled, .. } = &mut *self.work;
+        let unknowns = &discretization.unknowns;
+        let old = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
+        let placement = unknowns.place(&old, from.parameter);
+        let loads = External::forces_at(discretization, from.displacement, from.parameter);
+        let forces = subtract(&assembled.residual, &loads);
+        let before = Before { reactions: placement.reactions(&forces), loads };
+        if negative > 0 {
+            return (old, before);
+        }
+        let (given, target) = (unknowns.given_at(from.parameter), unknowns.given_at(to));
+        let motion: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| m1 - m0).collect();
+        let stiff = assembled.multiply(discretization, &placement.velocity(&[], &motion));
+        let more = External::forces_at(discretization, from.displacement, to);
+        let change = subtract(&subtract(&stiff, &more), &negated(&before.loads));
+        let mut step = placement.restrict(&change);
+        for (sum, turned) in step.iter_mut().zip(placement.restrict_rate(&forces, &motion)) {
+            *sum = -(*sum + turned);
+        }
+        solver.solve(&mut step);
+        let along: Vec<f64> = old.iter().zip(&step).map(|(q, dq)| q + dq).collect();
+        let start = if self.lies_lower(&along, &old, to) { along } else { old };
+        (start, before)
     }
 
-    fn energy_at(&self, theta: f64, unknowns: &[f64]) -> f64 {
-        let displacement = self.work.discretization.unknowns.at(theta).displacement(unknowns);
-        self.work.energy(&displacement)
+    /// Whether strain energy less work of the loads is no more at `one` than at `other`.
+    fn lies_lower(&self, one: &[f64], other: &[f64], parameter: f64) -> bool {
+        let discretization = &self.work.discretization;
+        let [one, other] = [one, other].map(|free| discretization.unknowns.place(free, parameter).displacement());
+        let loads = [&one, &other].map(|u| External::forces_at(discretization, u, parameter));
+        let done = work(&loads[1], &loads[0], &other, &one);
+        self.work.energy(&one) - done <= self.work.energy(&other)
     }
 
-    fn minimize(&mut self, unknowns: Vec<f64>, theta: f64, observer: Observer) -> Result<Solved, SolveError> {
+    fn minimize(
+        &mut self,
+        unknowns: Vec<f64>,
+        from: Standing,
+        parameter: f64,
+        before: &Before,
+        observer: Observer,
+    ) -> Result<Solved, SolveError> {
         let (tolerance, max_iterations) = (self.scene.solver.tolerance, self.scene.solver.max_iterations);
         self.work.factored_at = None;
-        let mut descent = Descent::new(self.work, theta, unknowns);
+        let mut descent = Descent::new(self.work, parameter, unknowns);
         let last = loop {
             let last = descent.iterate()?;
             if observer(&last) {
@@ -278,16 +358,33 @@ impl<'a> Equilibrium<'a> {
             }
             descent.step(&last)?;
         };
-        let (displacement, power, effort) = descent.finish();
-        self.work.factored_at = Some((theta, displacement.clone(), last.negative_pivots));
+        let ended = descent.finish();
+        let at = Standing { displacement: &ended.displacement, turns: &ended.turns, parameter };
+        self.work.factored_at = Some(Factored::new(at, last.negative_pivots));
+        let unknowns = &self.work.discretization.unknowns;
+        let (given, target) = (unknowns.given_at(from.parameter), unknowns.given_at(parameter));
+        let moved: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| 0.5 * (m1 - m0)).collect();
+        let of_motions = product(&before.reactions, &moved) + product(&ended.reactions, &moved);
+        let of_loads = work(&before.loads, &ended.forces, from.displacement, &ended.displacement);
         let parts = self.scene.symmetry.copies() as f64;
+        let moment = match self.scene.end_rotation() {
+            // All given motions are proportional to θ in degrees.
+            Some(_) => 0.5 * parts * product(&ended.reactions, &unknowns.given_at(1.0)) * 1.0_f64.to_degrees(),
+            None => 0.0,
+        };
         Ok(Solved {
-            displacement,
             energy: parts * last.energy,
-            moment: 0.5 * parts * power,
+            work: parts * (of_motions + of_loads),
+            moment,
             negative_pivots: last.negative_pivots,
             residual: if last.reactions > 0.0 { last.residual / last.reactions } else { 0.0 },
-            effort,
+            effort: ended.effort,
+            displacement: ended.displacement,
+            turns: ended.turns,
         })
     }
+}
+
+fn negated(forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    forces.iter().map(|force| force.map(|value| -value)).collect()
 }

@@ -46,7 +46,7 @@ impl Pattern {
         for (_, [i, j]) in &pairs {
             for a in unknowns.entries_of(*i) {
                 for b in unknowns.entries_of(*j) {
-                    columns[a.unknown.min(b.unknown)].push(a.unknown.max(b.unknown));
+                    columns[a.coordinate.min(b.coordinate)].push(a.coordinate.max(b.coordinate));
                 }
             }
         }
@@ -83,7 +83,7 @@ impl Pattern {
         let [i, j] = points;
         let stored = |a: usize, b: usize| i != j || a >= b;
         if unknowns.is_regular(i) && unknowns.is_regular(j) {
-            let (a, b) = (unknowns.entries_of(i)[0].unknown, unknowns.entries_of(j)[0].unknown);
+            let (a, b) = (unknowns.entries_of(i)[0].coordinate, unknowns.entries_of(j)[0].coordinate);
             let targets =
                 std::array::from_fn(
                     |k| {
@@ -98,9 +98,34 @@ impl Pattern {
             .iter()
             .enumerate()
             .flat_map(|(x, a)| unknowns.entries_of(j).iter().enumerate().map(move |(y, b)| (x, a, y, b)))
-            .map(|(x, a, y, b)| if stored(x, y) { self.target(a.unknown, b.unknown) } else { NOT_STORED })
+            .map(|(x, a, y, b)| if stored(x, y) { self.target(a.coordinate, b.coordinate) } else { NOT_STORED })
             .collect();
         self.projected.push(ProjectedBlock { block, points, targets });
+    }
+
+    /// The symmetric matrix with these values times a vector.
+    pub fn multiply(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; vector.len()];
+        for column in 0..vector.len() {
+            for entry in self.column_starts[column]..self.column_starts[column + 1] {
+                let row = self.rows[entry];
+                product[row] += values[entry] * vector[column];
+                if row != column {
+                    product[column] += values[entry] * vector[row];
+                }
+            }
+        }
+        product
+    }
+
+    /// Adds terms (row, column, value) of pairs of unknowns that share a control point, row ≥ column.
+    pub fn add(&self, terms: &[(usize, usize, f64)], values: &mut [f64]) {
+        for (row, column, value) in terms {
+            let target = self.target(*row, *column);
+            if target != NOT_STORED {
+                values[target as usize] += value;
+            }
+        }
     }
 
     /// Fills the values of the matrix.
@@ -138,7 +163,7 @@ impl Pattern {
                         }
                     }
                     // An unknown that two points share meets itself in their block and in its mirror image.
-                    let twice = i != j && a.unknown == b.unknown;
+                    let twice = i != j && a.coordinate == b.coordinate;
                     values[target as usize] += if twice { 2.0 * value } else { value };
                 }
             }
@@ -189,18 +214,17 @@ mod tests {
             scene.geometry = Geometry::TapeSpring { length_mm: 100.0, radius_mm: 10.0, arc_deg };
             scene.mesh.elements = [6, 6];
             let mesh = Arc::new(starting_mesh(&scene).unwrap());
-            let discretization = Discretization::new(&scene, &mesh);
-            let placement = discretization.unknowns.at(0.3);
+            let discretization = Discretization::new(&scene, &mesh).unwrap();
             let count = discretization.unknowns.count();
             let vector =
                 |seed: usize| (0..count).map(|i| ((i * 7919 + seed) % 1013) as f64 / 1013.0 - 0.5).collect::<Vec<_>>();
             let state: Vec<f64> = vector(5).iter().map(|x| 0.02 * x).collect();
+            let placement = discretization.unknowns.place(&state, 17.0);
             let mut assembled = Assembled::new(&discretization);
-            assembled.assemble(&discretization, &placement.displacement(&state), Want::Stiffness);
+            assembled.assemble(&discretization, &placement.displacement(), Want::Stiffness);
 
             let direction = vector(11);
-            let (moved, still) = (placement.displacement(&direction), placement.displacement(&vec![0.0; count]));
-            let field: Vec<[f64; 3]> = moved.iter().zip(&still).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect();
+            let field = placement.velocity(&direction, &[]);
             let expected = placement.restrict(&assembled.multiply(&discretization, &field));
 
             let pattern = Pattern::new(&discretization);

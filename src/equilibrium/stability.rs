@@ -1,6 +1,6 @@
 //! Stability of an equilibrium: the lowest eigenvalue of the tangent stiffness and its mode.
 
-use crate::equilibrium::newton::{SolveError, Workspace};
+use crate::equilibrium::newton::{SolveError, Standing, Workspace};
 use crate::shell::dot;
 
 /// Inverse iterations at most; near a limit point the lowest eigenvalue stands far below the next, and a handful
@@ -27,9 +27,8 @@ pub struct SoftMode {
 ///
 /// # Errors
 /// Where the stiffness has no factor.
-pub fn soft_mode(work: &mut Workspace, displacement: &[[f64; 3]], rotation_deg: f64) -> Result<SoftMode, SolveError> {
-    let theta = rotation_deg.to_radians();
-    work.factorize_at(theta, displacement)?;
+pub fn soft_mode(work: &mut Workspace, at: Standing) -> Result<SoftMode, SolveError> {
+    work.factorize_at(at)?;
     let Workspace { discretization, solver, .. } = &mut *work;
     let count = discretization.unknowns.count();
     // A start that no symmetry is orthogonal to, the same in every run.
@@ -51,10 +50,8 @@ pub fn soft_mode(work: &mut Workspace, displacement: &[[f64; 3]], rotation_deg: 
             break;
         }
     }
-    let placement = discretization.unknowns.at(theta);
-    let still = placement.displacement(&vec![0.0; count]);
-    let moved = placement.displacement(&vector);
-    let mut shape: Vec<[f64; 3]> = moved.iter().zip(&still).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect();
+    let free = discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
+    let mut shape = discretization.unknowns.place(&free, at.parameter).velocity(&vector, &[]);
     let lengths: Vec<f64> = shape.iter().map(|u| dot(*u, *u).sqrt()).collect();
     let largest_at = (0..lengths.len()).fold(0, |best, i| if lengths[i] > lengths[best] { i } else { best });
     let largest = lengths[largest_at];

@@ -1,8 +1,7 @@
 //! The pieces of a Newton iteration one by one, for timing.
 
 use crate::equilibrium::assembly::Want;
-use crate::equilibrium::newton::{SolveError, Workspace};
-use crate::model::Placement;
+use crate::equilibrium::newton::{SolveError, Standing, Workspace};
 
 /// What the pieces have to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +18,7 @@ pub struct KernelCost {
 #[derive(Debug)]
 pub struct KernelRun<'a> {
     work: &'a mut Workspace,
-    displacement: &'a [[f64; 3]],
-    theta: f64,
+    at: Standing<'a>,
 }
 
 impl<'a> KernelRun<'a> {
@@ -28,10 +26,9 @@ impl<'a> KernelRun<'a> {
     ///
     /// # Errors
     /// Where it has none.
-    pub fn new(work: &'a mut Workspace, displacement: &'a [[f64; 3]], rotation_deg: f64) -> Result<Self, SolveError> {
-        let theta = rotation_deg.to_radians();
-        work.factorize_at(theta, displacement)?;
-        Ok(Self { work, displacement, theta })
+    pub fn new(work: &'a mut Workspace, at: Standing<'a>) -> Result<Self, SolveError> {
+        work.factorize_at(at)?;
+        Ok(Self { work, at })
     }
 
     /// Cost of the pieces.
@@ -50,18 +47,19 @@ impl<'a> KernelRun<'a> {
 
     /// Stiffness and residual on the control points.
     pub fn assemble(&mut self) {
-        self.work.assembled.assemble(&self.work.discretization, self.displacement, Want::Stiffness);
+        self.work.assembled.assemble(&self.work.discretization, self.at.displacement, Want::Stiffness);
     }
 
     /// Residual alone.
     pub fn residual(&mut self) {
-        self.work.assembled.assemble(&self.work.discretization, self.displacement, Want::Residual);
+        self.work.assembled.assemble(&self.work.discretization, self.at.displacement, Want::Residual);
     }
 
     /// Matrix on the unknowns and its factor.
     pub fn factor(&mut self) {
         let Workspace { discretization, pattern, solver, assembled, values, .. } = &mut *self.work;
-        let placement: Placement = discretization.unknowns.at(self.theta);
+        let free = discretization.unknowns.of_displacement(self.at.displacement, self.at.turns, self.at.parameter);
+        let placement = discretization.unknowns.place(&free, self.at.parameter);
         pattern.fill(discretization, &placement, assembled, values);
         // It had a factor in `new`, and the values are the same.
         let _ = solver.factorize(values);
@@ -69,7 +67,9 @@ impl<'a> KernelRun<'a> {
 
     /// One right-hand side.
     pub fn solve(&mut self) {
-        let placement = self.work.discretization.unknowns.at(self.theta);
+        let unknowns = &self.work.discretization.unknowns;
+        let free = unknowns.of_displacement(self.at.displacement, self.at.turns, self.at.parameter);
+        let placement = unknowns.place(&free, self.at.parameter);
         let mut right_hand_side = placement.restrict(&self.work.assembled.residual);
         self.work.solver.solve(&mut right_hand_side);
     }

@@ -60,8 +60,8 @@ impl LoadBisection {
 
     /// What a try showed.
     #[must_use]
-    pub fn told(self, rotation_deg: f64, jumped: bool) -> Self {
-        if jumped { Self { beyond_deg: rotation_deg, ..self } } else { Self { below_deg: rotation_deg, ..self } }
+    pub fn told(self, parameter: f64, jumped: bool) -> Self {
+        if jumped { Self { beyond_deg: parameter, ..self } } else { Self { below_deg: parameter, ..self } }
     }
 
     /// (last load below, first load beyond), degrees.

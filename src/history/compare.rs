@@ -36,7 +36,7 @@ pub fn compare(a: &State, b: &State) -> Comparison {
         return Comparison::Structure(what);
     }
     let mut differences: Vec<Difference> = [
-        ("rotation_deg", a.rotation_deg, b.rotation_deg),
+        ("rotation_deg", a.parameter, b.parameter),
         ("moment_n_mm", a.moment_n_mm, b.moment_n_mm),
         ("strain_energy_n_mm", a.strain_energy_n_mm, b.strain_energy_n_mm),
     ]
@@ -57,7 +57,7 @@ fn structure(a: &State, b: &State) -> Option<String> {
     let elements = |state: &State| state.mesh.element_counts();
     if a.stage == b.stage && a.control.rejection != b.control.rejection {
         let what = |state: &State| match state.control.rejection {
-            None => format!("a solve that reached {}°", state.rotation_deg),
+            None => format!("a solve that reached {}°", state.parameter),
             Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
             Some(Rejection::Jump) => "a solve that was turned down for a jump".to_string(),
         };

@@ -113,7 +113,7 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
     let nearer = old.load.target().min(new.load.target());
     for (index, entry) in log.entries().iter().enumerate().skip(1) {
         let report = &entry.record.report;
-        if report.stage == Stage::Solve && report.attempted_rotation_deg >= nearer {
+        if report.stage == Stage::Solve && report.attempted_parameter >= nearer {
             let parent = log.state(index - 1)?;
             if next_attempt(old, &parent) != next_attempt(new, &parent) {
                 return Ok(index);
@@ -140,7 +140,7 @@ fn complete_steps(log: &Log, keep: usize, scene: &Scene) -> Result<usize, StateE
 /// place. Its target is not known any more; what was attempted says which steps it may have cut short.
 pub fn restored_scene(log: &Log, scene: &Scene) -> Option<Scene> {
     let last = log.last_commit()?;
-    let attempts = log.entries().iter().map(|entry| entry.record.report.attempted_rotation_deg);
+    let attempts = log.entries().iter().map(|entry| entry.record.report.attempted_parameter);
     let mut restored = scene.clone();
     restored.load.set_target(attempts.fold(f64::MIN, f64::max));
     (last.scene_hash == scene.hash()).then_some(restored)

@@ -1,9 +1,11 @@
 //! Where exactly a run jumped: from the last stable state before the jump, the load is halved until it is known.
 
-use crate::equilibrium::{Equilibrium, FactorError, Iterate, Observer, SoftMode, SolveError, Workspace, soft_mode};
+use crate::equilibrium::{
+    Equilibrium, Iterate, Observer, SoftMode, SolveError, Standing, Workspace, WorkspaceError, soft_mode,
+};
 use crate::history::bisection::LoadBisection;
 use crate::journal::{Log, StateError};
-use crate::pipeline::is_jump;
+use crate::pipeline::{Parameter, is_jump};
 use crate::scene::Scene;
 use crate::state::State;
 
@@ -32,10 +34,10 @@ pub struct SnapReport {
 #[derive(Debug, thiserror::Error)]
 pub enum SnapError {
     /// The log holds no jump.
-    #[error("no stage of this log jumped; the largest rotation in it is {largest_deg}°")]
+    #[error("no stage of this log jumped; the farthest state in it stands at {farthest}")]
     NoJump {
-        /// Largest rotation in the log, degrees.
-        largest_deg: f64,
+        /// Where the farthest state stands.
+        farthest: String,
     },
     /// A state of the log cannot be had.
     #[error(transparent)]
@@ -47,28 +49,28 @@ pub enum SnapError {
     NothingBefore,
     /// The jump does not happen on the mesh before it.
     #[error(
-        "the shell goes from {from_deg}° to {to_deg}° without a jump on the mesh that it had: the jump came from refining that mesh; \
+        "the shell goes from {from} to {to} without a jump on the mesh that it had: the jump came from refining that mesh; \
          run the scene from a finer mesh to bisect it"
     )]
     OnRefinedMesh {
-        /// Last stable rotation, degrees.
-        from_deg: f64,
-        /// Rotation of the jump, degrees.
-        to_deg: f64,
+        /// Where the last stable state stands.
+        from: String,
+        /// Where the jump was.
+        to: String,
     },
     /// A solve failed.
-    #[error("a solve from {from_deg}° to {to_deg}° failed")]
+    #[error("a solve from {from} to {to} failed")]
     Solve {
-        /// Where it started, degrees.
-        from_deg: f64,
-        /// Where it was to end, degrees.
-        to_deg: f64,
+        /// Where it started.
+        from: String,
+        /// Where it was to end.
+        to: String,
         /// Why.
         source: SolveError,
     },
-    /// The equations do not fit in memory.
+    /// The equations do not fit in memory, or the scene not the mesh.
     #[error(transparent)]
-    Factor(#[from] FactorError),
+    Workspace(#[from] WorkspaceError),
 }
 
 /// Locates the first jump of a log to `tolerance_deg`, on the mesh of the last stable state before it.
@@ -77,38 +79,38 @@ pub enum SnapError {
 /// Where the log holds no jump or a solve fails.
 pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapReport, SnapError> {
     let entries = log.entries();
+    let shown = |value: f64| Parameter::of(scene).shown(value);
     let Some(jump) = entries.iter().position(|entry| entry.record.report.jumped) else {
-        let largest_deg = entries.iter().fold(0.0, |most: f64, entry| most.max(entry.record.report.rotation_deg));
-        return Err(SnapError::NoJump { largest_deg });
+        let farthest = entries.iter().fold(0.0, |most: f64, entry| most.max(entry.record.report.parameter));
+        return Err(SnapError::NoJump { farthest: shown(farthest) });
     };
-    let beyond = entries[jump].record.report.rotation_deg;
-    let before = (0..jump).rev().find(|index| entries[*index].record.report.rotation_deg < beyond);
+    let beyond = entries[jump].record.report.parameter;
+    let before = (0..jump).rev().find(|index| entries[*index].record.report.parameter < beyond);
     let start = log.state(before.ok_or(SnapError::NothingBefore)?)?;
     let mut work = Workspace::new(scene, &start.mesh)?;
     let mut tries = Tries { scene, work: &mut work, count: 0 };
 
     let mut stable = start;
     if tries.gently(&stable, beyond)?.is_some() {
-        return Err(SnapError::OnRefinedMesh { from_deg: stable.rotation_deg, to_deg: beyond });
+        return Err(SnapError::OnRefinedMesh { from: shown(stable.parameter), to: shown(beyond) });
     }
-    let mut search = LoadBisection::new(stable.rotation_deg, beyond, tolerance_deg);
-    while let Some(rotation_deg) = search.next() {
-        let next = tries.gently(&stable, rotation_deg)?;
-        search = search.told(rotation_deg, next.is_none());
+    let mut search = LoadBisection::new(stable.parameter, beyond, tolerance_deg);
+    while let Some(parameter) = search.next() {
+        let next = tries.gently(&stable, parameter)?;
+        search = search.told(parameter, next.is_none());
         if let Some(next) = next {
             stable = next;
         }
     }
     let bracket_deg = search.bracket();
-    let (after, most_negative) = tries.through(&stable, bracket_deg[1])?;
+    let (after, work_done, most_negative) = tries.through(&stable, bracket_deg[1])?;
     let solves = tries.count;
-    let mode = soft_mode(&mut work, &stable.displacement, stable.rotation_deg).map_err(|source| SnapError::Solve {
-        from_deg: stable.rotation_deg,
-        to_deg: stable.rotation_deg,
+    let mode = soft_mode(&mut work, Standing::of(&stable)).map_err(|source| SnapError::Solve {
+        from: shown(stable.parameter),
+        to: shown(stable.parameter),
         source,
     })?;
     let [x, y, z, w] = stable.mesh.control_points[mode.largest_at];
-    let work_done = (stable.moment_n_mm + after.moment_n_mm) * (bracket_deg[1] - bracket_deg[0]).to_radians();
     Ok(SnapReport {
         bracket_deg,
         moment_n_mm: [stable.moment_n_mm, after.moment_n_mm],
@@ -129,9 +131,9 @@ struct Tries<'a> {
 
 impl Tries<'_> {
     /// The equilibrium at a rotation, if the shell reaches it without passing an unstable shape or releasing energy.
-    fn gently(&mut self, from: &State, rotation_deg: f64) -> Result<Option<State>, SnapError> {
+    fn gently(&mut self, from: &State, parameter: f64) -> Result<Option<State>, SnapError> {
         let stable = from.negative_pivots as usize;
-        let reached = match self.solve(from, rotation_deg, &mut |iterate| iterate.negative_pivots > stable) {
+        let (reached, work) = match self.solve(from, parameter, &mut |iterate| iterate.negative_pivots > stable) {
             Ok(reached) => reached,
             // Beyond a limit point there is nothing to converge to near by.
             Err(
@@ -139,41 +141,42 @@ impl Tries<'_> {
             ) => {
                 return Ok(None);
             }
-            Err(source) => return Err(SnapError::Solve { from_deg: from.rotation_deg, to_deg: rotation_deg, source }),
+            Err(source) => return Err(self.failed(from, parameter, source)),
         };
-        let work = (from.moment_n_mm + reached.moment_n_mm) * (rotation_deg - from.rotation_deg).to_radians();
         let released = from.strain_energy_n_mm + work - reached.strain_energy_n_mm;
         let jumped = is_jump(released, from.strain_energy_n_mm, reached.strain_energy_n_mm);
         Ok((!jumped).then_some(reached))
     }
 
-    /// The equilibrium at a rotation however it is reached, and the most negative pivots on the way.
-    fn through(&mut self, from: &State, rotation_deg: f64) -> Result<(State, usize), SnapError> {
+    fn failed(&self, from: &State, parameter: f64, source: SolveError) -> SnapError {
+        let shown = |value: f64| Parameter::of(self.scene).shown(value);
+        SnapError::Solve { from: shown(from.parameter), to: shown(parameter), source }
+    }
+
+    /// The equilibrium at a rotation however it is reached, the work done, and the most negative pivots on the way.
+    fn through(&mut self, from: &State, parameter: f64) -> Result<(State, f64, usize), SnapError> {
         let mut most = 0;
         let mut watch = |iterate: &Iterate| {
             most = most.max(iterate.negative_pivots);
             false
         };
-        let reached = self.solve(from, rotation_deg, &mut watch);
-        let failed = |source| SnapError::Solve { from_deg: from.rotation_deg, to_deg: rotation_deg, source };
-        Ok((reached.map_err(failed)?, most))
+        let reached = self.solve(from, parameter, &mut watch);
+        let (reached, work) = reached.map_err(|source| self.failed(from, parameter, source))?;
+        Ok((reached, work, most))
     }
 
-    fn solve(&mut self, from: &State, rotation_deg: f64, watch: Observer) -> Result<State, SolveError> {
+    fn solve(&mut self, from: &State, parameter: f64, watch: Observer) -> Result<(State, f64), SolveError> {
         self.count += 1;
-        let solved = Equilibrium::new(self.scene, self.work).advance(
-            &from.displacement,
-            from.rotation_deg,
-            rotation_deg,
-            watch,
-        )?;
-        Ok(State {
+        let solved = Equilibrium::new(self.scene, self.work).advance(Standing::of(from), parameter, watch)?;
+        let reached = State {
             displacement: solved.displacement,
-            rotation_deg,
+            turns: solved.turns,
+            parameter,
             moment_n_mm: solved.moment,
             strain_energy_n_mm: solved.energy,
             negative_pivots: solved.negative_pivots as u64,
             ..from.clone()
-        })
+        };
+        Ok((reached, solved.work))
     }
 }

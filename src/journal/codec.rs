@@ -15,8 +15,9 @@ use super::soundness::{Flaw, check_mesh, check_state};
 use crate::scene::Stage;
 use crate::state::{Hash, Mesh, Rejection, State, StepControl};
 
-/// The version that is written, in front of every state and mesh.
-pub const CODEC_VERSION: u8 = 1;
+/// The newest version that is written, in front of every state and mesh. A state is written in the oldest version that
+/// holds it.
+pub const CODEC_VERSION: u8 = 2;
 
 /// Why bytes are not a state or a mesh that can be used.
 #[derive(Debug, thiserror::Error)]
@@ -109,13 +110,20 @@ struct StateV1<'a> {
     refined: Option<MeshV1<'a>>,
     step: u64,
     stage: Option<StageV1>,
-    rotation_deg: f64,
+    parameter: f64,
     moment_n_mm: f64,
     strain_energy_n_mm: f64,
     negative_pivots: u64,
     halvings: u32,
     jump_seen_at_deg: Option<f64>,
     rejection: Option<RejectionV1>,
+}
+
+/// Version 2: rigid sections that turn freely. Written only where there are any.
+#[derive(Serialize, Deserialize)]
+struct StateV2<'a> {
+    base: StateV1<'a>,
+    turns: Cow<'a, [[f64; 3]]>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -137,8 +145,8 @@ fn config() -> impl bincode::config::Config {
     bincode::config::standard().with_little_endian().with_fixed_int_encoding().with_limit::<CHUNK_BYTES_LIMIT>()
 }
 
-fn encode(value: &impl Serialize) -> Result<Vec<u8>, CodecError> {
-    let mut bytes = vec![CODEC_VERSION];
+fn encode(version: u8, value: &impl Serialize) -> Result<Vec<u8>, CodecError> {
+    let mut bytes = vec![version];
     bincode::serde::encode_into_std_write(value, &mut bytes, config())?;
     Ok(bytes)
 }
@@ -146,7 +154,7 @@ fn encode(value: &impl Serialize) -> Result<Vec<u8>, CodecError> {
 fn decode<T: for<'de> Deserialize<'de>>(bytes: &[u8]) -> Result<T, CodecError> {
     match bytes {
         [] => Err(CodecError::Empty),
-        [CODEC_VERSION, body @ ..] => {
+        [1..=CODEC_VERSION, body @ ..] => {
             let (value, used) = bincode::serde::decode_from_slice(body, config())?;
             if used == body.len() {
                 Ok(value)
@@ -164,7 +172,7 @@ fn decode<T: for<'de> Deserialize<'de>>(bytes: &[u8]) -> Result<T, CodecError> {
 /// Where the mesh is unsound or larger than a log can hold.
 pub fn encode_mesh(mesh: &Mesh) -> Result<Vec<u8>, CodecError> {
     check_mesh(mesh)?;
-    encode(&MeshV1::of(mesh))
+    encode(1, &MeshV1::of(mesh))
 }
 
 /// The mesh that the bytes hold, if its content hash is `expected` and it is sound.
@@ -199,9 +207,9 @@ pub struct EncodedState {
 /// Where the state is unsound or larger than a log can hold.
 pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
     check_state(state)?;
-    let displacement = encode(&DisplacementV1(Cow::from(&state.displacement)))?;
+    let displacement = encode(1, &DisplacementV1(Cow::from(&state.displacement)))?;
     let displacement_hash = blake3::hash(&displacement);
-    let state = encode(&StateV1 {
+    let base = StateV1 {
         mesh: *state.mesh.hash().as_bytes(),
         displacement: *displacement_hash.as_bytes(),
         marked: [0, 1].map(|way| Cow::from(&state.marked[way])),
@@ -214,7 +222,7 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
             Stage::ProjectDisplacements => StageV1::ProjectDisplacements,
             Stage::ReEquilibrate => StageV1::ReEquilibrate,
         }),
-        rotation_deg: state.rotation_deg,
+        parameter: state.parameter,
         moment_n_mm: state.moment_n_mm,
         strain_energy_n_mm: state.strain_energy_n_mm,
         negative_pivots: state.negative_pivots,
@@ -224,7 +232,11 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
             Rejection::NoEquilibrium => RejectionV1::NoEquilibrium,
             Rejection::Jump => RejectionV1::Jump,
         }),
-    })?;
+    };
+    let state = match state.turns.is_empty() {
+        true => encode(1, &base)?,
+        false => encode(2, &StateV2 { base, turns: Cow::from(&state.turns) })?,
+    };
     Ok(EncodedState { state, displacement, displacement_hash })
 }
 
@@ -240,7 +252,13 @@ pub fn decode_state<'a>(
     mesh_hash: Hash,
     expected: Hash,
 ) -> Result<State, CodecError> {
-    let stored: StateV1 = decode(bytes)?;
+    let (stored, turns) = match bytes.first() {
+        Some(2) => {
+            let StateV2 { base, turns } = decode(bytes)?;
+            (base, turns.into_owned())
+        }
+        _ => (decode::<StateV1>(bytes)?, Vec::new()),
+    };
     let found = Hash::from_bytes(stored.mesh);
     if found != mesh_hash {
         return Err(CodecError::OtherMesh { expected: mesh_hash, found });
@@ -260,7 +278,8 @@ pub fn decode_state<'a>(
             StageV1::ProjectDisplacements => Stage::ProjectDisplacements,
             StageV1::ReEquilibrate => Stage::ReEquilibrate,
         }),
-        rotation_deg: stored.rotation_deg,
+        parameter: stored.parameter,
+        turns,
         moment_n_mm: stored.moment_n_mm,
         strain_energy_n_mm: stored.strain_energy_n_mm,
         negative_pivots: stored.negative_pivots,

@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
 use super::format::FORMAT_VERSION;
-use crate::pipeline::{Commit, Record, Report};
+use crate::pipeline::{Commit, Parameter, Record, Report, WrittenReport};
 use crate::scene::Stage;
 use crate::state::Hash;
 
@@ -164,6 +164,7 @@ impl FinishedMessage {
 pub struct ReportMessage {
     /// What the stage reported.
     #[serde(flatten)]
+    #[schemars(with = "WrittenReport")]
     pub report: Report,
     /// Hash of the state that the stage made.
     pub state_hash: HexHash,
@@ -202,13 +203,18 @@ impl ReportMessage {
     }
 
     /// Every number of the message that is not an integer, by name.
-    fn numbers(&mut self) -> [(&'static str, &mut f64); 9] {
+    fn numbers(&mut self) -> [(&'static str, &mut f64); 10] {
+        let [parameter, attempted] = match self.report.driven_by {
+            Parameter::Rotation => ["rotation_deg", "attempted_rotation_deg"],
+            Parameter::LoadFactor => ["load_factor", "attempted_load_factor"],
+        };
         let [along_length, along_arc] = &mut self.report.largest_indicator;
         [
-            ("rotation_deg", &mut self.report.rotation_deg),
-            ("attempted_rotation_deg", &mut self.report.attempted_rotation_deg),
+            (parameter, &mut self.report.parameter),
+            (attempted, &mut self.report.attempted_parameter),
             ("moment_n_mm", &mut self.report.moment_n_mm),
             ("strain_energy_n_mm", &mut self.report.strain_energy_n_mm),
+            ("work_n_mm", &mut self.report.work_n_mm),
             ("residual", &mut self.report.residual),
             ("energy_released_n_mm", &mut self.report.energy_released_n_mm),
             ("largest_indicator[0]", along_length),

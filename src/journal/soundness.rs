@@ -165,7 +165,7 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
         return Err(Flaw::Length { what: "displacements", expected, found: state.displacement.len() });
     }
     finite("displacement component", state.displacement.iter().flatten().copied())?;
-    finite("rotation", [state.rotation_deg])?;
+    finite("rotation", [state.parameter])?;
     finite("moment", [state.moment_n_mm])?;
     finite("strain energy", [state.strain_energy_n_mm])?;
     finite("rotation of a known jump", state.control.jump_seen_at_deg)

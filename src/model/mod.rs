@@ -1,15 +1,28 @@
 //! A scene made discrete: the patch that it starts from, and for a mesh its tables, supports and free unknowns.
 
-mod ends;
+mod edge;
+mod elimination;
+mod joint;
+mod loads;
 mod patch;
+mod place;
+mod placement;
+mod rigid_motion;
+mod rotation;
+mod supports;
 mod tables;
 mod unknowns;
 
-pub use ends::RigidEnd;
+pub use loads::Loads;
 pub use patch::{MOST_CONTROL_POINTS, ModelError, starting_mesh};
+pub(crate) use place::{line_index, parameters_of};
+pub use placement::Placement;
+pub(crate) use rigid_motion::free_motion;
+pub use supports::Supports;
+pub(crate) use supports::control_expressions;
 pub(crate) use tables::LANES;
 pub use tables::Tables;
-pub use unknowns::{Entry, Placement, Unknowns};
+pub use unknowns::{Entry, Unknowns};
 
 use std::sync::Arc;
 
@@ -25,11 +38,17 @@ pub struct Discretization {
     pub tables: Tables,
     /// Free unknowns and how control points follow from them.
     pub unknowns: Unknowns,
+    /// What acts on the shell.
+    pub loads: Loads,
 }
 
 impl Discretization {
-    /// Builds tables and unknowns; a pure function of scene and mesh.
-    pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Self {
-        Self { mesh: mesh.clone(), tables: Tables::new(scene, mesh), unknowns: Unknowns::new(scene, mesh) }
+    /// Builds tables, unknowns and loads; a pure function of scene and mesh.
+    ///
+    /// # Errors
+    /// Where supports or loads do not fit the mesh.
+    pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, ModelError> {
+        let (unknowns, loads) = (Unknowns::new(scene, mesh)?, Loads::new(scene, mesh)?);
+        Ok(Self { mesh: mesh.clone(), tables: Tables::new(scene, mesh), unknowns, loads })
     }
 }

@@ -21,6 +21,79 @@ pub enum ModelError {
         /// Elements along the length that suffice.
         least: usize,
     },
+    /// A symmetric support that is not on an edge.
+    #[error(
+        "support \"{support}\" is a plane of symmetry, which only an edge can lie in: write one of the edges in `on`"
+    )]
+    NotAnEdge {
+        /// Name of the support.
+        support: String,
+    },
+    /// A force per length that is on a point.
+    #[error(
+        "action \"{action}\" is a force per length, and a point has no length: write an edge or a line in `on`, or use kind = \"force\""
+    )]
+    NotALine {
+        /// Name of the action.
+        action: String,
+    },
+    /// An edge that cannot lie in a plane of symmetry.
+    #[error("support \"{support}\" is no plane of symmetry: {reason}")]
+    NotASymmetryPlane {
+        /// Name of the support.
+        support: String,
+        /// Why.
+        reason: String,
+    },
+    /// Two supports hold a control point of a section that moves.
+    #[error(
+        "supports \"{support}\" and \"{other}\" meet, and \"{other}\" is a rigid section that moves: hold the one or the other \
+         there, or give the section's motions so that it stays in place"
+    )]
+    SectionShared {
+        /// Name of the support.
+        support: String,
+        /// Name of the section.
+        other: String,
+    },
+    /// Two supports give different motions to the same control points.
+    #[error("support \"{support}\" gives a displacement that {} does not allow: hold that component in one of them only", other.as_ref().map_or("another support".into(), |name| format!("\"{name}\"")))]
+    Contradiction {
+        /// Name of the support.
+        support: String,
+        /// Name of the other, if it is known.
+        other: Option<String>,
+    },
+    /// The surface folds at an interior line.
+    #[error(
+        "the surface has a kink at ({x}, {y}, {z}) mm, and one patch must be smooth: give the knots there a lower multiplicity, or smooth the control points"
+    )]
+    Kink {
+        /// x, mm.
+        x: String,
+        /// y, mm.
+        y: String,
+        /// z, mm.
+        z: String,
+    },
+    /// The surface has no normal at a point.
+    #[error(
+        "the surface has no normal at ({x}, {y}, {z}) mm: an edge collapses there, or control points coincide; leave a small hole"
+    )]
+    Collapsed {
+        /// x, mm.
+        x: String,
+        /// y, mm.
+        y: String,
+        /// z, mm.
+        z: String,
+    },
+    /// The supports leave a rigid motion free.
+    #[error("the supports do not hold the shell: {motion}; add a support, or hold more components")]
+    FreeMotion {
+        /// The motion, in words.
+        motion: String,
+    },
     /// More than memory holds.
     #[error(
         "{} × {} elements have {count} control points, and the most that this program takes on is {MOST_CONTROL_POINTS}: write fewer in \

@@ -1,74 +1,101 @@
-//! Free unknowns, and how the displacement of every control point follows from them and from the end rotation.
+//! Free unknowns, and the coordinates from which the displacement of every control point follows.
 //!
-//! Each control point has a *frame*: space, or an end section that turns by θ. In its frame its displacement has three
-//! components v; linear homogeneous constraints between components of one frame (a support, a plane of symmetry, a C¹
-//! joint) are eliminated once per mesh, so that v = C q with free unknowns q, and
+//! *Coordinates* x are the free unknowns q followed by the given motions m(s), functions of the scene's parameter s. Each
+//! control point has a *frame*: space, or a rigid section with a pose of its own. In its frame its displacement has three
+//! components v; linear constraints between components of one frame (a support, a plane of symmetry, a C¹ joint) are
+//! eliminated once per mesh, so that v = C x. A control point X in a section about c with translation t and rotation
+//! vector ω moves by
 //!
-//! u(θ, q) = rigid(θ) + Q(θ) C q + slide,   T = ∂u/∂q,   u,θ = rigid' + Q' C q.
+//! u = t + (exp(ω) − I)(X − c) + exp(ω) v,
 //!
-//! A clamped end (theory: Kirchhoff–Love support without membrane strain) holds its row of control points rigidly; the
-//! second row keeps its offset normal to the shell in the turned section's frame and is free along the turned axis
-//! (stretch) and along the turned arc tangent (shear). Holding that row rigidly instead would fix the membrane strain
-//! at the end.
+//! and t and ω are coordinates as well, free or given. Rotation coordinates are ω times the size of the section, so that
+//! all coordinates are lengths, and the forces conjugate to them are forces.
+//!
+//! A clamped edge (Kirchhoff–Love support without membrane strain) holds its row of control points rigidly; the second
+//! row keeps its offset normal to the shell in the section's frame and is free along the edge's outward direction
+//! (stretch) and along the edge (shear). Holding that row rigidly instead would fix the membrane strain at the edge.
 
 use std::collections::BTreeMap;
 
-use crate::model::RigidEnd;
+use crate::model::elimination::{Expression, eliminate};
+use crate::model::supports::{Law, Section, Supports};
+use crate::model::{ModelError, Placement};
 use crate::scene::Scene;
-use crate::shell::{add, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
-/// Coefficients below this, relative to 1, are rounding: the constraint that they belong to is redundant.
-const REDUNDANT: f64 = 1e-11;
-
-/// The share of one unknown in the displacement of one control point.
+/// The share of one coordinate in the displacement of one control point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
-    /// Index of the unknown.
-    pub unknown: usize,
-    /// Displacement per unit of it, in the control point's frame.
-    pub direction: [f64; 3],
-    /// Whether the direction turns with the frame (a slide does not).
-    turns: bool,
+    /// Index of the coordinate; of a free unknown where below [`Unknowns::count`].
+    pub coordinate: usize,
+    /// What a unit of it does.
+    pub share: Share,
+}
+
+/// What a unit of a coordinate does to a control point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Share {
+    /// Moves it by this.
+    Fixed([f64; 3]),
+    /// Moves it by this, turned with its section.
+    Turning([f64; 3]),
+    /// Moves its section along an axis.
+    Translation(usize),
+    /// Turns its section: component of the rotation vector.
+    Rotation(usize),
+}
+
+/// Where the value of a free unknown stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Home {
+    /// A component of a control point in its frame.
+    Component(usize, usize),
+    /// A motion of a section, seen at a control point of its rigid row.
+    Motion { section: usize, motion: usize, point: usize },
 }
 
 /// Free unknowns of a mesh.
 #[derive(Debug)]
 pub struct Unknowns {
-    count: usize,
-    /// Entries of control point i: `entries[start[i]..start[i + 1]]`.
-    start: Vec<usize>,
-    entries: Vec<Entry>,
-    /// The end section that a control point turns with.
-    frame: Vec<Option<usize>>,
-    ends: [RigidEnd; 2],
+    pub(super) count: usize,
+    /// Entries of control point i: `entries[start[i]..start[i + 1]]`, of which those up to `free_end[i]` are free.
+    pub(super) start: Vec<usize>,
+    free_end: Vec<usize>,
+    pub(super) entries: Vec<Entry>,
+    pub(super) supports: Supports,
+    /// Coordinate of each motion of each section.
+    pub(super) motions: Vec<[usize; 6]>,
+    /// Laws of the given coordinates.
+    given: Vec<Law>,
     /// Undeformed control points, mm.
-    points: Vec<[f64; 3]>,
-    /// Control point and component whose displacement *is* the unknown.
-    home: Vec<(usize, usize)>,
-    /// Unknown of the free slide of end 0, and a control point of its rigid row.
-    slide: Option<(usize, usize)>,
+    pub(super) points: Vec<[f64; 3]>,
+    pub(super) home: Vec<Home>,
 }
 
 impl Unknowns {
     /// Constraints of the scene on this mesh, eliminated.
-    pub fn new(scene: &Scene, mesh: &Mesh) -> Self {
-        let ends = RigidEnd::both(scene);
+    ///
+    /// # Errors
+    /// Where the supports contradict each other, or do not fit the surface.
+    pub fn new(scene: &Scene, mesh: &Mesh) -> Result<Self, ModelError> {
+        let supports = Supports::new(scene, mesh)?;
         let points: Vec<[f64; 3]> = mesh.control_points.iter().map(|[x, y, z, w]| [x / w, y / w, z / w]).collect();
-        let [half_length, _] = scene.symmetry.cuts();
-        let [n1, n2] = mesh.control_counts();
-        let frame: Vec<Option<usize>> = (0..n1 * n2)
-            .map(|i| match i / n2 {
-                row if row < 2 => Some(0),
-                row if !half_length && row >= n1 - 2 => Some(1),
-                _ => None,
-            })
-            .collect();
-        let eliminated = eliminate(&constraints(scene, mesh, &points));
-        let mut unknowns =
-            Self { count: 0, start: vec![0], entries: Vec::new(), frame, ends, points, home: Vec::new(), slide: None };
+        let first_given = 3 * points.len();
+        let eliminated = eliminate(&supports.constraints, first_given)
+            .map_err(|contradiction| supports.contradiction(contradiction.constraint))?;
+        let mut unknowns = Self {
+            count: 0,
+            start: vec![0],
+            free_end: Vec::new(),
+            entries: Vec::new(),
+            given: supports.displacements.clone(),
+            motions: Vec::new(),
+            supports,
+            points,
+            home: Vec::new(),
+        };
         unknowns.number(&eliminated);
-        unknowns
+        Ok(unknowns)
     }
 
     /// Number of free unknowns.
@@ -76,303 +103,157 @@ impl Unknowns {
         self.count
     }
 
-    /// The control point that an unknown belongs to; of several that share it, the first.
-    pub fn home_of(&self, unknown: usize) -> usize {
-        self.home[unknown].0
+    /// Number of given coordinates.
+    pub fn given_count(&self) -> usize {
+        self.given.len()
     }
 
-    /// Entries of a control point.
+    /// Given coordinates at a parameter, mm.
+    pub fn given_at(&self, parameter: f64) -> Vec<f64> {
+        self.given.iter().map(|law| law.at(parameter)).collect()
+    }
+
+    /// The rigid sections that move.
+    pub fn sections(&self) -> &[Section] {
+        &self.supports.sections
+    }
+
+    /// Where the supports hold the shell.
+    pub fn supports(&self) -> &Supports {
+        &self.supports
+    }
+
+    /// Whether the displacement alone does not say how the sections stand: a section turns freely.
+    pub fn turns_are_unknown(&self) -> bool {
+        self.motions.iter().any(|motions| motions[3..].iter().any(|coordinate| *coordinate < self.count))
+    }
+
+    /// The control point that an unknown belongs to; of several that share it, the first.
+    pub fn home_of(&self, unknown: usize) -> usize {
+        match self.home[unknown] {
+            Home::Component(point, _) | Home::Motion { point, .. } => point,
+        }
+    }
+
+    /// Entries of a control point that belong to free unknowns.
     pub fn entries_of(&self, point: usize) -> &[Entry] {
-        &self.entries[self.start[point]..self.start[point + 1]]
+        &self.entries[self.start[point]..self.free_end[point]]
     }
 
     /// Whether the control point's three components are three unknowns of their own.
     pub fn is_regular(&self, point: usize) -> bool {
-        let entries = self.entries_of(point);
-        self.frame[point].is_none()
-            && entries.len() == 3
+        let entries = &self.entries[self.start[point]..self.start[point + 1]];
+        entries.len() == 3
             && entries.iter().enumerate().all(|(c, entry)| {
-                entry.unknown == entries[0].unknown + c
-                    && entry.direction == unit(c)
-                    && self.home[entry.unknown] == (point, c)
+                entry.coordinate < self.count
+                    && entry.coordinate == entries[0].coordinate + c
+                    && entry.share == Share::Fixed(unit(c))
+                    && self.home[entry.coordinate] == Home::Component(point, c)
             })
     }
 
-    /// Numbers the components that were not eliminated, along the length, and lists each control point's entries.
+    /// Numbers the free motions of sections and the components that were not eliminated, along the length, and lists each
+    /// control point's entries.
     fn number(&mut self, eliminated: &BTreeMap<usize, Expression>) {
+        self.number_motions();
+        let components = 3 * self.points.len();
         let mut of_component = BTreeMap::new();
-        // End 0 slides: its unknown comes first, beside the rows that it moves.
-        let slide_point = (0..self.points.len()).find(|i| self.frame[*i].is_some_and(|end| self.ends[end].slides));
-        if let Some(point) = slide_point {
-            self.slide = Some((self.count, point));
-            self.home.push((point, 0));
-            self.count += 1;
+        for component in (0..components).filter(|component| !eliminated.contains_key(component)) {
+            of_component.insert(component, self.home.len());
+            self.home.push(Home::Component(component / 3, component % 3));
         }
-        for component in 0..3 * self.points.len() {
-            if !eliminated.contains_key(&component) {
-                of_component.insert(component, self.count);
-                self.home.push((component / 3, component % 3));
-                self.count += 1;
-            }
+        self.count = self.home.len();
+        self.number_given_motions();
+        for k in 0..self.supports.displacements.len() {
+            of_component.insert(components + k, self.count + k);
         }
         for point in 0..self.points.len() {
-            let mut directions: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
-            for c in 0..3 {
-                let component = 3 * point + c;
-                if let Some(unknown) = of_component.get(&component) {
-                    directions.entry(*unknown).or_default()[c] += 1.0;
-                } else if let Some(expression) = eliminated.get(&component) {
-                    for (other, factor) in expression {
-                        directions.entry(of_component[other]).or_default()[c] += factor;
-                    }
-                }
-            }
-            let slides = self.frame[point].is_some_and(|end| self.ends[end].slides);
-            if let (Some((unknown, _)), true) = (self.slide, slides) {
-                self.entries.push(Entry { unknown, direction: unit(0), turns: false });
-            }
-            let turns = self.frame[point].is_some();
-            self.entries.extend(directions.into_iter().map(|(unknown, direction)| Entry { unknown, direction, turns }));
-            self.start.push(self.entries.len());
+            self.list(point, eliminated, &of_component);
         }
     }
 
-    /// The affine map from unknowns to displacements at an end rotation (radians).
-    pub fn at(&self, theta: f64) -> Placement<'_> {
-        let mut directions = Vec::with_capacity(self.entries.len());
-        let mut direction_rates = Vec::new();
-        for point in 0..self.points.len() {
-            let turn =
-                self.frame[point].map(|end| (self.ends[end].rotation(theta), self.ends[end].rotation_rate(theta)));
-            for (index, entry) in (self.start[point]..).zip(self.entries_of(point)) {
-                match turn {
-                    Some((rotation, rate)) if entry.turns => {
-                        directions.push(rotation.map(|row| dot(row, entry.direction)));
-                        direction_rates.push((index, point, rate.map(|row| dot(row, entry.direction))));
-                    }
-                    _ => directions.push(entry.direction),
+    /// Free motions come first; given ones are put behind everything else later.
+    fn number_motions(&mut self) {
+        for (section, held) in self.supports.sections.iter().enumerate() {
+            let mut coordinates = [usize::MAX; 6];
+            for (motion, law) in held.motions.iter().enumerate() {
+                if law.is_none() {
+                    coordinates[motion] = self.home.len();
+                    self.home.push(Home::Motion { section, motion, point: held.rigid_row[0] });
+                }
+            }
+            self.motions.push(coordinates);
+        }
+    }
+
+    fn number_given_motions(&mut self) {
+        for (section, coordinates) in self.supports.sections.iter().zip(&mut self.motions) {
+            for (law, coordinate) in section.motions.iter().zip(coordinates) {
+                if let Some(law) = law {
+                    *coordinate = self.count + self.given.len();
+                    self.given.push(law.clone());
                 }
             }
         }
-        Placement { unknowns: self, theta, directions, direction_rates }
-    }
-}
-
-/// u(θ, q) at one θ: directions of all entries in space, and how they change with θ.
-#[derive(Debug)]
-pub struct Placement<'a> {
-    unknowns: &'a Unknowns,
-    theta: f64,
-    directions: Vec<[f64; 3]>,
-    /// (entry, control point, ∂direction/∂θ) of the entries that turn.
-    direction_rates: Vec<(usize, usize, [f64; 3])>,
-}
-
-impl Placement<'_> {
-    /// Directions in space of the entries of a control point, in the order of [`Unknowns::entries_of`].
-    pub fn directions_of(&self, point: usize) -> &[[f64; 3]] {
-        &self.directions[self.unknowns.start[point]..self.unknowns.start[point + 1]]
     }
 
-    /// u(θ, q), one vector a control point.
-    pub fn displacement(&self, q: &[f64]) -> Vec<[f64; 3]> {
-        let unknowns = self.unknowns;
-        (0..unknowns.points.len())
-            .map(|point| {
-                let start = match unknowns.frame[point] {
-                    Some(end) => unknowns.ends[end].displacement(self.theta, unknowns.points[point]),
-                    None => [0.0; 3],
-                };
-                let entries = unknowns.entries_of(point).iter().zip(self.directions_of(point));
-                entries.fold(start, |sum, (entry, direction)| add(sum, scaled(q[entry.unknown], *direction)))
+    fn list(&mut self, point: usize, eliminated: &BTreeMap<usize, Expression>, of_component: &BTreeMap<usize, usize>) {
+        let mut directions: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
+        for c in 0..3 {
+            let component = 3 * point + c;
+            if let Some(coordinate) = of_component.get(&component) {
+                directions.entry(*coordinate).or_default()[c] += 1.0;
+            } else if let Some(expression) = eliminated.get(&component) {
+                for (other, factor) in expression {
+                    directions.entry(of_component[other]).or_default()[c] += factor;
+                }
+            }
+        }
+        let section = self.supports.section_of[point];
+        let mut all: Vec<Entry> = Vec::new();
+        if let Some(section) = section {
+            for (motion, coordinate) in self.motions[section].into_iter().enumerate() {
+                let share = if motion < 3 { Share::Translation(motion) } else { Share::Rotation(motion - 3) };
+                all.push(Entry { coordinate, share });
+            }
+        }
+        for (coordinate, direction) in directions {
+            let share = if section.is_some() { Share::Turning(direction) } else { Share::Fixed(direction) };
+            all.push(Entry { coordinate, share });
+        }
+        all.sort_by_key(|entry| entry.coordinate);
+        self.free_end.push(self.entries.len() + all.iter().filter(|entry| entry.coordinate < self.count).count());
+        self.entries.extend(all);
+        self.start.push(self.entries.len());
+    }
+
+    /// The displacement that belongs to free unknowns at a parameter.
+    pub fn place(&self, unknowns: &[f64], parameter: f64) -> Placement<'_> {
+        Placement::new(self, unknowns, parameter)
+    }
+
+    /// The free unknowns of a displacement that can be represented at a parameter. `turns` are the rotation vectors of
+    /// the sections where one of them turns freely, and empty otherwise.
+    pub fn of_displacement(&self, displacement: &[[f64; 3]], turns: &[[f64; 3]], parameter: f64) -> Vec<f64> {
+        let poses = self.poses_of(displacement, turns, parameter);
+        self.home
+            .iter()
+            .map(|home| match *home {
+                Home::Component(point, c) => match self.supports.section_of[point] {
+                    Some(section) => poses[section].local(self.points[point], displacement[point])[c],
+                    None => displacement[point][c],
+                },
+                Home::Motion { section, motion, .. } => {
+                    let size = if motion < 3 { 1.0 } else { self.supports.sections[section].size };
+                    poses[section].motions[motion] * size
+                }
             })
             .collect()
     }
-
-    /// The unknowns of a displacement that this placement can represent: q with u(θ, q) = `displacement`.
-    pub fn unknowns_of(&self, displacement: &[[f64; 3]]) -> Vec<f64> {
-        let unknowns = self.unknowns;
-        let mut slide = 0.0;
-        if let Some((_, point)) = unknowns.slide {
-            slide = displacement[point][0] - unknowns.ends[0].displacement(self.theta, unknowns.points[point])[0];
-        }
-        let mut q: Vec<f64> = unknowns
-            .home
-            .iter()
-            .map(|(point, c)| {
-                let Some(end) = unknowns.frame[*point] else { return displacement[*point][*c] };
-                let end = unknowns.ends[end];
-                let mut relative = sub(displacement[*point], end.displacement(self.theta, unknowns.points[*point]));
-                if end.slides {
-                    relative[0] -= slide;
-                }
-                let rotation = end.rotation(self.theta);
-                (0..3).map(|row| rotation[row][*c] * relative[row]).sum()
-            })
-            .collect();
-        if let Some((unknown, _)) = unknowns.slide {
-            q[unknown] = slide;
-        }
-        q
-    }
-
-    /// ∂u/∂θ at fixed unknowns.
-    pub fn rate(&self, q: &[f64]) -> Vec<[f64; 3]> {
-        let unknowns = self.unknowns;
-        let mut rate: Vec<[f64; 3]> = (0..unknowns.points.len())
-            .map(|point| match unknowns.frame[point] {
-                Some(end) => unknowns.ends[end].displacement_rate(self.theta, unknowns.points[point]),
-                None => [0.0; 3],
-            })
-            .collect();
-        for (entry, point, direction) in &self.direction_rates {
-            rate[*point] = add(rate[*point], scaled(q[unknowns.entries[*entry].unknown], *direction));
-        }
-        rate
-    }
-
-    /// Tᵀ g: forces on the control points to forces on the unknowns.
-    pub fn restrict(&self, forces: &[[f64; 3]]) -> Vec<f64> {
-        let mut restricted = vec![0.0; self.unknowns.count];
-        for (point, force) in forces.iter().enumerate() {
-            for (entry, direction) in self.unknowns.entries_of(point).iter().zip(self.directions_of(point)) {
-                restricted[entry.unknown] += dot(*force, *direction);
-            }
-        }
-        restricted
-    }
-
-    /// (∂T/∂θ)ᵀ g.
-    pub fn restrict_rate(&self, forces: &[[f64; 3]]) -> Vec<f64> {
-        let mut restricted = vec![0.0; self.unknowns.count];
-        for (entry, point, direction) in &self.direction_rates {
-            restricted[self.unknowns.entries[*entry].unknown] += dot(forces[*point], *direction);
-        }
-        restricted
-    }
 }
 
-fn unit(c: usize) -> [f64; 3] {
+pub(super) fn unit(c: usize) -> [f64; 3] {
     let mut vector = [0.0; 3];
     vector[c] = 1.0;
     vector
-}
-
-/// Σ factor · component; component = 3 · control point + c.
-type Expression = Vec<(usize, f64)>;
-
-/// All linear homogeneous constraints of the scene on frame components, each as an expression that is zero.
-fn constraints(scene: &Scene, mesh: &Mesh, points: &[[f64; 3]]) -> Vec<Expression> {
-    let [n1, n2] = mesh.control_counts();
-    let [half_length, half_arc] = scene.symmetry.cuts();
-    let at = |i1: usize, i2: usize, c: usize| 3 * (i1 * n2 + i2) + c;
-    let joints = joints(mesh);
-    // The normal of a cylinder at a control point is radial in the section plane. Control points that a plane of
-    // symmetry or a C¹ joint holds on one line span the tangent there and share its normal: their own would take a
-    // free motion away.
-    let mut normal_like: Vec<usize> = (0..n2).collect();
-    if half_arc {
-        normal_like[1] = 0;
-    }
-    for (joint, ..) in &joints {
-        normal_like[joint - 1] = *joint;
-        normal_like[joint + 1] = *joint;
-    }
-    let mut all: Vec<Expression> = Vec::new();
-    let mut clamp = |edge: usize, inner: usize| {
-        for i2 in 0..n2 {
-            all.extend((0..3).map(|c| vec![(at(edge, i2, c), 1.0)]));
-            let [_, y, z] = points[inner * n2 + normal_like[i2]];
-            let radius = norm([0.0, y, z]);
-            all.push(vec![(at(inner, i2, 1), y / radius), (at(inner, i2, 2), z / radius)]);
-        }
-    };
-    clamp(0, 1);
-    if !half_length {
-        clamp(n1 - 1, n1 - 2);
-    }
-    if half_length {
-        for i2 in 0..n2 {
-            all.push(vec![(at(n1 - 1, i2, 0), 1.0)]);
-            all.extend((1..3).map(|c| vec![(at(n1 - 1, i2, c), 1.0), (at(n1 - 2, i2, c), -1.0)]));
-        }
-    }
-    if half_arc {
-        for i1 in 0..n1 {
-            all.push(vec![(at(i1, 0, 1), 1.0)]);
-            all.extend([0, 2].map(|c| vec![(at(i1, 0, c), 1.0), (at(i1, 1, c), -1.0)]));
-        }
-    }
-    for (joint, before, after) in joints {
-        for i1 in 0..n1 {
-            all.extend((0..3).map(|c| {
-                vec![
-                    (at(i1, joint, c), 1.0),
-                    (at(i1, joint - 1, c), -before / (before + after)),
-                    (at(i1, joint + 1, c), -after / (before + after)),
-                ]
-            }));
-        }
-    }
-    all
-}
-
-/// C⁰ joints along the arc: control index and the weights of equal derivatives on both sides. With A = Σ N w u and
-/// W = Σ N w, u = A/W has the one-sided derivatives (p/Δ)(w₋/w)(u − u₋) and (p/Δ)(w₊/w)(u₊ − u) there.
-fn joints(mesh: &Mesh) -> Vec<(usize, f64, f64)> {
-    let degree = mesh.degree[1];
-    let knots = &mesh.knots[1];
-    let n2 = mesh.control_counts()[1];
-    (degree + 1..n2)
-        .filter(|k| knots[*k] < knots[k + 1] && knots[k + 1 - degree] == knots[*k])
-        .map(|last| {
-            // Knots last − p + 1 ..= last coincide: function last − p is 1 there.
-            let joint = last - degree;
-            let before = knots[last] - knots[last - degree];
-            let after = knots[last + 1] - knots[last];
-            (joint, mesh.control_points[joint - 1][3] / before, mesh.control_points[joint + 1][3] / after)
-        })
-        .collect()
-}
-
-/// Gaussian elimination: each eliminated component in terms of components that are not. Linear in the number of
-/// constraints, since each shares components with few others.
-fn eliminate(constraints: &[Expression]) -> BTreeMap<usize, Expression> {
-    let mut order: Vec<usize> = Vec::new();
-    let mut eliminated: BTreeMap<usize, Expression> = BTreeMap::new();
-    for constraint in constraints {
-        let row = expand(constraint, &eliminated);
-        let Some((pivot, factor)) = largest(&row) else { continue };
-        let rest = row.iter().filter(|(component, _)| **component != pivot).map(|(c, f)| (*c, -f / factor)).collect();
-        eliminated.insert(pivot, rest);
-        order.push(pivot);
-    }
-    // A component may have been eliminated after it was used: put its expression in, last first.
-    for pivot in order.into_iter().rev() {
-        let complete = expand(&eliminated[&pivot], &eliminated).into_iter().collect();
-        eliminated.insert(pivot, complete);
-    }
-    eliminated
-}
-
-/// Replaces eliminated components until none is left; drops what cancels.
-fn expand(expression: &Expression, eliminated: &BTreeMap<usize, Expression>) -> BTreeMap<usize, f64> {
-    let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
-    let mut pending = expression.clone();
-    while let Some((component, factor)) = pending.pop() {
-        match eliminated.get(&component) {
-            Some(replacement) => pending.extend(replacement.iter().map(|(c, f)| (*c, factor * f))),
-            None => *sum.entry(component).or_default() += factor,
-        }
-    }
-    sum.retain(|_, factor| factor.abs() > REDUNDANT);
-    sum
-}
-
-/// The component with the largest factor; the first of equals.
-fn largest(row: &BTreeMap<usize, f64>) -> Option<(usize, f64)> {
-    row.iter().fold(None, |best: Option<(usize, f64)>, (component, factor)| match best {
-        Some((_, other)) if other.abs() >= factor.abs() => best,
-        _ => Some((*component, *factor)),
-    })
 }

@@ -1,12 +1,15 @@
 //! Stages, the loop that runs them, step control, and the sinks that see every stage.
 
+mod probes;
 mod record;
+mod report;
 mod run;
 mod sink;
 mod stages;
 mod step_control;
 
-pub use record::{Commit, Outcome, Record, Report};
+pub use record::{Commit, Record};
+pub use report::{Outcome, Parameter, Reading, Report, WrittenReport};
 pub use run::{Ending, Run, RunError};
 pub use sink::{MemorySink, Sink, SinkError};
 pub use stages::{StageError, Stages};

@@ -1,61 +1,8 @@
-//! What is said about a stage: its report (a function of model and state) and its place in the chain of hashes.
+//! A stage's place in the chain of hashes, and all that is kept of it.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
+use crate::pipeline::Report;
 use crate::scene::Stage;
 use crate::state::Hash;
-
-/// What a stage reports beside the state that it made. Pure: holds no clock and no host.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Report {
-    /// Load step, from 1.
-    pub step: u64,
-    /// The stage that ran.
-    pub stage: Stage,
-    /// Whether the stage did what it set out to do; a solve that was turned down leaves the state where it was.
-    pub outcome: Outcome,
-    /// Rotation of each end in the state, degrees.
-    pub rotation_deg: f64,
-    /// Rotation that the stage worked at; differs from `rotation_deg` where a solve was turned down, degrees.
-    pub attempted_rotation_deg: f64,
-    /// End moment, N·mm.
-    pub moment_n_mm: f64,
-    /// Strain energy of the whole shell, N·mm.
-    pub strain_energy_n_mm: f64,
-    /// Elements (along the length, along the arc) of the model.
-    pub elements: [usize; 2],
-    /// Free unknowns of the model.
-    pub unknowns: usize,
-    /// Newton iterations.
-    pub iterations: usize,
-    /// Numeric factorizations.
-    pub factorizations: usize,
-    /// Negative pivots of the tangent stiffness at the state; 0 where it is a stable equilibrium.
-    pub negative_pivots: u64,
-    /// |residual| / |reactions| at the end of the stage.
-    pub residual: f64,
-    /// Energy that a jump released in this stage, N·mm; 0 where nothing jumped.
-    pub energy_released_n_mm: f64,
-    /// Whether the shell jumped in this stage.
-    pub jumped: bool,
-    /// Knot spans marked each way (evaluate-indicators).
-    pub marked: [usize; 2],
-    /// Largest indicator max|κ|h each way (evaluate-indicators), dimensionless.
-    pub largest_indicator: [f64; 2],
-}
-
-/// How a stage ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Outcome {
-    /// The stage did its work.
-    Done,
-    /// Solve: the increment jumped and will be halved until the jump is located.
-    RejectedJump,
-    /// Solve: no equilibrium was found; the increment will be halved.
-    RejectedNoEquilibrium,
-}
 
 /// A stage's place in the run. `chain_hash` binds it to everything before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

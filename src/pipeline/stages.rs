@@ -3,10 +3,13 @@
 use std::sync::Arc;
 
 use crate::adapt::{evaluate_indicators, project_displacements};
-use crate::equilibrium::{Effort, Equilibrium, FactorError, Iterate, SolveError, Solved, Workspace, strain_energy};
-use crate::model::{MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, starting_mesh};
+use crate::equilibrium::{
+    Effort, Equilibrium, FactorError, Iterate, SolveError, Solved, Standing, Workspace, WorkspaceError, strain_energy,
+};
+use crate::model::{MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, free_motion, starting_mesh};
+use crate::pipeline::probes::read_probes;
 use crate::pipeline::step_control::{Attempt, is_jump, is_jump_on_refinement, next_attempt};
-use crate::pipeline::{Outcome, Report};
+use crate::pipeline::{Outcome, Parameter, Reading, Report};
 use crate::scene::{Scene, Stage};
 use crate::spline::Mesh;
 use crate::state::{State, StepControl};
@@ -16,39 +19,41 @@ use crate::state::{State, StepControl};
 pub enum StageError {
     /// The increment was cut down to the least one and still no equilibrium was found.
     #[error(
-        "step {step}, solve: no equilibrium at {attempted_deg}° from {rotation_deg}°, and an increment below \
-         solver.least_increment_deg = {least_deg}° would be needed; the last attempt: {cause}"
+        "step {step}, solve: no equilibrium at {attempted} from {reached}, and an increment below \
+         {least_key} = {least} would be needed; the last attempt: {cause}"
     )]
     NoEquilibrium {
         /// Load step.
         step: u64,
-        /// Rotation of the last good state, degrees.
-        rotation_deg: f64,
-        /// Rotation of the last attempt, degrees.
-        attempted_deg: f64,
-        /// The scene's least increment, degrees.
-        least_deg: f64,
+        /// Where the last good state stands.
+        reached: String,
+        /// Where the last attempt would have stood.
+        attempted: String,
+        /// The key of the scene's least increment.
+        least_key: &'static str,
+        /// The scene's least increment, in the units of its parameter.
+        least: f64,
         /// Why the last attempt failed.
         cause: Box<SolveError>,
     },
     /// The shell jumps, the jump is located, and the solver did not reach the shape beyond it.
     #[error(
-        "step {step}, solve: the shell jumps between {rotation_deg}° and {attempted_deg}°, and the shape beyond was not reached: \
+        "step {step}, solve: the shell jumps between {reached} and {attempted}, and the shape beyond was not reached: \
          {cause}; raise solver.max_iterations"
     )]
     JumpNotFollowed {
         /// Load step.
         step: u64,
-        /// Rotation of the last good state, degrees.
-        rotation_deg: f64,
-        /// Rotation beyond the jump, degrees.
-        attempted_deg: f64,
+        /// Where the last good state stands.
+        reached: String,
+        /// Beyond the jump.
+        attempted: String,
         /// Why the solve failed.
         cause: Box<SolveError>,
     },
     /// The refined mesh has no equilibrium at the load.
     #[error(
-        "step {step}, re-equilibrate at {rotation_deg}° on {} × {} elements: {cause}; raise solver.max_iterations, or adapt.threshold to \
+        "step {step}, re-equilibrate at {reached} on {} × {} elements: {cause}; raise solver.max_iterations, or adapt.threshold to \
          refine less at once, and go on with `foldline run SCENE --resume`",
         elements[0],
         elements[1]
@@ -56,8 +61,8 @@ pub enum StageError {
     NotReEquilibrated {
         /// Load step.
         step: u64,
-        /// Rotation, degrees.
-        rotation_deg: f64,
+        /// Where the state stands.
+        reached: String,
         /// Elements each way.
         elements: [usize; 2],
         /// Why the solve failed.
@@ -74,6 +79,16 @@ pub enum StageError {
         elements: [usize; 2],
         /// What the solver said.
         cause: FactorError,
+    },
+    /// Supports or loads do not fit the mesh.
+    #[error("step {step}, {stage}: {cause}")]
+    Model {
+        /// Load step.
+        step: u64,
+        /// The stage.
+        stage: Stage,
+        /// What does not fit.
+        cause: ModelError,
     },
     /// Refinement asks for more than memory holds.
     #[error(
@@ -125,17 +140,23 @@ impl Stages {
     /// The state that the scene starts from: undeformed, before the first step.
     ///
     /// # Errors
-    /// Where the scene cannot be made discrete.
+    /// Where the scene cannot be made discrete, or its supports leave a rigid motion free.
     pub fn start(&self) -> Result<State, ModelError> {
         let mesh = starting_mesh(&self.scene)?;
+        let unknowns = Unknowns::new(&self.scene, &mesh)?;
+        if let Some(motion) = free_motion(&unknowns) {
+            return Err(ModelError::FreeMotion { motion });
+        }
+        let turns = if unknowns.turns_are_unknown() { vec![[0.0; 3]; unknowns.sections().len()] } else { vec![] };
         Ok(State {
+            turns,
             displacement: vec![[0.0; 3]; mesh.control_points.len()],
             mesh: Arc::new(mesh),
             marked: Default::default(),
             refined: None,
             step: 0,
             stage: None,
-            rotation_deg: 0.0,
+            parameter: 0.0,
             moment_n_mm: 0.0,
             strain_energy_n_mm: 0.0,
             negative_pivots: 0,
@@ -174,11 +195,11 @@ impl Stages {
         });
         let work = match kept {
             Some(work) => work,
-            None => Workspace::new(&self.scene, mesh).map_err(|cause| StageError::TooLarge {
-                step,
-                stage,
-                elements: mesh.element_counts(),
-                cause,
+            None => Workspace::new(&self.scene, mesh).map_err(|cause| match cause {
+                WorkspaceError::Factor(cause) => {
+                    StageError::TooLarge { step, stage, elements: mesh.element_counts(), cause }
+                }
+                WorkspaceError::Model(cause) => StageError::Model { step, stage, cause },
             })?,
         };
         Ok((&self.scene, self.work.insert(work)))
@@ -196,14 +217,9 @@ impl Stages {
             observer(iterate);
             !attempt.may_jump && iterate.negative_pivots as u64 > state.negative_pivots
         };
-        let solved = Equilibrium::new(scene, work).advance(
-            &state.displacement,
-            state.rotation_deg,
-            attempt.target_deg,
-            &mut watch,
-        );
+        let solved = Equilibrium::new(scene, work).advance(Standing::of(state), attempt.target_deg, &mut watch);
         let mut report = self.report(state, step);
-        report.attempted_rotation_deg = attempt.target_deg;
+        report.attempted_parameter = attempt.target_deg;
         match solved {
             Ok(solved) => {
                 let released = attempt.energy_released(state, &solved);
@@ -215,9 +231,10 @@ impl Stages {
                 }
                 let mut next = settle(state, &solved);
                 next.step = step;
-                next.rotation_deg = attempt.target_deg;
+                next.parameter = attempt.target_deg;
                 next.control = attempt.control_after_success(&state.control);
                 report.record(&next, &solved);
+                report.probes = self.read_probes(&next)?;
                 report.jumped = jumped;
                 report.energy_released_n_mm = if jumped { released } else { 0.0 };
                 Ok((next, report))
@@ -239,13 +256,18 @@ impl Stages {
 
     /// The error of a solve that cannot be tried with a smaller increment.
     fn stopped(&self, state: &State, attempt: Attempt, cause: SolveError) -> StageError {
-        let (step, rotation_deg, attempted_deg) = (state.step + 1, state.rotation_deg, attempt.target_deg);
-        let cause = Box::new(cause);
+        let parameter = Parameter::of(&self.scene);
+        let (reached, attempted) = (parameter.shown(state.parameter), parameter.shown(attempt.target_deg));
+        let (step, cause) = (state.step + 1, Box::new(cause));
         match state.control.jump_seen_at_deg {
-            Some(_) => StageError::JumpNotFollowed { step, rotation_deg, attempted_deg, cause },
+            Some(_) => StageError::JumpNotFollowed { step, reached, attempted, cause },
             None => {
-                let least_deg = self.scene.least_increment();
-                StageError::NoEquilibrium { step, rotation_deg, attempted_deg, least_deg, cause }
+                let least = self.scene.least_increment();
+                let least_key = match parameter {
+                    Parameter::Rotation => "solver.least_increment_deg",
+                    Parameter::LoadFactor => "load.least_increment",
+                };
+                StageError::NoEquilibrium { step, reached, attempted, least_key, least, cause }
             }
         }
     }
@@ -278,7 +300,9 @@ impl Stages {
         let mut report = self.report(state, state.step);
         report.marked = [state.marked[0].len(), state.marked[1].len()];
         report.elements = finer.element_counts();
-        report.unknowns = Unknowns::new(&self.scene, &finer).count();
+        let fits = Unknowns::new(&self.scene, &finer);
+        report.unknowns =
+            fits.map_err(|cause| StageError::Model { step: state.step, stage: Stage::RefineKnots, cause })?.count();
         report.strain_energy_n_mm = energy;
         let next = State {
             refined: Some(Arc::new(finer)),
@@ -315,18 +339,19 @@ impl Stages {
             false
         };
         let (scene, work) = self.workspace(&state.mesh, step, Stage::ReEquilibrate)?;
-        let solved = Equilibrium::new(scene, work).relax(&state.displacement, state.rotation_deg, &mut watch).map_err(
-            |cause| StageError::NotReEquilibrated {
+        let solved = Equilibrium::new(scene, work).relax(Standing::of(state), &mut watch).map_err(|cause| {
+            StageError::NotReEquilibrated {
                 step,
-                rotation_deg: state.rotation_deg,
+                reached: Parameter::of(scene).shown(state.parameter),
                 elements: state.mesh.element_counts(),
                 cause: Box::new(cause),
-            },
-        )?;
-        let released = state.strain_energy_n_mm - solved.energy;
+            }
+        })?;
+        let released = state.strain_energy_n_mm + solved.work - solved.energy;
         let next = settle(state, &solved);
         let mut report = self.report(&next, step);
         report.record(&next, &solved);
+        report.probes = self.read_probes(&next)?;
         // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
         report.jumped = unstable_on_the_way && is_jump_on_refinement(released, state.strain_energy_n_mm);
         if report.jumped {
@@ -335,18 +360,26 @@ impl Stages {
         Ok((next, report))
     }
 
+    fn read_probes(&mut self, state: &State) -> Result<Vec<Reading>, StageError> {
+        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::Solve)?;
+        Ok(read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm))
+    }
+
     /// A report of the state as it stands; the stage fills in what it did. `stage` is set by [`Self::run`].
     fn report(&mut self, state: &State, step: u64) -> Report {
         let unknowns = match &self.work {
             Some(work) if work.discretization().mesh == state.mesh => work.discretization().unknowns.count(),
-            _ => Unknowns::new(&self.scene, &state.mesh).count(),
+            _ => Unknowns::new(&self.scene, &state.mesh).map_or(0, |unknowns| unknowns.count()),
         };
         Report {
             step,
             stage: Stage::Solve,
             outcome: Outcome::Done,
-            rotation_deg: state.rotation_deg,
-            attempted_rotation_deg: state.rotation_deg,
+            driven_by: Parameter::of(&self.scene),
+            work_n_mm: 0.0,
+            probes: Vec::new(),
+            parameter: state.parameter,
+            attempted_parameter: state.parameter,
             moment_n_mm: state.moment_n_mm,
             strain_energy_n_mm: state.strain_energy_n_mm,
             elements: state.mesh.element_counts(),
@@ -371,11 +404,12 @@ impl Report {
 
     fn record(&mut self, state: &State, solved: &Solved) {
         self.record_effort(solved.effort);
-        self.rotation_deg = state.rotation_deg;
+        self.parameter = state.parameter;
         self.moment_n_mm = state.moment_n_mm;
         self.strain_energy_n_mm = state.strain_energy_n_mm;
         self.negative_pivots = state.negative_pivots;
         self.residual = solved.residual;
+        self.work_n_mm = solved.work;
     }
 }
 
@@ -383,6 +417,7 @@ impl Report {
 fn settle(state: &State, solved: &Solved) -> State {
     State {
         displacement: solved.displacement.clone(),
+        turns: solved.turns.clone(),
         marked: Default::default(),
         moment_n_mm: solved.moment,
         strain_energy_n_mm: solved.energy,

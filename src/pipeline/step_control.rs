@@ -40,7 +40,7 @@ pub struct Attempt {
 
 /// The solve that follows a state.
 pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
-    let here = state.rotation_deg;
+    let here = state.parameter;
     let tolerance = scene.snap_tolerance();
     if let Some(beyond) = state.control.jump_seen_at_deg {
         let middle = 0.5 * (here + beyond);
@@ -55,8 +55,8 @@ pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
 }
 
 /// Whether a rotation is reached, to the rounding of its steps.
-pub fn has_reached(scene: &Scene, state: &State, rotation_deg: f64) -> bool {
-    state.rotation_deg >= rotation_deg - SAME * scene.load.increment()
+pub fn has_reached(scene: &Scene, state: &State, parameter: f64) -> bool {
+    state.parameter >= parameter - SAME * scene.load.increment()
 }
 
 /// The stage that follows a state; `None` where the run has reached its target.
@@ -82,13 +82,12 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
 impl Attempt {
     /// Size of the attempted step, degrees.
     pub fn increment_deg(&self, state: &State) -> f64 {
-        self.target_deg - state.rotation_deg
+        self.target_deg - state.parameter
     }
 
-    /// Work of the end moments (trapezoidal rule) that did not go into strain energy, N·mm.
+    /// Work of loads and given motions (trapezoidal rule) that did not go into strain energy, N·mm.
     pub fn energy_released(&self, state: &State, solved: &Solved) -> f64 {
-        let work = (state.moment_n_mm + solved.moment) * self.increment_deg(state).to_radians();
-        state.strain_energy_n_mm + work - solved.energy
+        state.strain_energy_n_mm + solved.work - solved.energy
     }
 
     /// Step control after the attempt was taken.
@@ -149,7 +148,7 @@ mod tests {
         scene
     }
 
-    fn at(rotation_deg: f64, control: StepControl) -> State {
+    fn at(parameter: f64, control: StepControl) -> State {
         State {
             mesh: Arc::new(Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] }),
             displacement: vec![],
@@ -157,7 +156,8 @@ mod tests {
             refined: None,
             step: 1,
             stage: Some(Stage::Solve),
-            rotation_deg,
+            parameter,
+            turns: vec![],
             moment_n_mm: 0.0,
             strain_energy_n_mm: 0.0,
             negative_pivots: 0,
@@ -172,7 +172,7 @@ mod tests {
         while next_stage(scene, &state).is_some() {
             let attempt = next_attempt(scene, &state);
             state = at(attempt.target_deg, attempt.control_after_success(&state.control));
-            rotations.push(state.rotation_deg);
+            rotations.push(state.parameter);
         }
         rotations
     }
@@ -197,13 +197,13 @@ mod tests {
         let mut state = at(0.0, StepControl::default());
         for attempts in 1..10_000 {
             let attempt = next_attempt(scene, &state);
-            assert!(attempt.target_deg > state.rotation_deg);
-            let jumps = state.rotation_deg < critical && attempt.target_deg >= critical;
+            assert!(attempt.target_deg > state.parameter);
+            let jumps = state.parameter < critical && attempt.target_deg >= critical;
             if jumps && attempt.may_jump {
-                return ([state.rotation_deg, attempt.target_deg], attempts);
+                return ([state.parameter, attempt.target_deg], attempts);
             }
             state = if jumps {
-                at(state.rotation_deg, attempt.control_after_jump(&state.control))
+                at(state.parameter, attempt.control_after_jump(&state.control))
             } else {
                 at(attempt.target_deg, attempt.control_after_success(&state.control))
             };

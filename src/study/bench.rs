@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::equilibrium::{DenseProduct, Equilibrium, FactorError, KernelRun, SolveError, Workspace};
+use crate::equilibrium::{DenseProduct, Equilibrium, KernelRun, SolveError, Standing, Workspace, WorkspaceError};
 use crate::model::{ModelError, starting_mesh};
 use crate::pipeline::{MemorySink, Run, RunError, Stages};
 use crate::scene::Scene;
@@ -52,9 +52,9 @@ pub enum BenchError {
     /// The scene cannot be made discrete.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The equations do not fit in memory.
+    /// The equations do not fit in memory, or the scene not the mesh.
     #[error(transparent)]
-    Factor(#[from] FactorError),
+    Workspace(#[from] WorkspaceError),
     /// The deformed state was not found.
     #[error("no equilibrium to time at")]
     Solve(#[from] SolveError),
@@ -71,7 +71,9 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     let mesh = Arc::new(starting_mesh(scene)?);
     let mut work = Workspace::new(scene, &mesh)?;
     let flat = vec![[0.0; 3]; mesh.control_points.len()];
-    let solved = Equilibrium::new(scene, &mut work).advance(&flat, 0.0, ROTATION_DEG, &mut |_| false)?;
+    let start = Standing { displacement: &flat, turns: &[], parameter: 0.0 };
+    let target = ROTATION_DEG.min(scene.load.target());
+    let solved = Equilibrium::new(scene, &mut work).advance(start, target, &mut |_| false)?;
     let unknowns = work.discretization().unknowns.count();
     let figure = |name: &'static str, seconds: f64, fraction_of_peak: Option<f64>| Figure {
         name,
@@ -91,7 +93,8 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     let copy = copy_seconds(repeats);
     let bytes_per_s = 16.0 * COPY_LEN as f64 / copy;
 
-    let mut kernels = KernelRun::new(&mut work, &solved.displacement, ROTATION_DEG)?;
+    let deformed = Standing { displacement: &solved.displacement, turns: &solved.turns, parameter: target };
+    let mut kernels = KernelRun::new(&mut work, deformed)?;
     let cost = kernels.cost();
     let assemble = median(repeats, || kernels.assemble());
     let residual = median(repeats, || kernels.residual());

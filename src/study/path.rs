@@ -9,7 +9,7 @@ pub struct PathPoint {
     /// Load step.
     pub step: u64,
     /// Rotation of each end, degrees.
-    pub rotation_deg: f64,
+    pub parameter: f64,
     /// End moment of the whole section, N·mm.
     pub moment_n_mm: f64,
     /// Strain energy of the whole shell, N·mm.
@@ -50,7 +50,7 @@ pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
         }
         path.push(PathPoint {
             step: report.step,
-            rotation_deg: report.rotation_deg,
+            parameter: report.parameter,
             moment_n_mm: report.moment_n_mm,
             strain_energy_n_mm: report.strain_energy_n_mm,
             elements: report.elements,
@@ -75,7 +75,7 @@ pub fn snaps(records: &[Record]) -> Vec<Snap> {
             None if report.jumped => {
                 let snap = Snap {
                     before_deg: before.0,
-                    after_deg: report.rotation_deg,
+                    after_deg: report.parameter,
                     moment_before_n_mm: before.1,
                     moment_after_n_mm: report.moment_n_mm,
                     energy_released_n_mm: report.energy_released_n_mm,
@@ -84,7 +84,7 @@ pub fn snaps(records: &[Record]) -> Vec<Snap> {
             }
             None => {}
         }
-        before = (report.rotation_deg, report.moment_n_mm);
+        before = (report.parameter, report.moment_n_mm);
     }
     snaps.into_iter().map(|(_, snap)| snap).collect()
 }

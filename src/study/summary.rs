@@ -45,7 +45,7 @@ pub struct MeasuredPeak {
     /// Moment, N·mm.
     pub moment_n_mm: f64,
     /// Rotation of each end, degrees.
-    pub rotation_deg: f64,
+    pub parameter: f64,
     /// Whether a parabola through the largest moment and its neighbours says so, rather than the largest moment itself
     /// (which stands where the shell jumped before the moment fell).
     pub interpolated: bool,
@@ -66,7 +66,7 @@ pub struct FoldMean {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshChange {
     /// Rotation of each end at which it was made, degrees; 0 for the mesh that the run starts with.
-    pub rotation_deg: f64,
+    pub parameter: f64,
     /// Elements (along the length, along the arc) of the model.
     pub elements: [usize; 2],
     /// Free unknowns of the model.
@@ -77,7 +77,7 @@ pub struct MeshChange {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
     /// Rotation of the last equilibrium that is counted, degrees.
-    pub rotation_deg: f64,
+    pub parameter: f64,
     /// ∫ 2M dθ, N·mm.
     pub work_n_mm: f64,
     /// Strain energy there, N·mm.
@@ -147,8 +147,8 @@ fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
         }
         match report.stage {
             Stage::Solve if report.outcome == Outcome::Done => {
-                sum.work_n_mm += (moment + report.moment_n_mm) * (report.rotation_deg - sum.rotation_deg).to_radians();
-                sum.rotation_deg = report.rotation_deg;
+                sum.work_n_mm += (moment + report.moment_n_mm) * (report.parameter - sum.parameter).to_radians();
+                sum.parameter = report.parameter;
             }
             // Refining integrates the energy anew, and re-equilibrating lowers it: neither is work of the ends.
             Stage::RefineKnots | Stage::ReEquilibrate => {
@@ -168,7 +168,7 @@ fn initial_stiffness(path: &[PathPoint]) -> Option<f64> {
         .iter()
         .take(3)
         .take_while(|point| point.elements == first.elements)
-        .map(|point| (point.rotation_deg.to_radians(), point.moment_n_mm))
+        .map(|point| (point.parameter.to_radians(), point.moment_n_mm))
         .filter(|point| point.0 > 0.0)
         .collect();
     let at_zero = |(i, &(theta, moment)): (usize, &(f64, f64))| {
@@ -183,7 +183,7 @@ fn peak(path: &[PathPoint], jumps_after: bool) -> Option<MeasuredPeak> {
     let index = (0..path.len()).max_by(|&i, &j| path[i].moment_n_mm.total_cmp(&path[j].moment_n_mm))?;
     let largest = &path[index];
     let as_it_stands =
-        MeasuredPeak { moment_n_mm: largest.moment_n_mm, rotation_deg: largest.rotation_deg, interpolated: false };
+        MeasuredPeak { moment_n_mm: largest.moment_n_mm, parameter: largest.parameter, interpolated: false };
     if index + 1 == path.len() {
         return jumps_after.then_some(as_it_stands);
     }
@@ -194,7 +194,7 @@ fn peak(path: &[PathPoint], jumps_after: bool) -> Option<MeasuredPeak> {
 
 /// The top of the parabola through three points of the path.
 fn vertex(points: [&PathPoint; 3]) -> Option<MeasuredPeak> {
-    let [x0, x1, x2] = points.map(|point| point.rotation_deg);
+    let [x0, x1, x2] = points.map(|point| point.parameter);
     let [y0, y1, y2] = points.map(|point| point.moment_n_mm);
     let (slope_left, slope_right) = ((y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1));
     let bend = (slope_right - slope_left) / (x2 - x0);
@@ -204,21 +204,21 @@ fn vertex(points: [&PathPoint; 3]) -> Option<MeasuredPeak> {
     // y = y1 + slope (x − x1) + bend (x − x1)², with the slope at x1.
     let slope = (slope_left * (x2 - x1) + slope_right * (x1 - x0)) / (x2 - x0);
     let offset = -slope / (2.0 * bend);
-    Some(MeasuredPeak { moment_n_mm: y1 + 0.5 * slope * offset, rotation_deg: x1 + offset, interpolated: true })
+    Some(MeasuredPeak { moment_n_mm: y1 + 0.5 * slope * offset, parameter: x1 + offset, interpolated: true })
 }
 
 /// Mean moment beyond the last jump: over the last third of the rotation, or where all of that is far from the ends,
 /// over everything that is.
 fn fold_mean(path: &[PathPoint], snap: Option<&Snap>) -> Option<FoldMean> {
     let (snap, last) = (snap?, path.last()?);
-    let third = snap.after_deg + (last.rotation_deg - snap.after_deg) * 2.0 / 3.0;
-    let from = if last.rotation_deg > FAR_FROM_ENDS_DEG { FAR_FROM_ENDS_DEG.max(snap.after_deg) } else { third };
+    let third = snap.after_deg + (last.parameter - snap.after_deg) * 2.0 / 3.0;
+    let from = if last.parameter > FAR_FROM_ENDS_DEG { FAR_FROM_ENDS_DEG.max(snap.after_deg) } else { third };
     let jump = path.iter().rposition(|point| point.jumped)?;
-    let points: Vec<&PathPoint> = path[jump..].iter().filter(|point| point.rotation_deg >= from).collect();
+    let points: Vec<&PathPoint> = path[jump..].iter().filter(|point| point.parameter >= from).collect();
     let sum: f64 = points.iter().map(|point| point.moment_n_mm).sum();
     Some(FoldMean {
         moment_n_mm: sum / points.len() as f64,
-        range_deg: [points.first()?.rotation_deg, last.rotation_deg],
+        range_deg: [points.first()?.parameter, last.parameter],
         points: points.len(),
     })
 }
@@ -229,7 +229,7 @@ fn mesh_changes(records: &[Record]) -> Vec<MeshChange> {
     for Record { report, .. } in records {
         if changes.last().is_none_or(|last| last.elements != report.elements) {
             changes.push(MeshChange {
-                rotation_deg: if changes.is_empty() { 0.0 } else { report.rotation_deg },
+                parameter: if changes.is_empty() { 0.0 } else { report.parameter },
                 elements: report.elements,
                 unknowns: report.unknowns,
             });

@@ -51,12 +51,12 @@ impl Summary {
             };
             return writeln!(f, "no equilibrium yet{turned_down}");
         };
-        let reached = if last.rotation_deg > self.target_deg * (1.0 + 1e-9) {
-            format!("{}°, beyond the {}° that the scene asks for", rounded(last.rotation_deg), rounded(self.target_deg))
-        } else if last.rotation_deg >= self.target_deg * (1.0 - 1e-9) {
+        let reached = if last.parameter > self.target_deg * (1.0 + 1e-9) {
+            format!("{}°, beyond the {}° that the scene asks for", rounded(last.parameter), rounded(self.target_deg))
+        } else if last.parameter >= self.target_deg * (1.0 - 1e-9) {
             format!("{}°, as the scene asks", rounded(self.target_deg))
         } else {
-            format!("{}° of {}°", rounded(last.rotation_deg), rounded(self.target_deg))
+            format!("{}° of {}°", rounded(last.parameter), rounded(self.target_deg))
         };
         let (stages, steps) = (count(self.stages(), "stage"), count(self.load_steps, "load step"));
         writeln!(f, "{stages} in {steps} to {reached}, {}", duration(self.wall_s()))?;
@@ -118,7 +118,7 @@ impl Summary {
         };
         Line {
             name: "work of the ends",
-            measured: format!("{:8.3} N·mm to {}°", balance.work_n_mm, rounded(balance.rotation_deg)),
+            measured: format!("{:8.3} N·mm to {}°", balance.work_n_mm, rounded(balance.parameter)),
             law: Some(("strain energy", format!("{:.3}{refinement}", balance.strain_energy_n_mm))),
             off: Some(balance.work_n_mm / stored),
             note: "",
@@ -130,7 +130,7 @@ impl Summary {
         let measured = match self.peak {
             Some(peak) => {
                 let how = if peak.interpolated { "" } else { ", jump" };
-                format!("{:7.1}  N·mm at {:.2}°{how}", peak.moment_n_mm, peak.rotation_deg)
+                format!("{:7.1}  N·mm at {:.2}°{how}", peak.moment_n_mm, peak.parameter)
             }
             None if self.snaps.is_empty() => "   none, still rising".into(),
             None => "   none before the jump".into(),
@@ -141,7 +141,7 @@ impl Summary {
             measured,
             law: Some(("Wuest", law.map_or("   none".into(), |law| format!("{:7.1}", law.moment_n_mm)))),
             off: self.peak.zip(law).map(|(peak, law)| peak.moment_n_mm / law.moment_n_mm),
-            note: &law.map_or(String::new(), |law| format!("at {:.2}°", law.rotation_deg)),
+            note: &law.map_or(String::new(), |law| format!("at {:.2}°", law.parameter)),
         }
         .write(f)
     }
@@ -174,13 +174,13 @@ impl Summary {
     fn write_meshes(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let whole = if self.symmetric_parts > 1 { "   whole shell" } else { "" };
         writeln!(f, "  {:<11}   {:>18}{whole}   {:>8}", "mesh from", "elements", "unknowns")?;
-        for &MeshChange { rotation_deg, elements: [n1, n2], unknowns } in &self.meshes {
+        for &MeshChange { parameter, elements: [n1, n2], unknowns } in &self.meshes {
             let elements = format!("{n1} × {n2} = {}", n1 * n2);
             let whole = match self.symmetric_parts {
                 1 => String::new(),
                 parts => format!("   {:>11}", n1 * n2 * parts),
             };
-            writeln!(f, "  {:>10.3}°   {elements:>18}{whole}   {unknowns:>8}", rotation_deg)?;
+            writeln!(f, "  {:>10.3}°   {elements:>18}{whole}   {unknowns:>8}", parameter)?;
         }
         Ok(())
     }

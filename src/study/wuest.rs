@@ -49,7 +49,7 @@ pub struct Peak {
     /// Moment, N·mm.
     pub moment_n_mm: f64,
     /// Rotation of each end, degrees.
-    pub rotation_deg: f64,
+    pub parameter: f64,
     /// Longitudinal curvature, 1/mm.
     pub curvature_per_mm: f64,
 }
@@ -111,8 +111,8 @@ impl TapeSpring {
     }
 
     /// Uniform curvature 2 θ / L when each end has turned by `rotation_deg`, 1/mm.
-    pub fn curvature_at_rotation(&self, rotation_deg: f64) -> f64 {
-        2.0 * rotation_deg.to_radians() / self.length_mm
+    pub fn curvature_at_rotation(&self, parameter: f64) -> f64 {
+        2.0 * parameter.to_radians() / self.length_mm
     }
 
     /// Moment of Wuest's law at the longitudinal curvature `k` ≥ 0 in 1/mm, N·mm.
@@ -136,8 +136,8 @@ impl TapeSpring {
     }
 
     /// Moment of Wuest's law when each end has turned by `rotation_deg` ≥ 0 and the curvature is uniform, N·mm.
-    pub fn moment_at_rotation(&self, rotation_deg: f64) -> f64 {
-        self.moment_at_curvature(self.curvature_at_rotation(rotation_deg))
+    pub fn moment_at_rotation(&self, parameter: f64) -> f64 {
+        self.moment_at_curvature(self.curvature_at_rotation(parameter))
     }
 
     /// The first maximum of Wuest's law; `None` where the moment only rises (shallow or thick sections).
@@ -145,7 +145,7 @@ impl TapeSpring {
         let (k, _) = self.first_extremes()?;
         Some(Peak {
             moment_n_mm: self.moment_at_curvature(k),
-            rotation_deg: (k * self.length_mm / 2.0).to_degrees(),
+            parameter: (k * self.length_mm / 2.0).to_degrees(),
             curvature_per_mm: k,
         })
     }
@@ -282,7 +282,7 @@ mod tests {
         close(spring.initial_stiffness_n_mm(), 2771.9, 0.05);
         let peak = spring.peak().unwrap();
         close(peak.moment_n_mm, 287.9, 0.05);
-        close(peak.rotation_deg, 9.27, 0.005);
+        close(peak.parameter, 9.27, 0.005);
         close(spring.fold_moments().opposite_n_mm, 29.94, 0.005);
         close(spring.fold_moments().equal_n_mm, 16.12, 0.005);
         close(spring.plateau().unwrap().moment_n_mm, 28.31, 0.005);

@@ -53,7 +53,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub fn moment_rotation_plot(scene: &Scene, records: &[Record], title: &str) -> Result<String, PlotError> {
     let path = equilibrium_path(records);
     let last = path.last().ok_or(PlotError::NoEquilibrium)?;
-    let end_deg = path.iter().map(|point| point.rotation_deg).fold(last.rotation_deg, f64::max) * 1.02;
+    let end_deg = path.iter().map(|point| point.parameter).fold(last.parameter, f64::max) * 1.02;
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
@@ -77,9 +77,9 @@ fn draw_moment(
     let spring = TapeSpring::of_scene(scene);
     let law: Vec<(f64, f64)> = (0..=400)
         .map(|i| f64::from(i) / 400.0 * end_deg)
-        .map(|rotation_deg| (rotation_deg, spring.moment_at_rotation(rotation_deg)))
+        .map(|parameter| (parameter, spring.moment_at_rotation(parameter)))
         .collect();
-    let measured = std::iter::once((0.0, 0.0)).chain(path.iter().map(|point| (point.rotation_deg, point.moment_n_mm)));
+    let measured = std::iter::once((0.0, 0.0)).chain(path.iter().map(|point| (point.parameter, point.moment_n_mm)));
     let measured: Vec<(f64, f64)> = measured.collect();
     let highest = measured.iter().chain(&law).map(|point| point.1).fold(f64::MIN_POSITIVE, f64::max);
     let lowest = measured.iter().map(|point| point.1).fold(0.0, f64::min);
@@ -178,7 +178,7 @@ fn draw_elements(area: &Area, path: &[PathPoint], end_deg: f64) -> Result<(), Pl
     let mut stairs: Vec<(f64, f64)> = path.first().map(|first| (0.0, height(first))).into_iter().collect();
     for point in path {
         let before = stairs.last().map_or(height(point), |last| last.1);
-        stairs.extend([(point.rotation_deg, before), (point.rotation_deg, height(point))]);
+        stairs.extend([(point.parameter, before), (point.parameter, height(point))]);
     }
     chart.draw_series(LineSeries::new(stairs, line(MEASURED, 2)))?;
     // Every stair that is wide enough has its mesh written upon it.
@@ -188,7 +188,7 @@ fn draw_elements(area: &Area, path: &[PathPoint], end_deg: f64) -> Result<(), Pl
         if next.is_some_and(|next| next.elements == point.elements) {
             continue;
         }
-        let to_deg = next.map_or(point.rotation_deg, |next| next.rotation_deg);
+        let to_deg = next.map_or(point.parameter, |next| next.parameter);
         if to_deg - from_deg > 0.09 * end_deg {
             let [n1, n2] = point.elements;
             let style = text(13).pos(Pos::new(HPos::Center, VPos::Bottom));

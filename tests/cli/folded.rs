@@ -17,14 +17,14 @@ fn openness(s: f64) -> f64 {
 }
 
 /// Samples of a spring whose ends have each turned by `rotation_deg`.
-pub fn samples(rotation_deg: f64) -> SurfaceSamples {
+pub fn samples(parameter: f64) -> SurfaceSamples {
     // The tight curvature is in the fold; the ploy regions open the section but hardly bend along the length.
     let bend = |s: f64| openness(s).powi(6);
     let steps = 3000;
     let ds = LENGTH / f64::from(steps);
     let total: f64 = (0..steps).map(|i| bend((f64::from(i) + 0.5) * ds) * ds).sum();
-    let curvature = 2.0 * rotation_deg.to_radians() / total;
-    let mut axis = vec![(0.0, 0.0, -rotation_deg.to_radians())];
+    let curvature = 2.0 * parameter.to_radians() / total;
+    let mut axis = vec![(0.0, 0.0, -parameter.to_radians())];
     for i in 0..steps {
         let (x, z, angle) = axis[i as usize];
         let middle: f64 = angle + 0.5 * ds * curvature * bend((f64::from(i) + 0.5) * ds);

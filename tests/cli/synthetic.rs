@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use foldline::pipeline::{Commit, Outcome, Record, Report};
+use foldline::pipeline::{Commit, Outcome, Parameter, Record, Report};
 use foldline::scene::{
     Adapt, EndRotation, Geometry, LengthLimit, Load, Material, MeshSpec, Output, Quadrature, Scene, Sense, Solver,
     Stage, Symmetry, SyncPolicy,
@@ -62,10 +62,13 @@ impl Script {
     pub fn new() -> Self {
         let last = Report {
             step: 0,
+            driven_by: Parameter::Rotation,
+            work_n_mm: 0.0,
+            probes: vec![],
             stage: Stage::Solve,
             outcome: Outcome::Done,
-            rotation_deg: 0.0,
-            attempted_rotation_deg: 0.0,
+            parameter: 0.0,
+            attempted_parameter: 0.0,
             moment_n_mm: 0.0,
             strain_energy_n_mm: 0.0,
             elements: [2, 2],
@@ -108,12 +111,12 @@ impl Script {
     }
 
     /// A solve that is turned down.
-    pub fn rejected(&mut self, attempted_rotation_deg: f64, outcome: Outcome) {
+    pub fn rejected(&mut self, attempted_parameter: f64, outcome: Outcome) {
         let report = Report {
             step: self.last.step + 1,
             stage: Stage::Solve,
             outcome,
-            attempted_rotation_deg,
+            attempted_parameter,
             iterations: 41,
             factorizations: 46,
             residual: 3.2e-3,
@@ -124,13 +127,13 @@ impl Script {
     }
 
     /// A solve that is taken.
-    pub fn solve(&mut self, (rotation_deg, moment_n_mm, strain_energy_n_mm): (f64, f64, f64), jumped: bool) {
+    pub fn solve(&mut self, (parameter, moment_n_mm, strain_energy_n_mm): (f64, f64, f64), jumped: bool) {
         let released = if jumped { self.last.strain_energy_n_mm - strain_energy_n_mm + 1.9 } else { 0.0 };
         let report = Report {
             step: self.last.step + 1,
             stage: Stage::Solve,
-            rotation_deg,
-            attempted_rotation_deg: rotation_deg,
+            parameter,
+            attempted_parameter: parameter,
             moment_n_mm,
             strain_energy_n_mm,
             iterations: if jumped { 38 } else { 3 },
@@ -220,7 +223,8 @@ pub fn state(record: &Record) -> State {
         refined: None,
         step: record.report.step,
         stage: Some(record.report.stage),
-        rotation_deg: record.report.rotation_deg,
+        turns: vec![],
+        parameter: record.report.parameter,
         moment_n_mm: record.report.moment_n_mm,
         strain_energy_n_mm: record.report.strain_energy_n_mm,
         negative_pivots: record.report.negative_pivots,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use foldline::journal::{Manifest, format::FORMAT_VERSION};
-use foldline::pipeline::{Commit, Outcome, Record, Report};
+use foldline::pipeline::{Commit, Outcome, Parameter, Record, Report};
 use foldline::scene::Stage;
 use foldline::state::{Hash, Mesh, Rejection, State, StepControl};
 
@@ -36,7 +36,8 @@ pub fn start(elements: usize) -> State {
         refined: None,
         step: 0,
         stage: None,
-        rotation_deg: 0.0,
+        parameter: 0.0,
+        turns: vec![],
         moment_n_mm: 0.0,
         strain_energy_n_mm: 0.0,
         negative_pivots: 0,
@@ -62,12 +63,12 @@ pub fn next(state: &State) -> (State, Report) {
     let mut new = State { stage: Some(stage), step, ..state.clone() };
     match stage {
         Stage::Solve => {
-            new.rotation_deg += 0.7;
-            new.displacement = moved(state, 0.01 * new.rotation_deg);
-            new.moment_n_mm = 100.0 * wave(new.rotation_deg);
-            new.strain_energy_n_mm = 50.0 * new.rotation_deg * new.rotation_deg;
+            new.parameter += 0.7;
+            new.displacement = moved(state, 0.01 * new.parameter);
+            new.moment_n_mm = 100.0 * wave(new.parameter);
+            new.strain_energy_n_mm = 50.0 * new.parameter * new.parameter;
             let rejection = (step % 4 == 3).then_some(Rejection::Jump);
-            let jump_seen_at_deg = rejection.map(|_| new.rotation_deg + 0.3);
+            let jump_seen_at_deg = rejection.map(|_| new.parameter + 0.3);
             new.control = StepControl { halvings: (step % 3) as u32, jump_seen_at_deg, rejection };
         }
         Stage::EvaluateIndicators if step % 3 == 0 && state.mesh.knots[0].len() < 60 => {
@@ -84,7 +85,7 @@ pub fn next(state: &State) -> (State, Report) {
         }
         Stage::ProjectDisplacements => {
             new.mesh = new.refined.take().unwrap_or_else(|| state.mesh.clone());
-            new.displacement = vec![[0.125 * state.rotation_deg; 3]; new.mesh.control_points.len()];
+            new.displacement = vec![[0.125 * state.parameter; 3]; new.mesh.control_points.len()];
         }
         Stage::ReEquilibrate => new.displacement = moved(state, 1.0e-3),
     }
@@ -92,8 +93,11 @@ pub fn next(state: &State) -> (State, Report) {
         step,
         stage,
         outcome: if new.control.rejection.is_some() { Outcome::RejectedJump } else { Outcome::Done },
-        rotation_deg: new.rotation_deg,
-        attempted_rotation_deg: new.rotation_deg + 0.1,
+        driven_by: Parameter::Rotation,
+        work_n_mm: 0.0,
+        probes: vec![],
+        parameter: new.parameter,
+        attempted_parameter: new.parameter + 0.1,
         moment_n_mm: new.moment_n_mm,
         strain_energy_n_mm: new.strain_energy_n_mm,
         elements: new.mesh.element_counts(),

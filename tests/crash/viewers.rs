@@ -26,7 +26,7 @@ impl Pictures {
 
 impl ViewerTopics for Pictures {
     fn messages(&mut self, state: &State, record: &Record) -> Vec<ViewerMessage> {
-        let data = format!("{} {}", state.rotation_deg, record.commit.ordinal).into_bytes();
+        let data = format!("{} {}", state.parameter, record.commit.ordinal).into_bytes();
         (0..record.commit.ordinal % 3).map(|_| ViewerMessage { topic: self.0.clone(), data: data.clone() }).collect()
     }
 }

@@ -63,13 +63,14 @@ fn state() -> impl Strategy<Value = State> {
             let mesh = Arc::new(mesh);
             prop::collection::vec(prop::array::uniform3(number()), mesh.control_points.len()).prop_map(
                 move |displacement| State {
+                    turns: vec![],
                     mesh: mesh.clone(),
                     displacement,
                     marked: [marks.clone(), Vec::new()],
                     refined: refined.then(|| mesh.clone()),
                     step,
                     stage,
-                    rotation_deg: rotation,
+                    parameter: rotation,
                     moment_n_mm: moment,
                     strain_energy_n_mm: energy,
                     negative_pivots: pivots,
@@ -183,7 +184,7 @@ proptest! {
     fn reports_come_back_bit_for_bit(values in prop::array::uniform9(any::<f64>()), counts in any::<[u32; 4]>()) {
         let (_, mut record) = synthetic::run(2, 1).remove(0);
         let report = &mut record.report;
-        [report.rotation_deg, report.attempted_rotation_deg, report.moment_n_mm] = [values[0], values[1], values[2]];
+        [report.parameter, report.attempted_parameter, report.moment_n_mm] = [values[0], values[1], values[2]];
         [report.strain_energy_n_mm, report.residual, report.energy_released_n_mm] = [values[3], values[4], values[5]];
         report.largest_indicator = [values[6], values[7]];
         [report.iterations, report.unknowns, report.marked[0], report.marked[1]] = counts.map(|count| count as usize);

@@ -68,14 +68,14 @@ fn the_snap_is_located() {
     let jump = log.entries().iter().position(|entry| entry.record.report.jumped).unwrap();
     let beyond = &log.entries()[jump].record.report;
     let before = log.entries()[..jump].iter().rev().map(|entry| &entry.record.report);
-    let below = before.clone().find(|report| report.rotation_deg < beyond.rotation_deg).unwrap();
+    let below = before.clone().find(|report| report.parameter < beyond.parameter).unwrap();
     let mut critical = None;
     for (option, tolerance) in [("", 1e-4), ("--tolerance 0.01", 0.01), ("--tolerance 1e-5", 1e-5)] {
         let text = place.foldline(&format!("bisect run.mcap --snap {option}")).ends(0).out;
         let [low, high] = [number_after(&text, "critical rotation    "), number_after(&text, "° to ")];
         // Six decimals are printed.
         assert!(low < high && high - low <= tolerance + 2e-6, "{text}");
-        assert!(below.rotation_deg <= low && high <= beyond.rotation_deg + 1e-6, "{text}");
+        assert!(below.parameter <= low && high <= beyond.parameter + 1e-6, "{text}");
         let [moment, after] = [number_after(&text, "moment               "), number_after(&text, "before, ")];
         assert!((moment / below.moment_n_mm - 1.0).abs() < 0.05, "{text}");
         assert!(after > 0.0 && after < 0.5 * moment, "{text}");
@@ -113,7 +113,7 @@ fn conditions() {
     let cases: [(&str, usize); 8] = [
         ("moment_n_mm < 100", 0),
         ("moment_n_mm < 100 and step > 3", first(&|i| report(i).moment_n_mm < 100.0 && report(i).step > 3)),
-        ("rotation_deg >= 10", first(&|i| report(i).rotation_deg >= 10.0)),
+        ("rotation_deg >= 10", first(&|i| report(i).parameter >= 10.0)),
         ("elements > 16", first(&|i| report(i).elements.iter().product::<usize>() > 16)),
         ("elements_1 == 10", first(&|i| report(i).elements[0] == 10)),
         ("jumped == true", first(&|i| report(i).jumped)),

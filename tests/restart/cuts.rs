@@ -78,9 +78,9 @@ fn until_here_and_until_there_is_the_straight_run() {
     let whole = Straight::small();
     let place = Place::new();
     place.foldline("run small.toml -o run.mcap --until 5 --threads 2").ends(0);
-    assert_eq!(place.log("run.mcap").entries().last().unwrap().record.report.rotation_deg, 6.0);
+    assert_eq!(place.log("run.mcap").entries().last().unwrap().record.report.parameter, 6.0);
     place.foldline("resume run.mcap --until 10.3 --threads 1").ends(0);
-    let reached = place.log("run.mcap").entries().last().unwrap().record.report.rotation_deg;
+    let reached = place.log("run.mcap").entries().last().unwrap().record.report.parameter;
     assert!((10.3..10.5).contains(&reached), "{reached}");
     place.foldline("resume run.mcap --until 10.3").ends(0).says(&["nothing to do"]);
     place.foldline("resume run.mcap --until 17").ends(2).says(&["--until 17 is beyond the 16°"]);

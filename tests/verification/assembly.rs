@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use foldline::equilibrium::{Assembled, Equilibrium, Want, Workspace, strain_energy};
+use foldline::equilibrium::{Assembled, Equilibrium, Standing, Want, Workspace, strain_energy};
 use foldline::model::{Discretization, starting_mesh};
 use foldline::scene::{Geometry, Load, Scene, Sense, Symmetry};
 
@@ -29,6 +29,10 @@ fn noise(count: usize) -> Vec<f64> {
         .collect()
 }
 
+fn flat(displacement: &[[f64; 3]]) -> Standing<'_> {
+    Standing { displacement, turns: &[], parameter: 0.0 }
+}
+
 fn length(vector: &[f64]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
@@ -45,16 +49,17 @@ fn residual_and_stiffness_are_derivatives_of_the_energy() {
     ] {
         let scene = small(symmetry, degree);
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
-        let discretization = Discretization::new(&scene, &mesh);
-        let placement = discretization.unknowns.at(0.15);
+        let discretization = Discretization::new(&scene, &mesh).unwrap();
         let count = discretization.unknowns.count();
         let point: Vec<f64> = noise(count).iter().map(|x| 0.05 * x).collect();
+        let placement = discretization.unknowns.place(&point, 8.5);
+        let moved = |q: &[f64]| discretization.unknowns.place(q, 8.5).displacement();
         let direction = &noise(2 * count)[count..];
         let at = |step: f64| -> Vec<f64> { point.iter().zip(direction).map(|(q, d)| q + step * d).collect() };
-        let energy = |step: f64| strain_energy(&mesh, &discretization.tables, &placement.displacement(&at(step)));
+        let energy = |step: f64| strain_energy(&mesh, &discretization.tables, &moved(&at(step)));
         let mut assembled = Assembled::new(&discretization);
         let mut gradient = |step: f64| {
-            assembled.assemble(&discretization, &placement.displacement(&at(step)), Want::Residual);
+            assembled.assemble(&discretization, &moved(&at(step)), Want::Residual);
             placement.restrict(&assembled.residual)
         };
         let step = 1e-6;
@@ -65,10 +70,8 @@ fn residual_and_stiffness_are_derivatives_of_the_energy() {
         let change: Vec<f64> =
             gradient(step).iter().zip(gradient(-step)).map(|(a, b)| (a - b) / (2.0 * step)).collect();
         let mut assembled = Assembled::new(&discretization);
-        assembled.assemble(&discretization, &placement.displacement(&point), Want::Stiffness);
-        // T d: the displacement is affine in the unknowns.
-        let (moved, still) = (placement.displacement(direction), placement.displacement(&vec![0.0; count]));
-        let field: Vec<[f64; 3]> = moved.iter().zip(&still).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect();
+        assembled.assemble(&discretization, &placement.displacement(), Want::Stiffness);
+        let field = placement.velocity(direction, &[]);
         let product = placement.restrict(&assembled.multiply(&discretization, &field));
         let difference: Vec<f64> = product.iter().zip(&change).map(|(a, b)| a - b).collect();
         assert!(length(&difference) < 1e-6 * length(&product), "{symmetry:?} {degree:?}");
@@ -83,7 +86,7 @@ fn rigid_motions_give_no_strain() {
         let Geometry::TapeSpring { length_mm, radius_mm, .. } = scene.geometry else { panic!() };
         scene.geometry = Geometry::TapeSpring { length_mm, radius_mm, arc_deg };
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
-        let discretization = Discretization::new(&scene, &mesh);
+        let discretization = Discretization::new(&scene, &mesh).unwrap();
         let (sin, cos) = 1.1_f64.sin_cos();
         let motion = |[x, y, z]: [f64; 3]| [cos * x - sin * y + 5.0, sin * x + cos * y - 2.0, z + 1.0];
         let displacement: Vec<[f64; 3]> = mesh
@@ -125,7 +128,8 @@ fn moment_is_the_derivative_of_the_energy_with_respect_to_the_rotation() {
         let mut work = Workspace::new(&scene, &mesh).unwrap();
         let start = vec![[0.0; 3]; mesh.control_points.len()];
         let mut solve = |from: &[[f64; 3]], a: f64, b: f64| {
-            Equilibrium::new(&scene, &mut work).advance(from, a, b, &mut |_| false).unwrap()
+            let from = Standing { displacement: from, turns: &[], parameter: a };
+            Equilibrium::new(&scene, &mut work).advance(from, b, &mut |_| false).unwrap()
         };
         let middle = solve(&start, 0.0, 1.0);
         let step = 1e-3;
@@ -146,7 +150,7 @@ fn symmetric_parts_agree_with_the_whole() {
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
         let mut work = Workspace::new(&scene, &mesh).unwrap();
         let start = vec![[0.0; 3]; mesh.control_points.len()];
-        let solved = Equilibrium::new(&scene, &mut work).advance(&start, 0.0, 2.0, &mut |_| false).unwrap();
+        let solved = Equilibrium::new(&scene, &mut work).advance(flat(&start), 2.0, &mut |_| false).unwrap();
         solved.moment
     };
     let whole = moment(Symmetry::None);
@@ -166,7 +170,7 @@ fn wide_arcs_have_the_closed_form_stiffness() {
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
         let mut work = Workspace::new(&scene, &mesh).unwrap();
         let start = vec![[0.0; 3]; mesh.control_points.len()];
-        let solved = Equilibrium::new(&scene, &mut work).advance(&start, 0.0, 0.001, &mut |_| false).unwrap();
+        let solved = Equilibrium::new(&scene, &mut work).advance(flat(&start), 0.001, &mut |_| false).unwrap();
         let arc = arc_deg.to_radians();
         let inertia = 100.0 * ((arc + arc.sin()) / 2.0 - 4.0 * (arc / 2.0).sin().powi(2) / arc);
         let exact = 2.0 * 131000.0 * inertia / 300.0;

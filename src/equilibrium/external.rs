@@ -1,0 +1,119 @@
+//! Loads in the equations: forces beside the internal ones, and their tangent.
+//!
+//! The symmetric part of the tangent goes into the assembled stiffness; the skew part, where loads turn with the shell,
+//! is kept beside it.
+
+use crate::equilibrium::assembly::{Assembled, neighbour, neighbour_slot, stencil, stencil_len};
+use crate::model::{Discretization, Loads};
+
+/// Forces of the loads at a displacement.
+#[derive(Debug, Default)]
+pub(super) struct External {
+    /// On the control points, N; empty where nothing acts.
+    pub forces: Vec<[f64; 3]>,
+    /// −½ (∂f/∂u − ∂f/∂uᵀ) in the stencil of the stiffness; empty where nothing turns with the shell.
+    skew: Vec<f64>,
+}
+
+impl External {
+    /// Forces alone.
+    pub fn forces_at(discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64) -> Vec<[f64; 3]> {
+        match discretization.loads.is_empty() {
+            true => Vec::new(),
+            false => discretization.loads.forces(&discretization.mesh, displacement, parameter),
+        }
+    }
+
+    /// Forces and tangent; the symmetric part of the tangent is added to the stiffness in `assembled`.
+    pub fn new(
+        discretization: &Discretization,
+        displacement: &[[f64; 3]],
+        parameter: f64,
+        assembled: &mut Assembled,
+    ) -> Self {
+        let forces = Self::forces_at(discretization, displacement, parameter);
+        let mut external = Self { forces, skew: Vec::new() };
+        if discretization.loads.follow() {
+            external.skew = vec![0.0; assembled.stiffness.len()];
+            external.add_tangent(&discretization.loads, discretization, displacement, parameter, assembled);
+        }
+        external
+    }
+
+    fn add_tangent(
+        &mut self,
+        loads: &Loads,
+        discretization: &Discretization,
+        displacement: &[[f64; 3]],
+        parameter: f64,
+        assembled: &mut Assembled,
+    ) {
+        let mesh = &discretization.mesh;
+        let n2 = mesh.control_counts()[1];
+        let slots = stencil_len(mesh.degree);
+        loads.tangent(mesh, displacement, parameter, |part| {
+            let [i, j] = part.points;
+            let at = |i: usize, j: usize| (i * slots + neighbour_slot(mesh.degree, n2, i, j)) * 9;
+            for c in 0..3 {
+                for d in 0..3 {
+                    let half = 0.5 * part.block[c][d];
+                    if i <= j {
+                        assembled.stiffness[at(i, j) + 3 * c + d] -= half;
+                        self.skew[at(i, j) + 3 * c + d] -= half;
+                    }
+                    if j <= i {
+                        assembled.stiffness[at(j, i) + 3 * d + c] -= half;
+                        self.skew[at(j, i) + 3 * d + c] += half;
+                    }
+                }
+            }
+        });
+    }
+
+    /// g − f.
+    pub fn subtract_from(&self, internal: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        subtract(internal, &self.forces)
+    }
+
+    /// Whether there is a skew part.
+    pub fn has_skew(&self) -> bool {
+        !self.skew.is_empty()
+    }
+
+    /// The skew part times a field on the control points.
+    pub fn multiply_skew(&self, discretization: &Discretization, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let n2 = discretization.mesh.control_counts()[1];
+        let offsets = stencil(discretization.mesh.degree);
+        let mut product = vec![[0.0; 3]; field.len()];
+        for i in 0..field.len() {
+            for (slot, offset) in offsets.iter().enumerate() {
+                let Some(j) = neighbour(i, *offset, n2, field.len()) else { continue };
+                let block = &self.skew[(i * offsets.len() + slot) * 9..][..9];
+                for c in 0..3 {
+                    for d in 0..3 {
+                        product[i][c] += block[3 * c + d] * field[j][d];
+                        if j != i {
+                            product[j][d] -= block[3 * c + d] * field[i][c];
+                        }
+                    }
+                }
+            }
+        }
+        product
+    }
+}
+
+/// g − f; `external` may be empty.
+pub(super) fn subtract(internal: &[[f64; 3]], external: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    if external.is_empty() {
+        return internal.to_vec();
+    }
+    internal.iter().zip(external).map(|(g, f)| [0, 1, 2].map(|c| g[c] - f[c])).collect()
+}
+
+/// Work of forces that change from `before` to `after` along a straight motion (trapezoidal rule); 0 where both are
+/// empty.
+pub(super) fn work(before: &[[f64; 3]], after: &[[f64; 3]], from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
+    let each = before.iter().zip(after).zip(from.iter().zip(to));
+    each.map(|((f0, f1), (u0, u1))| (0..3).map(|c| 0.5 * (f0[c] + f1[c]) * (u1[c] - u0[c])).sum::<f64>()).sum()
+}

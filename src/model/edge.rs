@@ -1,0 +1,186 @@
+//! Edges of a mesh as supports see them: two rows of control points, normals, centroid, plane of symmetry.
+
+use crate::model::ModelError;
+use crate::scene::{Edge, ParametricDirection};
+use crate::shell::{cross, dot, gauss_legendre, norm, scaled, sub};
+use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
+
+/// Control points of an edge and beside it, in the order of the growing parameter along it.
+#[derive(Clone, Debug)]
+pub struct EdgeRows {
+    /// Control points of the edge.
+    pub outer: Vec<usize>,
+    /// Control points of the row beside it.
+    pub inner: Vec<usize>,
+    /// For each, the unit normal of the shell at the point of the edge that is nearest to the inner control point as
+    /// seen along the surface's own lines.
+    pub normals: Vec<[f64; 3]>,
+    /// Centroid of the undeformed edge, mm.
+    pub centroid: [f64; 3],
+}
+
+/// Why an edge is no plane of symmetry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoPlane {
+    /// It is not plane.
+    #[error("the edge does not lie in a plane")]
+    NotPlane,
+    /// The surface leaves the plane at another angle.
+    #[error("the surface does not cross the plane of the edge at right angles")]
+    NotAtRightAngles,
+    /// The lines of control points leave the plane at another angle.
+    #[error("the parametric lines of the surface do not cross the plane of the edge at right angles")]
+    Skewed,
+}
+
+/// Newton steps to the nearest point; quadratic from a start within the span.
+const NEWTON_STEPS: usize = 30;
+/// Gauss points a span for the centroid.
+const CENTROID_POINTS: usize = 8;
+/// Deviation from a plane, relative to the size of the edge, that is rounding.
+const PLANE: f64 = 1e-9;
+
+/// Rows of an edge.
+///
+/// # Errors
+/// Where the surface has no normal on the edge.
+pub fn edge_rows(mesh: &Mesh, edge: Edge) -> Result<EdgeRows, ModelError> {
+    let (way, at_end) = side(edge);
+    let running = 1 - way;
+    let counts = mesh.control_counts();
+    let row = |k: usize| {
+        let along = if at_end { counts[way] - 1 - k } else { k };
+        let index = move |j: usize| if way == 0 { along * counts[1] + j } else { j * counts[1] + along };
+        (0..counts[running]).map(index).collect::<Vec<usize>>()
+    };
+    let (outer, inner) = (row(0), row(1));
+    let normals = inner.iter().enumerate().map(|(j, control)| normal_beside(mesh, edge, j, *control));
+    Ok(EdgeRows { normals: normals.collect::<Result<_, _>>()?, centroid: centroid(mesh, edge), outer, inner })
+}
+
+/// The unit normal of the plane of symmetry that an edge can lie in.
+///
+/// # Errors
+/// Why it cannot.
+pub fn symmetry_plane(mesh: &Mesh, edge: Edge) -> Result<[f64; 3], NoPlane> {
+    let (way, at_end) = side(edge);
+    let running = 1 - way;
+    let counts = mesh.control_counts();
+    let point = |k: usize, j: usize| {
+        let along = if at_end { counts[way] - 1 - k } else { k };
+        let [x, y, z, w] = mesh.control_points[if way == 0 { along * counts[1] + j } else { j * counts[1] + along }];
+        [x / w, y / w, z / w]
+    };
+    let first = sub(point(1, 0), point(0, 0));
+    let normal = scaled(1.0 / norm(first), first);
+    let origin = point(0, 0);
+    let size = (0..counts[running]).map(|j| norm(sub(point(0, j), origin))).fold(norm(first), f64::max);
+    for j in 0..counts[running] {
+        if dot(sub(point(0, j), origin), normal).abs() > PLANE * size {
+            // A plane edge whose surface leaves it at an angle, or no plane at all: the edge alone says which.
+            return Err(if is_plane(&(0..counts[running]).map(|j| point(0, j)).collect::<Vec<_>>()) {
+                NoPlane::NotAtRightAngles
+            } else {
+                NoPlane::NotPlane
+            });
+        }
+        let step = sub(point(1, j), point(0, j));
+        if norm(cross(step, normal)) > PLANE * norm(step) {
+            return Err(NoPlane::Skewed);
+        }
+    }
+    Ok(normal)
+}
+
+fn is_plane(points: &[[f64; 3]]) -> bool {
+    let arms: Vec<[f64; 3]> = points.iter().map(|x| sub(*x, points[0])).collect();
+    let size = arms.iter().map(|x| norm(*x)).fold(0.0, f64::max);
+    let last = arms[arms.len() - 1];
+    let normal =
+        arms.iter().map(|x| cross(*x, last)).fold([0.0; 3], |best, x| if norm(x) > norm(best) { x } else { best });
+    let length = norm(normal);
+    length <= PLANE * size * size || arms.iter().all(|x| dot(*x, normal).abs() <= PLANE * size * length)
+}
+
+fn side(edge: Edge) -> (usize, bool) {
+    let (direction, at_end) = edge.side();
+    (if direction == ParametricDirection::U { 0 } else { 1 }, at_end)
+}
+
+fn on_edge(mesh: &Mesh, edge: Edge, parameter: f64) -> SurfacePoint {
+    let (way, at_end) = side(edge);
+    let end = if at_end { 1.0 } else { 0.0 };
+    mid_surface_point(mesh, &[], if way == 0 { [end, parameter] } else { [parameter, end] })
+}
+
+/// Normal at the point of the edge where the inner control point lies square to the edge.
+fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f64; 3], ModelError> {
+    let (way, _) = side(edge);
+    let running = 1 - way;
+    let [x, y, z, w] = mesh.control_points[control];
+    let target = [x / w, y / w, z / w];
+    let degree = mesh.degree[running];
+    let mut parameter = mesh.knots[running][j + 1..j + 1 + degree].iter().sum::<f64>() / degree as f64;
+    for _ in 0..NEWTON_STEPS {
+        let point = on_edge(mesh, edge, parameter);
+        let (tangent, second) = (point.derivatives[running], point.derivatives[2 + running]);
+        let gap = sub(point.position, target);
+        let slope = dot(tangent, tangent) + dot(gap, second);
+        let step = dot(gap, tangent) / if slope > 0.0 { slope } else { dot(tangent, tangent) };
+        parameter = (parameter - step).clamp(0.0, 1.0);
+        if step.abs() < 1e-16 {
+            break;
+        }
+    }
+    let point = on_edge(mesh, edge, parameter);
+    let normal = cross(point.derivatives[0], point.derivatives[1]);
+    let scale = norm(point.derivatives[0]) * norm(point.derivatives[1]);
+    if norm(normal) <= 1e-12 * scale || scale == 0.0 {
+        let at = point.position.map(crate::units::rounded);
+        return Err(ModelError::Collapsed { x: at[0].clone(), y: at[1].clone(), z: at[2].clone() });
+    }
+    Ok(scaled(1.0 / norm(normal), normal))
+}
+
+fn centroid(mesh: &Mesh, edge: Edge) -> [f64; 3] {
+    let (way, _) = side(edge);
+    let running = 1 - way;
+    let rule = gauss_legendre(CENTROID_POINTS);
+    let (mut length, mut moment) = (0.0, [0.0; 3]);
+    for [from, to] in Spans::of(&mesh.knots[running], mesh.degree[running]).bounds {
+        for [node, weight] in &rule {
+            let point = on_edge(mesh, edge, 0.5 * (from + to) + 0.5 * (to - from) * node);
+            let share = 0.5 * (to - from) * weight * norm(point.derivatives[running]);
+            length += share;
+            (0..3).for_each(|c| moment[c] += share * point.position[c]);
+        }
+    }
+    scaled(1.0 / length, moment)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::starting_mesh;
+    use crate::scene::parse;
+
+    #[test]
+    fn the_end_of_a_tape_spring_has_radial_normals_and_the_centroid_of_an_arc() {
+        let scene = parse(include_str!("../../pipelines/baseline.toml"), "baseline.toml").unwrap();
+        let mesh = starting_mesh(&scene).unwrap();
+        let rows = edge_rows(&mesh, Edge::UStart).unwrap();
+        for (control, normal) in rows.inner.iter().zip(&rows.normals) {
+            let [_, y, z, _] = mesh.control_points[*control];
+            let radius = y.hypot(z);
+            assert!(
+                normal[0].abs() < 1e-12
+                    && (normal[1] - y / radius).abs() < 1e-12
+                    && (normal[2] - z / radius).abs() < 1e-12
+            );
+        }
+        let half = 55.0_f64.to_radians();
+        assert!((rows.centroid[2] - 10.0 * half.sin() / half).abs() < 1e-12);
+        assert_eq!(symmetry_plane(&mesh, Edge::UEnd).map(|normal| normal.map(f64::abs)), Ok([1.0, 0.0, 0.0]));
+        assert_eq!(symmetry_plane(&mesh, Edge::VStart), Err(NoPlane::NotAtRightAngles));
+    }
+}

@@ -1,0 +1,319 @@
+//! Forces on the control points from a scene's actions, and how they change with the displacement.
+//!
+//! The virtual work of a load at a point of the surface is Σ_a δu_a · (N_a h₀ + N_a,₁ h₁ + N_a,₂ h₂), where h depends on
+//! the deformed tangents a₁, a₂ alone:
+//!
+//! | action | h |
+//! |---|---|
+//! | force, line force, dead pressure | h₀ constant |
+//! | follower pressure p | h₀ = p a₁ × a₂ |
+//! | edge moment m about the tangent τ of the edge | −m α₁ w/J² on δa₁ and m α₂ w/J² on δa₂, w = a₁ × a₂, J = abs(w) |
+//!
+//! For the moment, δW = m τ·δω with δω × n = δn, so that δW = m (τ × n)·δn = m (τ × n)·δw/J; with ν = τ × n this is
+//! m [δa₁·(a₂ × ν) + δa₂·(ν × a₁)]/J = m [−(a₂·τ) n·δa₁ + (a₁·τ) n·δa₂]/J, hence α₁ = a₂·τ and α₂ = a₁·τ. It acts on the
+//! undeformed length of the edge and turns with the shell.
+//!
+//! Loads that follow the shell have a tangent whose symmetric part goes into the stiffness. Its skew part is zero on the
+//! free unknowns where the load has a potential there (pressure on a shell whose edges are held, for instance) and is
+//! otherwise solved for as it is ([`crate::equilibrium`]).
+
+use crate::model::ModelError;
+use crate::model::place::parameters_of;
+use crate::model::supports::control_expressions;
+use crate::scene::{Action, ActionKind, Edge, History, ParametricDirection, Place, Scene};
+use crate::shell::{add, cross, dot, gauss_legendre, norm, scaled};
+use crate::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};
+
+/// The actions of a scene on a mesh.
+#[derive(Debug, Default)]
+pub struct Loads {
+    dead: Vec<Dead>,
+    following: Vec<Following>,
+}
+
+/// Forces that do not depend on the displacement.
+#[derive(Debug)]
+struct Dead {
+    history: History,
+    /// (control point, force at factor 1).
+    forces: Vec<(usize, [f64; 3])>,
+}
+
+/// Forces that turn with the shell.
+#[derive(Debug)]
+struct Following {
+    history: History,
+    kind: Kind,
+    points: Vec<LoadPoint>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    /// Along a₁ × a₂.
+    Pressure,
+    /// About a₁ or a₂ (0 or 1).
+    Moment(usize),
+}
+
+/// A quadrature point of a load.
+#[derive(Debug)]
+struct LoadPoint {
+    /// First control indices each way.
+    first: [usize; 2],
+    /// Values, derivatives ,1 and ,2 of the functions.
+    functions: [Vec<f64>; 3],
+    /// A₁, A₂.
+    tangents: [[f64; 3]; 2],
+    /// Load times quadrature weight at factor 1.
+    weight: f64,
+}
+
+/// A block of a tangent: between functions a and b of an element.
+pub struct LoadBlock {
+    /// Control points of the two functions.
+    pub points: [usize; 2],
+    /// ∂f_a/∂u_b.
+    pub block: [[f64; 3]; 3],
+}
+
+impl Loads {
+    /// The actions of a scene on a mesh.
+    ///
+    /// # Errors
+    /// Where an action does not fit the surface.
+    pub fn new(scene: &Scene, mesh: &Mesh) -> Result<Self, ModelError> {
+        let mut loads = Self::default();
+        for action in &scene.actions {
+            loads.add(scene, mesh, action)?;
+        }
+        Ok(loads)
+    }
+
+    /// Whether nothing acts.
+    pub fn is_empty(&self) -> bool {
+        self.dead.is_empty() && self.following.is_empty()
+    }
+
+    /// Whether a load turns with the shell.
+    pub fn follow(&self) -> bool {
+        !self.following.is_empty()
+    }
+
+    fn add(&mut self, scene: &Scene, mesh: &Mesh, action: &Action) -> Result<(), ModelError> {
+        let history = action.history.clone();
+        match &action.kind {
+            ActionKind::Force { on, force_n } => {
+                let places = control_expressions(scene, mesh, Place::Point(*on))?;
+                let forces = places[0].iter().map(|(point, factor)| (*point, scaled(*factor, *force_n))).collect();
+                self.dead.push(Dead { history, forces });
+            }
+            ActionKind::LineForce { on, force_n_per_mm } => {
+                let points = match on {
+                    Place::Edge(edge) => edge_points(mesh, *edge),
+                    Place::Line(direction, fraction) => {
+                        let way = way_of(*direction);
+                        line_points(mesh, way, parameters_of(&scene.geometry, [*fraction; 2])[way])
+                    }
+                    Place::Point(_) => return Err(ModelError::NotALine { action: action.name.clone() }),
+                };
+                self.dead.push(Dead { history, forces: dead_forces(mesh, &points, |_| *force_n_per_mm) });
+            }
+            ActionKind::EdgeMoment { on, moment_n } => {
+                let mut points = edge_points(mesh, *on);
+                points.iter_mut().for_each(|point| point.weight *= moment_n);
+                let running = 1 - way_of(on.side().0);
+                self.following.push(Following { history, kind: Kind::Moment(running), points });
+            }
+            ActionKind::Pressure { pressure_mpa, follower } => {
+                let mut points = area_points(mesh);
+                points.iter_mut().for_each(|point| point.weight *= pressure_mpa);
+                if *follower {
+                    self.following.push(Following { history, kind: Kind::Pressure, points });
+                } else {
+                    let along_normal = |point: &LoadPoint| cross(point.tangents[0], point.tangents[1]);
+                    self.dead.push(Dead { history, forces: dead_forces(mesh, &points, along_normal) });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Forces on the control points, N.
+    pub fn forces(&self, mesh: &Mesh, displacement: &[[f64; 3]], parameter: f64) -> Vec<[f64; 3]> {
+        let mut forces = vec![[0.0; 3]; mesh.control_points.len()];
+        for dead in &self.dead {
+            let factor = dead.history.at(parameter);
+            for (point, force) in &dead.forces {
+                forces[*point] = add(forces[*point], scaled(factor, *force));
+            }
+        }
+        for following in &self.following {
+            let factor = following.history.at(parameter);
+            for point in &following.points {
+                let (h, _) = following.kind.work(point.deformed(mesh, displacement));
+                for (a, control) in point.controls(mesh).enumerate() {
+                    for k in 0..3 {
+                        let share = factor * point.weight * point.functions[k][a];
+                        forces[control] = add(forces[control], scaled(share, h[k]));
+                    }
+                }
+            }
+        }
+        forces
+    }
+
+    /// Hands every block of ∂f/∂u to `take`.
+    pub fn tangent(&self, mesh: &Mesh, displacement: &[[f64; 3]], parameter: f64, mut take: impl FnMut(LoadBlock)) {
+        for following in &self.following {
+            let factor = following.history.at(parameter);
+            for point in &following.points {
+                let (_, slopes) = following.kind.work(point.deformed(mesh, displacement));
+                let controls: Vec<usize> = point.controls(mesh).collect();
+                for a in 0..controls.len() {
+                    for b in 0..controls.len() {
+                        let mut block = [[0.0; 3]; 3];
+                        for k in 0..3 {
+                            for l in 0..2 {
+                                let share = factor * point.weight * point.functions[k][a] * point.functions[1 + l][b];
+                                for c in 0..3 {
+                                    block[c] = add(block[c], scaled(share, slopes[k][l][c]));
+                                }
+                            }
+                        }
+                        take(LoadBlock { points: [controls[a], controls[b]], block });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// h₀, h₁, h₂.
+type Work = [[f64; 3]; 3];
+/// ∂h_k/∂a_l: `[k][l][component of h][component of a]`.
+type WorkSlopes = [[[[f64; 3]; 3]; 2]; 3];
+
+impl Kind {
+    /// What multiplies N, N,₁ and N,₂ at factor and weight 1, and its derivatives.
+    fn work(self, [a1, a2]: [[f64; 3]; 2]) -> (Work, WorkSlopes) {
+        let mut h = [[0.0; 3]; 3];
+        let mut slopes = [[[[0.0; 3]; 3]; 2]; 3];
+        let w = cross(a1, a2);
+        let unit = |c: usize| [0, 1, 2].map(|i| f64::from(u8::from(i == c)));
+        match self {
+            Kind::Pressure => {
+                h[0] = w;
+                for e in 0..3 {
+                    let columns = [cross(unit(e), a2), cross(a1, unit(e))];
+                    for l in 0..2 {
+                        (0..3).for_each(|c| slopes[0][l][c][e] = columns[l][c]);
+                    }
+                }
+            }
+            Kind::Moment(running) => {
+                let along = [a1, a2][running];
+                let length = norm(along);
+                let tangent = scaled(1.0 / length, along);
+                let square = dot(w, w);
+                let quotient = scaled(1.0 / square, w);
+                let alpha = [-dot(a2, tangent), dot(a1, tangent)];
+                h[1] = scaled(alpha[0], quotient);
+                h[2] = scaled(alpha[1], quotient);
+                for l in 0..2 {
+                    for e in 0..3 {
+                        let dw = if l == 0 { cross(unit(e), a2) } else { cross(a1, unit(e)) };
+                        let dq = add(scaled(1.0 / square, dw), scaled(-2.0 * dot(w, dw) / square, quotient));
+                        let flat = add(unit(e), scaled(-tangent[e], tangent));
+                        let dt = if l == running { scaled(1.0 / length, flat) } else { [0.0; 3] };
+                        let own = |which: usize| if which == l { tangent[e] } else { 0.0 };
+                        let dalpha = [-(own(1) + dot(a2, dt)), own(0) + dot(a1, dt)];
+                        for k in 0..2 {
+                            let column = add(scaled(dalpha[k], quotient), scaled(alpha[k], dq));
+                            (0..3).for_each(|c| slopes[1 + k][l][c][e] = column[c]);
+                        }
+                    }
+                }
+            }
+        }
+        (h, slopes)
+    }
+}
+
+impl LoadPoint {
+    fn new(mesh: &Mesh, at: [f64; 2], weight: f64) -> Self {
+        let (first, [value, one, two, ..]) = evaluate_surface(mesh, at);
+        let surface = mid_surface_point(mesh, &[], at);
+        let tangents = [surface.derivatives[0], surface.derivatives[1]];
+        Self { first, functions: [value, one, two], tangents, weight }
+    }
+
+    fn controls(&self, mesh: &Mesh) -> impl Iterator<Item = usize> + use<> {
+        let [_, n2] = mesh.control_counts();
+        let columns = mesh.degree[1] + 1;
+        let [first1, first2] = self.first;
+        (0..self.functions[0].len()).map(move |a| (first1 + a / columns) * n2 + first2 + a % columns)
+    }
+
+    /// a₁, a₂.
+    fn deformed(&self, mesh: &Mesh, displacement: &[[f64; 3]]) -> [[f64; 3]; 2] {
+        let mut tangents = self.tangents;
+        for (a, control) in self.controls(mesh).enumerate() {
+            for k in 0..2 {
+                tangents[k] = add(tangents[k], scaled(self.functions[1 + k][a], displacement[control]));
+            }
+        }
+        tangents
+    }
+}
+
+/// Forces of a load whose force per weight at a point is `force`.
+fn dead_forces(mesh: &Mesh, points: &[LoadPoint], force: impl Fn(&LoadPoint) -> [f64; 3]) -> Vec<(usize, [f64; 3])> {
+    let mut sums = vec![[0.0; 3]; mesh.control_points.len()];
+    for point in points {
+        let whole = scaled(point.weight, force(point));
+        for (a, control) in point.controls(mesh).enumerate() {
+            sums[control] = add(sums[control], scaled(point.functions[0][a], whole));
+        }
+    }
+    sums.into_iter().enumerate().filter(|(_, force)| *force != [0.0; 3]).collect()
+}
+
+fn way_of(direction: ParametricDirection) -> usize {
+    if direction == ParametricDirection::U { 0 } else { 1 }
+}
+
+fn edge_points(mesh: &Mesh, edge: Edge) -> Vec<LoadPoint> {
+    let (direction, at_end) = edge.side();
+    line_points(mesh, way_of(direction), if at_end { 1.0 } else { 0.0 })
+}
+
+/// Gauss points of a line on which parameter `way` is `at`; weights are undeformed lengths, mm.
+fn line_points(mesh: &Mesh, way: usize, at: f64) -> Vec<LoadPoint> {
+    let running = 1 - way;
+    let mut points = Vec::new();
+    for (parameter, weight) in gauss_points(mesh, running) {
+        let place = if way == 0 { [at, parameter] } else { [parameter, at] };
+        let mut point = LoadPoint::new(mesh, place, weight);
+        point.weight *= norm(point.tangents[running]);
+        points.push(point);
+    }
+    points
+}
+
+/// Gauss points of the surface; weights are parameter areas.
+fn area_points(mesh: &Mesh) -> Vec<LoadPoint> {
+    let (along, across) = (gauss_points(mesh, 0), gauss_points(mesh, 1));
+    let pairs = along.iter().flat_map(|one| across.iter().map(move |two| (one, two)));
+    pairs.map(|((u, wu), (v, wv))| LoadPoint::new(mesh, [*u, *v], wu * wv)).collect()
+}
+
+/// Parameters and weights of degree + 1 Gauss points in every span.
+fn gauss_points(mesh: &Mesh, way: usize) -> Vec<(f64, f64)> {
+    let rule = gauss_legendre(mesh.degree[way] + 1);
+    let spans = Spans::of(&mesh.knots[way], mesh.degree[way]);
+    let in_span = |[from, to]: &[f64; 2]| {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        rule.iter().map(move |[node, weight]| (middle + half * node, half * weight)).collect::<Vec<_>>()
+    };
+    spans.bounds.iter().flat_map(in_span).collect()
+}

@@ -1,0 +1,44 @@
+//! Fractions of length and angle to NURBS parameters.
+//!
+//! A rational quadratic segment of sweep s reaches the angle s/2 + 2 atan((2t − 1) tan(s/4)) at its parameter t: with
+//! the weights (1, cos(s/2), 1), the half-angle tangent about its middle is linear in t.
+
+use crate::scene::{Geometry, ParametricDirection, Place, Scene};
+use crate::spline::{Mesh, segment_count};
+
+/// Parameters of a point at fractions of the length or the angle in u and v.
+pub fn parameters_of(geometry: &Geometry, fractions: [f64; 2]) -> [f64; 2] {
+    let [u, v] = fractions;
+    match geometry {
+        Geometry::Plate { .. } | Geometry::Nurbs(_) => [u, v],
+        Geometry::TapeSpring { arc_deg, .. }
+        | Geometry::CylinderPanel { arc_deg, .. }
+        | Geometry::Annulus { arc_deg, .. } => [u, on_arc(*arc_deg, v)],
+        Geometry::SphereZone { latitude_deg: [from, to], arc_deg, .. } => [on_arc(*arc_deg, u), on_arc(to - from, v)],
+    }
+}
+
+/// Parameter at a fraction of the angle of an arc.
+fn on_arc(arc_deg: f64, fraction: f64) -> f64 {
+    let sweep = arc_deg.to_radians();
+    let segments = segment_count(sweep) as f64;
+    let segment = (fraction * segments).floor().clamp(0.0, segments - 1.0);
+    let within = fraction * segments - segment;
+    if within <= 0.0 || within >= 1.0 || within == 0.5 {
+        return (segment + within) / segments;
+    }
+    let part = sweep / segments;
+    let t = 0.5 + 0.5 * (0.5 * (within - 0.5) * part).tan() / (0.25 * part).tan();
+    (segment + t) / segments
+}
+
+/// Direction (0 or 1) of a line or an edge, and the first control index whose function stands beyond it.
+pub fn line_index(scene: &Scene, mesh: &Mesh, on: Place) -> Option<(usize, usize)> {
+    let Place::Line(direction, fraction) = on else { return None };
+    let way = if direction == ParametricDirection::U { 0 } else { 1 };
+    let parameter = parameters_of(&scene.geometry, [fraction; 2])[way];
+    let degree = mesh.degree[way];
+    let greville = |k: usize| mesh.knots[way][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;
+    let count = mesh.control_counts()[way];
+    Some((way, (0..count).find(|k| greville(*k) > parameter).unwrap_or(count)))
+}

@@ -1,0 +1,143 @@
+//! The scene's probes at an equilibrium.
+
+use crate::adapt::element_strains;
+use crate::equilibrium::{Standing, Workspace};
+use crate::model::{Discretization, control_expressions, line_index, parameters_of};
+use crate::pipeline::Reading;
+use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene};
+use crate::shell::{add, cross, norm, scaled, sub};
+use crate::spline::{Spans, mid_surface_point};
+
+/// Reads every probe of a scene at an equilibrium; `energy` is the strain energy of the model.
+pub fn read_probes(scene: &Scene, work: &mut Workspace, at: Standing, energy: f64) -> Vec<Reading> {
+    if scene.probes.is_empty() {
+        return Vec::new();
+    }
+    let forces = work.forces(at);
+    let reader = Reader { scene, discretization: work.discretization(), at, forces: &forces, energy };
+    scene.probes.iter().map(|probe| reader.read(probe)).collect()
+}
+
+struct Reader<'a> {
+    scene: &'a Scene,
+    discretization: &'a Discretization,
+    at: Standing<'a>,
+    /// What supports exert on the control points, N.
+    forces: &'a [[f64; 3]],
+    energy: f64,
+}
+
+impl Reader<'_> {
+    fn read(&self, probe: &Probe) -> Reading {
+        let (value, unit, at) = match &probe.kind {
+            ProbeKind::Displacement { on, component } => (self.displacement(*on, *component), "mm", None),
+            ProbeKind::Reaction { support, component } => self.reaction(support, *component),
+            ProbeKind::SectionMoment { on, component } => (self.section_moment(*on, *component), "N·mm", None),
+            ProbeKind::Energy => (self.energy, "N·mm", None),
+            ProbeKind::BendingStrain => {
+                let (value, at) = self.largest_bending_strain();
+                (value, "1/mm", Some(at))
+            }
+        };
+        Reading { name: probe.name.clone(), value, unit: unit.into(), at }
+    }
+
+    fn displacement(&self, on: [f64; 2], component: Component) -> f64 {
+        let mesh = &self.discretization.mesh;
+        let place = parameters_of(&self.scene.geometry, on);
+        let [after, before] = [self.at.displacement, &[]].map(|u| mid_surface_point(mesh, u, place).position);
+        let moved = sub(after, before);
+        match component {
+            Component::X => moved[0],
+            Component::Y => moved[1],
+            Component::Z => moved[2],
+            Component::Magnitude => norm(moved),
+        }
+    }
+
+    /// Force and moment that the control points of a support take.
+    fn reaction(&self, support: &str, component: Reaction) -> (f64, &'static str, Option<[f64; 2]>) {
+        let unknowns = &self.discretization.unknowns;
+        let Some(trace) = unknowns.supports().traces.iter().find(|trace| trace.name == support) else {
+            return (f64::NAN, "N", None);
+        };
+        let pole = trace.section.map_or(trace.pole, |section| {
+            let free = unknowns.of_displacement(self.at.displacement, self.at.turns, self.at.parameter);
+            add(trace.pole, unknowns.place(&free, self.at.parameter).translation(section))
+        });
+        let [force, moment] = self.resultant(trace.points.iter().copied(), pole);
+        match component {
+            Reaction::ForceX => (force[0], "N", None),
+            Reaction::ForceY => (force[1], "N", None),
+            Reaction::ForceZ => (force[2], "N", None),
+            Reaction::MomentX => (moment[0], "N·mm", None),
+            Reaction::MomentY => (moment[1], "N·mm", None),
+            Reaction::MomentZ => (moment[2], "N·mm", None),
+        }
+    }
+
+    fn position(&self, point: usize) -> [f64; 3] {
+        let [x, y, z, w] = self.discretization.mesh.control_points[point];
+        add([x / w, y / w, z / w], self.at.displacement[point])
+    }
+
+    /// Sum of the forces on control points, and of their moments about `pole`.
+    fn resultant(&self, points: impl Iterator<Item = usize>, pole: [f64; 3]) -> [[f64; 3]; 2] {
+        points.fold([[0.0; 3]; 2], |[force, moment], point| {
+            let arm = sub(self.position(point), pole);
+            [add(force, self.forces[point]), add(moment, cross(arm, self.forces[point]))]
+        })
+    }
+
+    /// By equilibrium of the side of smaller u or v: the internal forces on its control points, which are loads and
+    /// reactions there, are carried across the line. Where loads act within one element of the line, they are shared out
+    /// between the sides as the functions of the control points are.
+    fn section_moment(&self, on: Place, component: Axis) -> f64 {
+        let discretization = self.discretization;
+        let mesh = &discretization.mesh;
+        let Some((way, first_beyond)) = line_index(self.scene, mesh, on) else { return f64::NAN };
+        let places = control_expressions(self.scene, mesh, on).unwrap_or_default();
+        let count = places.len() as f64;
+        let middle = places
+            .iter()
+            .flatten()
+            .fold([0.0; 3], |sum, (point, factor)| add(sum, scaled(factor / count, self.position(*point))));
+        let n2 = mesh.control_counts()[1];
+        let loads = discretization.loads.forces(mesh, self.at.displacement, self.at.parameter);
+        let side = (0..mesh.control_points.len()).filter(|point| [point / n2, point % n2][way] < first_beyond);
+        // Supports and loads push the side; the other side holds against them.
+        let [_, moment] = side.fold([[0.0; 3]; 2], |[force, moment], point| {
+            let whole = add(self.forces[point], loads[point]);
+            let arm = sub(self.position(point), middle);
+            [add(force, whole), add(moment, cross(arm, whole))]
+        });
+        -match component {
+            Axis::X => moment[0],
+            Axis::Y => moment[1],
+            Axis::Z => moment[2],
+        }
+    }
+
+    /// Largest magnitude of the bending strain along u or v, and the middle of the element where it is.
+    fn largest_bending_strain(&self) -> (f64, [f64; 2]) {
+        let mesh = &self.discretization.mesh;
+        let tables = &self.discretization.tables;
+        let mut best = (0.0, 0);
+        for element in 0..tables.elements[0] * tables.elements[1] {
+            for (strains, lengths) in element_strains(self.discretization, self.at.displacement, element) {
+                for axis in 0..2 {
+                    let value = strains.bending[axis].abs() / (lengths[axis] * lengths[axis]);
+                    if value > best.0 {
+                        best = (value, element);
+                    }
+                }
+            }
+        }
+        let place = [best.1 / tables.elements[1], best.1 % tables.elements[1]];
+        let middle = |way: usize| {
+            let [from, to] = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds[place[way]];
+            0.5 * (from + to)
+        };
+        (best.0, [middle(0), middle(1)])
+    }
+}

@@ -1,0 +1,215 @@
+//! What a stage says of what it did: a function of model and state.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::scene::{Scene, Stage};
+
+/// What a stage reports beside the state that it made. Pure: holds no clock and no host.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "WrittenReport", into = "WrittenReport")]
+pub struct Report {
+    /// Load step, from 1.
+    pub step: u64,
+    /// The stage that ran.
+    pub stage: Stage,
+    /// Whether the stage did what it set out to do; a solve that was turned down leaves the state where it was.
+    pub outcome: Outcome,
+    /// What the parameter is.
+    pub driven_by: Parameter,
+    /// Parameter of the state.
+    pub parameter: f64,
+    /// Parameter that the stage worked at; differs from `parameter` where a solve was turned down.
+    pub attempted_parameter: f64,
+    /// Turning ends: end moment, N·mm.
+    pub moment_n_mm: f64,
+    /// Strain energy of the whole shell, N·mm.
+    pub strain_energy_n_mm: f64,
+    /// Work of loads and given motions in this stage (trapezoidal rule), N·mm.
+    pub work_n_mm: f64,
+    /// Elements (along u, along v) of the model.
+    pub elements: [usize; 2],
+    /// Free unknowns of the model.
+    pub unknowns: usize,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Numeric factorizations.
+    pub factorizations: usize,
+    /// Negative pivots of the tangent stiffness at the state; 0 where it is a stable equilibrium.
+    pub negative_pivots: u64,
+    /// |residual| / |reactions| at the end of the stage.
+    pub residual: f64,
+    /// Energy that a jump released in this stage, N·mm; 0 where nothing jumped.
+    pub energy_released_n_mm: f64,
+    /// Whether the shell jumped in this stage.
+    pub jumped: bool,
+    /// Knot spans marked each way (evaluate-indicators).
+    pub marked: [usize; 2],
+    /// Largest indicator max|κ|h each way (evaluate-indicators), dimensionless.
+    pub largest_indicator: [f64; 2],
+    /// The scene's probes at a new equilibrium; empty after other stages.
+    pub probes: Vec<Reading>,
+}
+
+/// What drives a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// Rotation of each end, degrees.
+    Rotation,
+    /// Load factor.
+    LoadFactor,
+}
+
+impl Parameter {
+    /// Of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        if scene.end_rotation().is_some() { Parameter::Rotation } else { Parameter::LoadFactor }
+    }
+
+    /// A value with its unit.
+    pub fn shown(self, value: f64) -> String {
+        match self {
+            Parameter::Rotation => format!("{value}°"),
+            Parameter::LoadFactor => format!("load factor {value}"),
+        }
+    }
+}
+
+/// What a probe of the scene measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Reading {
+    /// Name of the probe.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Unit of the value.
+    pub unit: String,
+    /// Where it is, as parameters (u, v) in [0, 1], for a largest value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f64; 2]>,
+}
+
+/// A report as it is written: JSON that names its parameter, and leaves out what the scene has no use for.
+#[derive(Clone, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "Report")]
+pub struct WrittenReport {
+    /// Load step, from 1.
+    step: u64,
+    /// The stage that ran.
+    stage: Stage,
+    /// Whether the stage did what it set out to do; a solve that was turned down leaves the state where it was.
+    outcome: Outcome,
+    /// Turning ends: rotation of each end in the state, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rotation_deg: Option<f64>,
+    /// Turning ends: rotation that the stage worked at; differs from `rotation_deg` where a solve was turned down, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    attempted_rotation_deg: Option<f64>,
+    /// Turning ends: end moment, N·mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    moment_n_mm: Option<f64>,
+    /// Other scenes: load factor of the state.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    load_factor: Option<f64>,
+    /// Other scenes: load factor that the stage worked at.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    attempted_load_factor: Option<f64>,
+    /// Strain energy of the whole shell, N·mm.
+    strain_energy_n_mm: f64,
+    /// Work of loads and given motions in this stage (trapezoidal rule), N·mm.
+    #[serde(default)]
+    work_n_mm: f64,
+    /// Elements (along u, along v) of the model.
+    elements: [usize; 2],
+    /// Free unknowns of the model.
+    unknowns: usize,
+    /// Newton iterations.
+    iterations: usize,
+    /// Numeric factorizations.
+    factorizations: usize,
+    /// Negative pivots of the tangent stiffness at the state; 0 where it is a stable equilibrium.
+    negative_pivots: u64,
+    /// |residual| / |reactions| at the end of the stage.
+    residual: f64,
+    /// Energy that a jump released in this stage, N·mm; 0 where nothing jumped.
+    energy_released_n_mm: f64,
+    /// Whether the shell jumped in this stage.
+    jumped: bool,
+    /// Knot spans marked each way (evaluate-indicators).
+    marked: [usize; 2],
+    /// Largest indicator max|κ|h each way (evaluate-indicators), dimensionless.
+    largest_indicator: [f64; 2],
+    /// The scene's probes at a new equilibrium.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    probes: Vec<Reading>,
+}
+
+impl From<WrittenReport> for Report {
+    fn from(written: WrittenReport) -> Self {
+        let driven_by = if written.load_factor.is_some() { Parameter::LoadFactor } else { Parameter::Rotation };
+        Self {
+            step: written.step,
+            stage: written.stage,
+            outcome: written.outcome,
+            driven_by,
+            parameter: written.load_factor.or(written.rotation_deg).unwrap_or(f64::NAN),
+            attempted_parameter: written.attempted_load_factor.or(written.attempted_rotation_deg).unwrap_or(f64::NAN),
+            moment_n_mm: written.moment_n_mm.unwrap_or(0.0),
+            strain_energy_n_mm: written.strain_energy_n_mm,
+            work_n_mm: written.work_n_mm,
+            elements: written.elements,
+            unknowns: written.unknowns,
+            iterations: written.iterations,
+            factorizations: written.factorizations,
+            negative_pivots: written.negative_pivots,
+            residual: written.residual,
+            energy_released_n_mm: written.energy_released_n_mm,
+            jumped: written.jumped,
+            marked: written.marked,
+            largest_indicator: written.largest_indicator,
+            probes: written.probes,
+        }
+    }
+}
+
+impl From<Report> for WrittenReport {
+    fn from(report: Report) -> Self {
+        let turning = |value: f64| (report.driven_by == Parameter::Rotation).then_some(value);
+        let stepping = |value: f64| (report.driven_by == Parameter::LoadFactor).then_some(value);
+        Self {
+            rotation_deg: turning(report.parameter),
+            attempted_rotation_deg: turning(report.attempted_parameter),
+            moment_n_mm: turning(report.moment_n_mm),
+            load_factor: stepping(report.parameter),
+            attempted_load_factor: stepping(report.attempted_parameter),
+            step: report.step,
+            stage: report.stage,
+            outcome: report.outcome,
+            strain_energy_n_mm: report.strain_energy_n_mm,
+            work_n_mm: report.work_n_mm,
+            elements: report.elements,
+            unknowns: report.unknowns,
+            iterations: report.iterations,
+            factorizations: report.factorizations,
+            negative_pivots: report.negative_pivots,
+            residual: report.residual,
+            energy_released_n_mm: report.energy_released_n_mm,
+            jumped: report.jumped,
+            marked: report.marked,
+            largest_indicator: report.largest_indicator,
+            probes: report.probes,
+        }
+    }
+}
+
+/// How a stage ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Outcome {
+    /// The stage did its work.
+    Done,
+    /// Solve: the increment jumped and will be halved until the jump is located.
+    RejectedJump,
+    /// Solve: no equilibrium was found; the increment will be halved.
+    RejectedNoEquilibrium,
+}
