@@ -28,7 +28,7 @@ pub fn evaluate_indicators(
 ) -> Indicators {
     let tables = &discretization.tables;
     let mesh = &discretization.mesh;
-    let limit = length_limit(scene, adapt.length_limit);
+    let limit = length_limit(scene, discretization, adapt.length_limit);
     let count = tables.elements[0] * tables.elements[1];
     let values: Vec<[f64; 2]> =
         (0..count).into_par_iter().map(|element| element_indicators(discretization, displacement, element)).collect();
@@ -53,13 +53,20 @@ pub fn evaluate_indicators(
 }
 
 /// Elements are not halved below this, mm.
-fn length_limit(scene: &Scene, rule: LengthLimit) -> [f64; 2] {
-    let Geometry::TapeSpring { radius_mm, .. } = scene.geometry else { todo!() };
-    let thickness_mm = scene.material.thickness_mm();
+fn length_limit(scene: &Scene, discretization: &Discretization, rule: LengthLimit) -> [f64; 2] {
+    let radius = match scene.geometry {
+        Geometry::TapeSpring { radius_mm, .. } => radius_mm,
+        _ => 1.0 / largest_curvature(discretization),
+    };
     match rule {
-        LengthLimit::SqrtRadiusThickness => [(radius_mm * thickness_mm).sqrt(); 2],
+        LengthLimit::SqrtRadiusThickness => [(radius * scene.material.thickness_mm()).sqrt(); 2],
         LengthLimit::Millimetres(length) => length,
     }
+}
+
+/// Largest principal curvature of the undeformed surface at the quadrature points, 1/mm.
+fn largest_curvature(discretization: &Discretization) -> f64 {
+    discretization.tables.points.iter().map(PointReference::largest_curvature).fold(0.0, f64::max)
 }
 
 /// max|κ_i| h_i over the quadrature points of an element.

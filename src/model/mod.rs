@@ -9,6 +9,7 @@ mod place;
 mod placement;
 mod rigid_motion;
 mod rotation;
+mod shape;
 mod supports;
 mod tables;
 mod unknowns;

@@ -1,7 +1,8 @@
 //! The mesh that a scene starts from: an exact NURBS surface with the scene's elements.
 
-use crate::scene::{Geometry, Scene};
-use crate::spline::{HomogeneousCurve, Mesh, circular_arc, segment_count, straight_line};
+use crate::model::shape::shape;
+use crate::scene::Scene;
+use crate::spline::{Mesh, Spans};
 
 /// A scene that cannot be made discrete.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -88,6 +89,14 @@ pub enum ModelError {
         /// z, mm.
         z: String,
     },
+    /// A mesh of lower degree than the surface has.
+    #[error("the surface has degree {geometry}, and the mesh degree {mesh} cannot hold it: raise mesh.degree to {geometry}")]
+    DegreeTooLow {
+        /// Degree of the geometry.
+        geometry: usize,
+        /// Degree of the mesh.
+        mesh: usize,
+    },
     /// The supports leave a rigid motion free.
     #[error("the supports do not hold the shell: {motion}; add a support, or hold more components")]
     FreeMotion {
@@ -112,52 +121,44 @@ pub enum ModelError {
 /// Control points of a mesh at most: tables and matrix of more would not fit in the memory of a large workstation.
 pub const MOST_CONTROL_POINTS: usize = 500_000;
 
-/// Builds the starting mesh. The whole shell spans x in [0, L] and the arc angle φ in [−α/2, α/2] from the apex; a
-/// half-length model spans x in [0, L/2], a half-arc model φ in [0, α/2]. Where the arc needs several segments, the
-/// elements along it are rounded up to a multiple of them.
+/// Builds the starting mesh.
 ///
 /// # Errors
-/// Where the ends leave no free control points between them.
+/// Where the ends of a tape spring leave no free control points between them, or the mesh is too large.
 pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
-    let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry else { todo!() };
-    let [degree, arc_degree] = scene.mesh.degree;
-    let [half_length, half_arc] = scene.symmetry.cuts();
-    let length = if half_length { length_mm / 2.0 } else { length_mm };
-    let half = arc_deg.to_radians() / 2.0;
-    let from = if half_arc { 0.0 } else { -half };
-    let along = straight_line(length, degree);
-    let across = circular_arc(radius_mm, from, half, arc_degree);
-
-    let divide = |whole: usize, halved: bool| if halved { whole.div_ceil(2) } else { whole };
-    let elements = [divide(scene.mesh.elements[0], half_length), divide(scene.mesh.elements[1], half_arc)];
-    let rows = elements[0] + degree;
-    if rows < 4 {
-        return Err(ModelError::TooFewRows { elements: elements[0], degree, rows, least: 4 - degree });
+    let shape = shape(scene)?;
+    if scene.end_rotation().is_some() {
+        let (elements, degree) = (shape.elements[0], scene.mesh.degree[0]);
+        let rows = elements + degree;
+        if rows < 4 {
+            return Err(ModelError::TooFewRows { elements, degree, rows, least: 4 - degree });
+        }
     }
-    let count = rows * (elements[1] + arc_degree);
+    let count = (shape.elements[0] + shape.mesh.degree[0]) * (shape.elements[1] + shape.mesh.degree[1]);
     if count > MOST_CONTROL_POINTS {
-        return Err(ModelError::TooManyControlPoints { elements, count });
+        return Err(ModelError::TooManyControlPoints { elements: shape.elements, count });
     }
-    let mesh = tensor_product(&along, &across);
-    Ok(subdivide(mesh, [1, segment_count(half - from)], elements))
+    Ok(subdivide(shape.mesh, shape.elements))
 }
 
-/// Cylinder over `across` (in the y–z plane) along `along` (x).
-fn tensor_product(along: &HomogeneousCurve, across: &HomogeneousCurve) -> Mesh {
-    let control_points = along
-        .points
-        .iter()
-        .flat_map(|[x, _, _]| across.points.iter().map(move |[y, z, w]| [x * w, *y, *z, *w]))
-        .collect();
-    Mesh { degree: [along.degree, across.degree], knots: [along.knots.clone(), across.knots.clone()], control_points }
-}
-
-/// Inserts uniform knots so that there are at least `elements` each way, the same number in each segment.
-fn subdivide(mesh: Mesh, segments: [usize; 2], elements: [usize; 2]) -> Mesh {
+/// Inserts uniform knots so that there are at least `elements` each way, the same number in each span of the mesh.
+fn subdivide(mesh: Mesh, elements: [usize; 2]) -> Mesh {
     let new = [0, 1].map(|direction| {
-        let pieces = elements[direction].div_ceil(segments[direction]);
-        let total = pieces * segments[direction];
-        (1..total).filter(|k| k % pieces != 0).map(|k| k as f64 / total as f64).collect()
+        let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
+        let pieces = elements[direction].div_ceil(bounds.len());
+        let total = (pieces * bounds.len()) as f64;
+        let inside = |(span, [from, to]): (usize, &[f64; 2])| {
+            let uniform = (bounds.len() as f64 * from - span as f64).abs() < 1e-12;
+            let (from, to) = (*from, *to);
+            // Uniform spans are divided as multiples of one number, so that equal meshes have equal bits.
+            (1..pieces)
+                .map(move |k| match uniform {
+                    true => (span * pieces + k) as f64 / total,
+                    false => from + (to - from) * k as f64 / pieces as f64,
+                })
+                .collect::<Vec<f64>>()
+        };
+        bounds.iter().enumerate().flat_map(inside).collect()
     });
     mesh.with_knots(&new)
 }

@@ -1,13 +1,14 @@
 //! Entries to a scene, and what must hold between keys.
 
 use super::data::{
-    Adapt, EndRotation, Geometry, LengthLimit, Load, Material, MeshSpec, Output, Scene, Solver, Stage, Symmetry,
+    Action, Adapt, EndRotation, Geometry, Hold, LengthLimit, Load, Material, MeshSpec, Motion, Output, Probe, Scene,
+    Solver, Stage, Support, Symmetry,
 };
 use super::document::Document;
 use super::error::{Checked, Direction, Fault, Place, Problem, SceneError, Source};
 use super::key_table as keys;
 use super::read::{Found, Reader};
-use super::{names, stage_order};
+use super::{general, names, stage_order};
 
 /// Reads a scene from TOML. `file_name` is only what errors call the text.
 ///
@@ -24,14 +25,15 @@ pub fn parse(text: &str, file_name: &str) -> Result<Scene, SceneError> {
 /// # Errors
 /// As [`parse`]; what is wrong with a setting is shown in the setting.
 pub fn parse_with_settings<S: AsRef<str>>(text: &str, file_name: &str, settings: &[S]) -> Result<Scene, SceneError> {
-    Document::read(text, settings).and_then(|document| scene(&Reader::new(&document))).map_err(|fault| {
+    let folder = std::path::Path::new(file_name).parent().unwrap_or(std::path::Path::new(""));
+    Document::read(text, settings).and_then(|document| scene(&Reader::new(&document), folder)).map_err(|fault| {
         let file = Source { name: file_name.into(), text: text.into() };
         let settings = settings.iter().map(|text| Source { name: "--set".into(), text: text.as_ref().into() });
         SceneError::new(fault, std::iter::once(file).chain(settings).collect())
     })
 }
 
-fn scene(reader: &Reader<'_, '_>) -> Checked<Scene> {
+fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
     let document = reader.document;
     names::check(document)?;
     for section in keys::SECTIONS.iter().filter(|section| section.required) {
@@ -39,29 +41,91 @@ fn scene(reader: &Reader<'_, '_>) -> Checked<Scene> {
             return Err(missing_section(document, section.name));
         }
     }
-    let geometry = geometry(reader)?;
+    let geometry = geometry(reader, folder)?;
     let material = material(reader, &geometry)?;
     let (mesh, symmetry) = mesh(reader)?;
-    let (load, increment) = load(reader)?;
+    let (load, increment) = load(reader, &geometry)?;
+    let (supports, actions, probes) = structure(reader, &load)?;
     let pipeline = stages(reader)?;
-    let adapt = adapt(reader, &pipeline)?;
-    let solver = solver(reader, &increment)?;
+    let adapt = adapt(reader, &pipeline, &geometry)?;
+    let solver = solver(reader, increment.as_ref())?;
     let output =
         Output { sync: reader.word(&keys::SYNC)?.value, mesh_history: reader.switch(&keys::MESH_HISTORY)?.value };
-    Ok(Scene {
-        geometry,
-        material,
-        mesh,
-        symmetry,
-        load,
-        supports: vec![],
-        actions: vec![],
-        probes: vec![],
-        adapt,
-        solver,
-        pipeline: pipeline.value,
-        output,
-    })
+    let pipeline = pipeline.value;
+    Ok(Scene { geometry, material, mesh, symmetry, load, supports, actions, probes, adapt, solver, pipeline, output })
+}
+
+/// Supports, actions and probes, and whether they make a problem.
+fn structure(reader: &Reader<'_, '_>, load: &Load) -> Checked<(Vec<Support>, Vec<Action>, Vec<Probe>)> {
+    let document = reader.document;
+    let tables = document.tables("support");
+    let supports: Vec<Support> =
+        tables.into_iter().enumerate().map(|(k, table)| general::support(table, k + 1)).collect::<Checked<_>>()?;
+    let actions: Vec<Action> = document
+        .tables("action")
+        .into_iter()
+        .enumerate()
+        .map(|(k, table)| general::action(table, k + 1))
+        .collect::<Checked<_>>()?;
+    let mut probes: Vec<Probe> = Vec::new();
+    for table in document.tables("probe") {
+        let name = table.place_of("name");
+        let other = table.wrong(name.as_ref(), "another probe has the same name", "reports need a name for each");
+        let probe = general::probe(table, &supports)?;
+        if probes.iter().any(|known| known.name == probe.name) {
+            return Err(other);
+        }
+        probes.push(probe);
+    }
+    match load {
+        Load::EndRotation(_) => {
+            if let Some(table) = document.tables("support").first().or(document.tables("action").first()) {
+                return Err(table.wrong(None, "turning ends are the supports and the load of this scene", "write `kind = \"steps\"` in [load] to use supports and actions of your own"));
+            }
+        }
+        Load::Steps(_) => check_steps(reader, &supports, &actions)?,
+    }
+    Ok((supports, actions, probes))
+}
+
+fn check_steps(reader: &Reader<'_, '_>, supports: &[Support], actions: &[Action]) -> Checked<()> {
+    let document = reader.document;
+    let load = document.table("load");
+    if let Some(header) = document.header("symmetry") {
+        let symmetry = document.table("symmetry");
+        return Err(symmetry.wrong(Some(&header.place), "[symmetry] belongs to turning ends", "model the part itself, and give its cut edges [[support]] tables of kind = \"symmetric\""));
+    }
+    if supports.is_empty() {
+        return Err(load.wrong(None, "nothing holds the shell", "add [[support]] tables, such as on = \"u-start\", kind = \"clamped\""));
+    }
+    for (index, (support, table)) in supports.iter().zip(document.tables("support")).enumerate() {
+        if let Some(other) = supports[..index].iter().find(|other| other.name == support.name) {
+            return Err(table.wrong(table.place_of("name").as_ref(), format!("another support is called \"{}\"", other.name), "give each a name of its own"));
+        }
+        if let Some(other) = supports[..index].iter().find(|other| other.on == support.on && hold_the_same(other, support)) {
+            let problem = format!("\"{}\" holds the same place already", other.name);
+            return Err(table.wrong(table.place_of("on").as_ref(), problem, "a place is held once: take one of them away, or hold other components"));
+        }
+    }
+    let moves = |support: &Support| match &support.hold {
+        Hold::Displacement { displacement_mm } => displacement_mm.iter().any(|value| value.is_some_and(|value| value != 0.0)),
+        Hold::Rigid { motions, .. } => motions.iter().any(|motion| matches!(motion, Motion::Given(value) if *value != 0.0)),
+        Hold::Symmetric => false,
+    };
+    if actions.is_empty() && !supports.iter().any(moves) {
+        return Err(load.wrong(None, "nothing acts on the shell", "add an [[action]], or give a support a displacement or rotation other than 0"));
+    }
+    Ok(())
+}
+
+/// Whether two supports on one place hold a common component.
+fn hold_the_same(one: &Support, other: &Support) -> bool {
+    match (&one.hold, &other.hold) {
+        (Hold::Displacement { displacement_mm: a }, Hold::Displacement { displacement_mm: b }) => {
+            (0..3).any(|c| a[c].is_some() && b[c].is_some())
+        }
+        _ => true,
+    }
 }
 
 fn missing_section(document: &Document<'_>, section: &'static str) -> Box<Fault> {
@@ -72,7 +136,10 @@ fn missing_section(document: &Document<'_>, section: &'static str) -> Box<Fault>
         .edit(&document.end, format!("{gap}[{section}]{lines}"))
 }
 
-fn geometry(reader: &Reader<'_, '_>) -> Checked<Geometry> {
+fn geometry(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Geometry> {
+    if reader.document.is_of_general_kind("geometry") {
+        return general::geometry(reader.document.table("geometry"), folder);
+    }
     reader.bare_word(&keys::GEOMETRY_KIND)?;
     Ok(Geometry::TapeSpring {
         length_mm: reader.number(&keys::LENGTH)?.value,
@@ -82,17 +149,34 @@ fn geometry(reader: &Reader<'_, '_>) -> Checked<Geometry> {
 }
 
 fn material(reader: &Reader<'_, '_>, geometry: &Geometry) -> Checked<Material> {
-    reader.bare_word(&keys::MATERIAL_KIND)?;
-    let youngs_modulus_mpa = reader.number(&keys::YOUNGS_MODULUS)?.value;
-    let poissons_ratio = reader.number(&keys::POISSONS_RATIO)?.value;
-    let thickness = reader.number(&keys::THICKNESS)?;
-    let thickness_mm = thickness.value;
-    let Geometry::TapeSpring { radius_mm, .. } = *geometry else { todo!() };
-    if thickness_mm >= radius_mm {
-        let radius = reader.number(&keys::RADIUS)?.place;
-        return Err(between(Problem::NotThin { thickness_mm, radius_mm }, thickness.place, radius, reader));
+    let plies = reader.document.tables("ply");
+    let (material, thickness) = if reader.document.is_of_general_kind("material") {
+        let table = reader.document.table("material");
+        let place = table.place_of("thickness_mm").or(Some(table.place.clone()));
+        (general::material(table, plies)?, place)
+    } else {
+        reader.bare_word(&keys::MATERIAL_KIND)?;
+        let youngs_modulus_mpa = reader.number(&keys::YOUNGS_MODULUS)?.value;
+        let poissons_ratio = reader.number(&keys::POISSONS_RATIO)?.value;
+        let thickness = reader.number(&keys::THICKNESS)?;
+        general::no_plies(plies)?;
+        (Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm: thickness.value }, thickness.place)
+    };
+    let thickness_mm = material.thickness_mm();
+    if let Some(radius_mm) = radius(geometry).filter(|radius| thickness_mm >= *radius) {
+        let place = reader.document.entry("geometry", "radius_mm").map(|entry| entry.value_place());
+        return Err(between(Problem::NotThin { thickness_mm, radius_mm }, thickness, place, reader));
     }
-    Ok(Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm })
+    Ok(material)
+}
+
+fn radius(geometry: &Geometry) -> Option<f64> {
+    match geometry {
+        Geometry::TapeSpring { radius_mm, .. }
+        | Geometry::CylinderPanel { radius_mm, .. }
+        | Geometry::SphereZone { radius_mm, .. } => Some(*radius_mm),
+        Geometry::Plate { .. } | Geometry::Annulus { .. } | Geometry::Nurbs(_) => None,
+    }
 }
 
 fn mesh(reader: &Reader<'_, '_>) -> Checked<(MeshSpec, Symmetry)> {
@@ -123,8 +207,16 @@ fn element_place(reader: &Reader<'_, '_>, index: usize) -> Option<Place> {
     Some(entry.place_of(item.span()))
 }
 
-fn load(reader: &Reader<'_, '_>) -> Checked<(Load, Found<f64>)> {
+fn load(reader: &Reader<'_, '_>, geometry: &Geometry) -> Checked<(Load, Option<Found<f64>>)> {
+    if reader.document.is_of_general_kind("load") {
+        return Ok((general::steps(reader.document.table("load"))?, None));
+    }
     reader.bare_word(&keys::LOAD_KIND)?;
+    if !matches!(geometry, Geometry::TapeSpring { .. }) {
+        let table = reader.document.table("load");
+        let place = table.place_of("kind");
+        return Err(table.wrong(place.as_ref(), "only a tape spring has ends that turn", "write `kind = \"steps\"`, and add [[support]] and [[action]] tables"));
+    }
     let sense = reader.word(&keys::SENSE)?.value;
     let rotation = reader.number(&keys::ROTATION)?;
     let increment = reader.number(&keys::INCREMENT)?;
@@ -133,7 +225,7 @@ fn load(reader: &Reader<'_, '_>) -> Checked<(Load, Found<f64>)> {
         let problem = Problem::IncrementPastTarget { increment_deg, rotation_deg };
         return Err(between(problem, increment.place, rotation.place, reader));
     }
-    Ok((Load::EndRotation(EndRotation { sense, rotation_deg, increment_deg }), increment))
+    Ok((Load::EndRotation(EndRotation { sense, rotation_deg, increment_deg }), Some(increment)))
 }
 
 fn stages(reader: &Reader<'_, '_>) -> Checked<Found<Vec<Stage>>> {
@@ -145,8 +237,21 @@ fn stages(reader: &Reader<'_, '_>) -> Checked<Found<Vec<Stage>>> {
     Ok(Found { value, place: None })
 }
 
-fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>) -> Checked<Option<Adapt>> {
-    let threshold = reader.number(&keys::THRESHOLD)?.value;
+/// A number for both directions, or one for each.
+fn one_or_pair(reader: &Reader<'_, '_>, key: &'static super::Key) -> Checked<[f64; 2]> {
+    if reader.entry(key).is_some_and(|entry| entry.value.get_ref().as_array().is_some()) {
+        let table = reader.document.table(key.section);
+        let pair: [f64; 2] = table.tuple(key.name, "[1.0, 2.0]")?;
+        if pair.iter().any(|value| *value <= 0.0) {
+            return Err(table.wrong(table.place_of(key.name).as_ref(), format!("`{}` must be positive", key.name), ""));
+        }
+        return Ok(pair);
+    }
+    Ok([reader.number(key)?.value; 2])
+}
+
+fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>, geometry: &Geometry) -> Checked<Option<Adapt>> {
+    let threshold = one_or_pair(reader, &keys::THRESHOLD)?;
     let rule = reader.entry(&keys::LENGTH_LIMIT);
     let length = reader.entry(&keys::LENGTH_LIMIT_MM);
     if let (Some(rule), Some(length)) = (rule, length) {
@@ -154,11 +259,16 @@ fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>) -> Checked<Optio
         return Err(Fault::new(problem, &length.place).also(Some(&rule.place)));
     }
     let length_limit = match length {
-        Some(_) => LengthLimit::Millimetres([reader.number(&keys::LENGTH_LIMIT_MM)?.value; 2]),
+        Some(_) => LengthLimit::Millimetres(one_or_pair(reader, &keys::LENGTH_LIMIT_MM)?),
         None => reader.word(&keys::LENGTH_LIMIT)?.value,
     };
     if pipeline.value.contains(&Stage::EvaluateIndicators) {
-        return Ok(Some(Adapt { threshold: [threshold; 2], length_limit }));
+        let flat = matches!(geometry, Geometry::Plate { .. } | Geometry::Annulus { .. });
+        if flat && length_limit == LengthLimit::SqrtRadiusThickness {
+            let table = reader.document.table("adapt");
+            return Err(table.wrong(None, "a flat shell has no radius to limit the elements by", "write `length_limit_mm`, a number or one for each direction"));
+        }
+        return Ok(Some(Adapt { threshold, length_limit }));
     }
     match reader.document.header(keys::THRESHOLD.section) {
         None => Ok(None),
@@ -166,9 +276,19 @@ fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>) -> Checked<Optio
     }
 }
 
-fn solver(reader: &Reader<'_, '_>, increment: &Found<f64>) -> Checked<Solver> {
+fn solver(reader: &Reader<'_, '_>, increment: Option<&Found<f64>>) -> Checked<Solver> {
     let tolerance = reader.number(&keys::TOLERANCE)?.value;
     let max_iterations = reader.count(&keys::MAX_ITERATIONS)?.value;
+    let Some(increment) = increment else {
+        for (key, instead) in [(&keys::LEAST_INCREMENT, "least_increment"), (&keys::SNAP_TOLERANCE, "snap_tolerance")] {
+            if let Some(entry) = reader.entry(key) {
+                let table = reader.document.table("solver");
+                let problem = format!("`{}` is in degrees, and the steps of this scene are load factors", key.name);
+                return Err(table.wrong(Some(&entry.place), problem, format!("write `{instead}` in [load]")));
+            }
+        }
+        return Ok(Solver { tolerance, max_iterations, least_increment_deg: None, snap_tolerance_deg: None });
+    };
     let least = reader.number(&keys::LEAST_INCREMENT)?;
     let snap = reader.number(&keys::SNAP_TOLERANCE)?;
     let (least_increment_deg, increment_deg, snap_tolerance_deg) = (least.value, increment.value, snap.value);
@@ -230,7 +350,7 @@ mod tests {
     fn the_keys_that_are_read_are_the_keys_of_the_table() {
         let document = Document::read::<&str>(EVERYTHING, &[]).unwrap();
         let reader = Reader::new(&document);
-        scene(&reader).unwrap();
+        scene(&reader, std::path::Path::new("")).unwrap();
         let asked: BTreeSet<_> = reader.asked().into_iter().collect();
         let table: BTreeSet<_> = KEYS.iter().map(|key| key.path()).collect();
         assert_eq!(table.len(), KEYS.len(), "a key stands twice in the table");

@@ -7,7 +7,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Checked, Fault, Place, Problem};
+use super::general::{ARRAYS, GEOMETRIES, LOADS, MATERIALS};
 use super::keys::Key;
+use super::table::Table;
 use super::{names, syntax};
 
 /// What stands in a scene file, with settings applied.
@@ -18,10 +20,20 @@ pub(super) struct Document<'t> {
     pub entries: Vec<Entry<'t>>,
     /// Keys and values in front of all tables, and tables of the wrong form.
     pub strays: Vec<Entry<'t>>,
+    /// Items of arrays of tables.
+    pub items: Vec<Item<'t>>,
     /// Behind the last text of the file.
     pub end: Place,
     /// The file.
     text: &'t str,
+}
+
+/// One table of an array of tables.
+pub(super) struct Item<'t> {
+    /// Name of the array.
+    pub array: String,
+    pub place: Place,
+    pub entries: Vec<Entry<'t>>,
 }
 
 /// A table.
@@ -79,7 +91,7 @@ impl<'t> Document<'t> {
             DeTable::parse(text).map_err(|error| syntax::fault(&error, text, &Place { source: 0, span: 0..0 }))?;
         let last = text.trim_end().len();
         let end = Place { source: 0, span: last..last };
-        let mut document = Self { headers: vec![], entries: vec![], strays: vec![], end, text };
+        let mut document = Self { headers: vec![], entries: vec![], strays: vec![], items: vec![], end, text };
         for (name, value) in in_order_of_text(root.into_inner()) {
             document.take_root(name, value);
         }
@@ -97,6 +109,40 @@ impl<'t> Document<'t> {
     /// The value of a key.
     pub fn entry(&self, section: &str, name: &str) -> Option<&Entry<'t>> {
         self.entries.iter().find(|entry| entry.section == section && entry.name == name)
+    }
+
+    /// Whether a table has a kind whose keys the table of keys does not know.
+    pub fn is_of_general_kind(&self, section: &str) -> bool {
+        let kinds: &[&str] = match section {
+            "geometry" => &GEOMETRIES,
+            "material" => &MATERIALS,
+            "load" => &LOADS,
+            _ => &[],
+        };
+        let kind = self.entry(section, "kind").and_then(|entry| entry.value.get_ref().as_str());
+        kind.is_some_and(|kind| kinds.contains(&kind))
+    }
+
+    /// A table of such a kind.
+    pub fn table(&self, section: &str) -> Table<'_, 't> {
+        let place = self.header(section).map_or(&self.end, |header| &header.place).clone();
+        let entries = self.entries.iter().filter(|entry| entry.section == section).collect();
+        Table::new(format!("[{section}]"), place, entries)
+    }
+
+    /// The tables of an array.
+    pub fn tables(&self, array: &str) -> Vec<Table<'_, 't>> {
+        let items = self.items.iter().filter(|item| item.array == array).enumerate();
+        items
+            .map(|(index, item)| {
+                let name = item.entries.iter().find(|entry| entry.name == "name");
+                let title = match name.and_then(|entry| entry.value.get_ref().as_str()) {
+                    Some(name) => format!("[[{array}]] \"{name}\""),
+                    None => format!("[[{array}]] {}", index + 1),
+                };
+                Table::new(title, item.place.clone(), item.entries.iter().collect())
+            })
+            .collect()
     }
 
     /// Where a line can be added to a table: the end of the line of its last entry, or of its header.
@@ -128,6 +174,20 @@ impl<'t> Document<'t> {
                 let before = self.text[..place.span.start].trim_end_matches([' ', '\t']);
                 self.headers.push(Header { name: section, place, own_line: before.ends_with('[') });
             }
+            DeValue::Array(tables) if ARRAYS.contains(&&*section) => {
+                for (index, table) in tables.into_iter().enumerate() {
+                    let place = Place { source: 0, span: if index == 0 { place.span.clone() } else { table.span() } };
+                    let mut entries = Vec::new();
+                    if let DeValue::Table(table) = table.into_inner() {
+                        for (key, value) in in_order_of_text(table) {
+                            let place = Place { source: 0, span: key.span() };
+                            let (name, base) = (key.into_inner().into_owned(), base.clone());
+                            entries.push(Entry { section: section.clone(), name, place, value, base });
+                        }
+                    }
+                    self.items.push(Item { array: section.clone(), place, entries });
+                }
+            }
             other => {
                 let value = Spanned::new(span, other);
                 self.strays.push(Entry { section: String::new(), name: section, place, value, base });
@@ -148,6 +208,14 @@ impl<'t> Document<'t> {
             return Err(names::setting_without_section(path.trim(), &place));
         };
         let section_place = Place { source, span: start..start + section.len() };
+        if ARRAYS.contains(&section) {
+            let problem = Problem::Table {
+                table: format!("[[{section}]]"),
+                problem: "a setting cannot say which of several tables it means".into(),
+                remedy: "change it in the scene file".into(),
+            };
+            return Err(Fault::new(problem, &section_place));
+        }
         let name_place = Place { source, span: start + section.len() + 1..place.span.end };
 
         let value_start = setting.len() - value_text.trim_start().len();

@@ -332,6 +332,15 @@ pub enum Problem {
         /// Least increment, degrees.
         least_increment_deg: f64,
     },
+    /// A table whose keys depend on its kind is wrong.
+    Table {
+        /// The table, as it stands in the file.
+        table: String,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
     /// `[adapt]` is given, and no stage reads it.
     AdaptUnused,
     /// The stages cannot run as they stand.

@@ -11,6 +11,7 @@
 //! | `syntax` | text that is not TOML |
 //! | `names`, `foreign_unit` | wrong names, and what was meant by them |
 //! | `read` | one entry to one value, within the limits of its key |
+//! | `table`, `general` | tables whose keys depend on their kind: geometries, materials, supports, actions, probes |
 //! | `check`, `stage_order` | entries to a scene; what must hold between keys, and between stages |
 //! | `error`, `explain`, `render` | what can be wrong, in words, and with the text underlined |
 //! | `identity` | hash and differences of scenes |
@@ -22,6 +23,7 @@ mod document;
 mod error;
 mod explain;
 mod foreign_unit;
+mod general;
 mod help;
 mod identity;
 mod key_table;
@@ -31,6 +33,7 @@ mod read;
 mod render;
 mod stage_order;
 mod syntax;
+mod table;
 mod write;
 
 pub use check::{parse, parse_with_settings};

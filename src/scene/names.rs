@@ -4,6 +4,7 @@
 use super::document::{Document, Entry, Header};
 use super::error::{Checked, Fault, Place, Problem};
 use super::foreign_unit::ForeignUnit;
+use super::general::ARRAYS;
 use super::key_table::{KEYS, SECTIONS};
 use super::keys::{Key, Presence, Section, Unit, toml_float};
 use super::read;
@@ -50,7 +51,15 @@ fn check_header(header: &Header) -> Checked<()> {
     if section(&header.name).is_some() {
         return Ok(());
     }
-    let meant = nearest(&header.name, SECTIONS.iter().map(|section| section.name));
+    if let Some(array) = ARRAYS.iter().find(|array| **array == header.name) {
+        let problem = Problem::Table {
+            table: format!("[{array}]"),
+            problem: "there may be several, so each is an item of an array".into(),
+            remedy: format!("write `[[{array}]]` with two brackets"),
+        };
+        return Err(Fault::new(problem, &header.place));
+    }
+    let meant = nearest(&header.name, SECTIONS.iter().map(|section| section.name).chain(ARRAYS));
     let fault = Fault::new(Problem::UnknownSection { found: header.name.clone(), meant }, &header.place);
     Err(match meant {
         Some(meant) => fault.edit(&header.place, meant),
@@ -69,6 +78,9 @@ fn stray(entry: &Entry<'_>) -> Box<Fault> {
 
 fn check_entry(document: &Document<'_>, entry: &Entry<'_>) -> Checked<()> {
     let Some(section) = section(&entry.section) else { return Ok(()) };
+    if document.is_of_general_kind(section.name) {
+        return Ok(());
+    }
     let here = || KEYS.iter().copied().filter(|key| key.section == section.name);
     let found = &*entry.name;
     if here().any(|key| key.name == found) {

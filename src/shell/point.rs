@@ -75,6 +75,17 @@ impl PointReference {
         [norm(self.derivatives[0]), norm(self.derivatives[1])]
     }
 
+    /// Magnitude of the larger principal curvature of the undeformed surface, 1/mm.
+    pub fn largest_curvature(&self) -> f64 {
+        let [a1, a2, a11, a22, a12] = self.derivatives;
+        let unit = scaled(1.0 / self.area, self.cross);
+        let [b11, b22, b12] = [a11, a22, a12].map(|second| dot(second, unit));
+        let determinant = self.area * self.area;
+        let mean = 0.5 * (b11 * dot(a2, a2) - 2.0 * b12 * dot(a1, a2) + b22 * dot(a1, a1)) / determinant;
+        let gauss = (b11 * b22 - b12 * b12) / determinant;
+        mean.abs() + (mean * mean - gauss).max(0.0).sqrt()
+    }
+
     /// Strains for derivatives u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂ of the displacement.
     pub fn strains(&self, u: &[[f64; 3]; 5]) -> Strains {
         self.deform(u).strains

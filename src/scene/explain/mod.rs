@@ -96,6 +96,11 @@ pub(super) fn explain(problem: &Problem) -> Explanation {
         Problem::SnapToleranceTooSmall { snap_tolerance_deg, least_increment_deg } => {
             values::snap_tolerance_too_small(*snap_tolerance_deg, *least_increment_deg)
         }
+        Problem::Table { table, problem, remedy } => {
+            let explanation = Explanation::new(format!("{table}: {problem}"), "");
+            let explanation = if remedy.is_empty() { explanation } else { explanation.help(remedy.clone()) };
+            explanation.help("`foldline help scene` lists every key")
+        }
         Problem::AdaptUnused => stages::adapt_unused(),
         Problem::Stages(problem) => stages::wrong_order(problem),
     }
@@ -103,6 +108,11 @@ pub(super) fn explain(problem: &Problem) -> Explanation {
 
 /// Where to look when nothing is near.
 const ALL_KEYS: &str = "`foldline help scene` lists every key";
+
+/// The type in words.
+pub(super) fn type_name(found: ValueType) -> &'static str {
+    type_words(found)
+}
 
 fn type_words(found: ValueType) -> &'static str {
     match found {

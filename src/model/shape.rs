@@ -1,0 +1,223 @@
+//! The mid-surface of a scene as an exact NURBS surface in its fewest elements.
+
+use nalgebra::DMatrix;
+
+use crate::model::ModelError;
+use crate::scene::{Geometry, NurbsPatch, Scene};
+use crate::spline::{
+    HomogeneousCurve, Mesh, basis_derivatives, basis_derivatives_len, circular_arc, find_span, straight_line,
+};
+
+/// A surface, and how many elements the scene asks for.
+pub(super) struct Shape {
+    /// Exact, with the degree of the scene's mesh.
+    pub mesh: Mesh,
+    /// Elements each way of the model.
+    pub elements: [usize; 2],
+}
+
+/// The surface of a scene. A tape spring with turning ends spans x in [0, L] and the arc angle φ in [−α/2, α/2] from the
+/// apex; its half-length model x in [0, L/2], its half-arc model φ in [0, α/2].
+///
+/// # Errors
+/// Where the degree of the mesh is below that of the surface.
+pub(super) fn shape(scene: &Scene) -> Result<Shape, ModelError> {
+    let [p, q] = scene.mesh.degree;
+    let elements = scene.mesh.elements;
+    let mesh = match &scene.geometry {
+        Geometry::TapeSpring { length_mm, radius_mm, arc_deg } => return Ok(tape_spring(scene, *length_mm, *radius_mm, *arc_deg)),
+        Geometry::CylinderPanel { length_mm, radius_mm, arc_deg, .. } => {
+            let half = arc_deg.to_radians() / 2.0;
+            translated(&straight_line(*length_mm, p), &circular_arc(*radius_mm, -half, half, q))
+        }
+        Geometry::Plate { length_mm, width_mm } => {
+            product(&straight_line(*length_mm, p), &straight_line(*width_mm, q), |u, v| {
+                [u[0] * v[2], v[0] * u[2], 0.0, u[2] * v[2]]
+            })
+        }
+        Geometry::Annulus { inner_radius_mm, outer_radius_mm, arc_deg, .. } => {
+            let mut radius = straight_line(outer_radius_mm - inner_radius_mm, p);
+            radius.points.iter_mut().for_each(|point| point[0] += inner_radius_mm * point[2]);
+            // The arc runs from the second axis towards the first: (sin, cos) at its angle.
+            product(&radius, &circular_arc(1.0, 0.0, arc_deg.to_radians(), q), |r, turn| {
+                [r[0] * turn[1], r[0] * turn[0], 0.0, r[2] * turn[2]]
+            })
+        }
+        Geometry::SphereZone { radius_mm, latitude_deg: [from, to], arc_deg, .. } => {
+            let profile = circular_arc(*radius_mm, from.to_radians(), to.to_radians(), q);
+            product(&circular_arc(1.0, 0.0, arc_deg.to_radians(), p), &profile, |turn, profile| {
+                [profile[1] * turn[1], profile[1] * turn[0], profile[0] * turn[2], profile[2] * turn[2]]
+            })
+        }
+        Geometry::Nurbs(patch) => nurbs(patch, scene.mesh.degree)?,
+    };
+    Ok(Shape { mesh, elements })
+}
+
+fn tape_spring(scene: &Scene, length_mm: f64, radius_mm: f64, arc_deg: f64) -> Shape {
+    let [degree, arc_degree] = scene.mesh.degree;
+    let [half_length, half_arc] = scene.symmetry.cuts();
+    let length = if half_length { length_mm / 2.0 } else { length_mm };
+    let half = arc_deg.to_radians() / 2.0;
+    let from = if half_arc { 0.0 } else { -half };
+    let divide = |whole: usize, halved: bool| if halved { whole.div_ceil(2) } else { whole };
+    let elements = [divide(scene.mesh.elements[0], half_length), divide(scene.mesh.elements[1], half_arc)];
+    let mesh = translated(&straight_line(length, degree), &circular_arc(radius_mm, from, half, arc_degree));
+    Shape { mesh, elements }
+}
+
+/// Cylinder over `across` (in the y–z plane) along `along` (x).
+fn translated(along: &HomogeneousCurve, across: &HomogeneousCurve) -> Mesh {
+    product(along, across, |[x, _, _], [y, z, w]| [x * w, *y, *z, *w])
+}
+
+/// Control points from those of two curves, u slow.
+fn product(
+    u: &HomogeneousCurve,
+    v: &HomogeneousCurve,
+    point: impl Fn(&[f64; 3], &[f64; 3]) -> [f64; 4],
+) -> Mesh {
+    let control_points = u.points.iter().flat_map(|a| v.points.iter().map(|b| point(a, b)).collect::<Vec<_>>()).collect();
+    Mesh { degree: [u.degree, v.degree], knots: [u.knots.clone(), v.knots.clone()], control_points }
+}
+
+/// The user's patch on [0, 1]², raised to the degree of the mesh.
+fn nurbs(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
+    let unit = |knots: &[f64]| {
+        let (first, last) = (knots[0], knots[knots.len() - 1]);
+        knots.iter().map(|knot| (knot - first) / (last - first)).collect::<Vec<f64>>()
+    };
+    let weighted = patch.control_points_mm.iter().zip(&patch.weights).map(|([x, y, z], w)| [x * w, y * w, z * w, *w]);
+    let mut mesh = Mesh {
+        degree: patch.degrees,
+        knots: [unit(&patch.knots_u), unit(&patch.knots_v)],
+        control_points: weighted.collect(),
+    };
+    for way in 0..2 {
+        if degree[way] < mesh.degree[way] {
+            return Err(ModelError::DegreeTooLow { geometry: mesh.degree[way], mesh: degree[way] });
+        }
+        while mesh.degree[way] < degree[way] {
+            mesh = raised(&mesh, way);
+        }
+    }
+    Ok(mesh)
+}
+
+/// The same surface with the degree in one direction higher by one: the space in which every distinct knot has one more
+/// multiplicity contains it, so interpolating at the Greville points is exact.
+fn raised(mesh: &Mesh, way: usize) -> Mesh {
+    let old = &mesh.knots[way];
+    let mut knots = Vec::with_capacity(2 * old.len());
+    for (index, knot) in old.iter().enumerate() {
+        knots.push(*knot);
+        if old.get(index + 1) != Some(knot) {
+            knots.push(*knot);
+        }
+    }
+    let degree = mesh.degree[way] + 1;
+    let count = knots.len() - degree - 1;
+    let greville: Vec<f64> =
+        (0..count).map(|k| (knots[k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64).clamp(0.0, 1.0)).collect();
+    let collocate = |knots: &[f64], degree: usize, count: usize| {
+        let mut matrix = DMatrix::zeros(greville.len(), count);
+        for (row, parameter) in greville.iter().enumerate() {
+            let span = find_span(knots, degree, *parameter);
+            let mut basis = vec![0.0; basis_derivatives_len(degree).max(3 * (degree + 1))];
+            basis_derivatives(knots, degree, span, *parameter, &mut basis);
+            (0..=degree).for_each(|a| matrix[(row, span - degree + a)] = basis[a]);
+        }
+        matrix
+    };
+    let counts = mesh.control_counts();
+    let values = collocate(old, mesh.degree[way], counts[way]);
+    let square = collocate(&knots, degree, count);
+    // Nonsingular by Schoenberg and Whitney: each Greville point lies inside the support of its function.
+    let map = square.lu().solve(&values).unwrap_or(values);
+    let across = counts[1 - way];
+    let mut new_counts = counts;
+    new_counts[way] = count;
+    let index = |counts: [usize; 2], along: usize, j: usize| if way == 0 { along * counts[1] + j } else { j * counts[1] + along };
+    let mut control_points = vec![[0.0; 4]; count * across];
+    for j in 0..across {
+        for row in 0..count {
+            let target = &mut control_points[index(new_counts, row, j)];
+            for column in 0..counts[way] {
+                let source = mesh.control_points[index(counts, column, j)];
+                (0..4).for_each(|c| target[c] += map[(row, column)] * source[c]);
+            }
+        }
+    }
+    let mut raised = Mesh { degree: mesh.degree, knots: mesh.knots.clone(), control_points };
+    raised.degree[way] = degree;
+    raised.knots[way] = knots;
+    raised
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::starting_mesh;
+    use crate::scene::{Seam, parse};
+    use crate::shell::{cross, dot, norm};
+    use crate::spline::mid_surface_point;
+
+    fn meshed(geometry: Geometry, degree: [usize; 2]) -> Mesh {
+        let mut scene = parse(include_str!("../../pipelines/verification/rolled-cantilever.toml"), "x.toml").unwrap();
+        scene.geometry = geometry;
+        scene.mesh.degree = degree;
+        scene.mesh.elements = [3, 5];
+        starting_mesh(&scene).unwrap()
+    }
+
+    /// Every sampled point is on the surface, and the normal points where it should.
+    fn check(mesh: &Mesh, on_surface: impl Fn([f64; 3]) -> f64, normal: impl Fn([f64; 3]) -> [f64; 3]) {
+        for sample in 0..100 {
+            let at = [(sample % 10) as f64 / 9.0, (sample / 10) as f64 / 9.0];
+            let point = mid_surface_point(mesh, &[], at);
+            assert!(on_surface(point.position).abs() < 1e-11, "{at:?}: {}", on_surface(point.position));
+            let found = cross(point.derivatives[0], point.derivatives[1]);
+            let expected = normal(point.position);
+            assert!(dot(found, expected) > (1.0 - 1e-9) * norm(found) * norm(expected), "{at:?}");
+        }
+    }
+
+    #[test]
+    fn surfaces_are_exact_and_look_the_right_way() {
+        for degree in [[2, 2], [3, 4], [5, 3]] {
+            for arc_deg in [20.0, 170.0, 360.0] {
+                let seam = (arc_deg == 360.0).then_some(Seam::Smooth);
+                let panel = Geometry::CylinderPanel { length_mm: 4.0, radius_mm: 3.0, arc_deg, seam };
+                check(&meshed(panel, degree), |[_, y, z]| y.hypot(z) - 3.0, |[_, y, z]| [0.0, y, z]);
+                let ring = Geometry::Annulus { inner_radius_mm: 1.0, outer_radius_mm: 2.5, arc_deg, seam };
+                check(&meshed(ring, degree), |[_, _, z]| z, |_| [0.0, 0.0, 1.0]);
+                let latitude_deg = [-20.0, 50.0];
+                let zone = Geometry::SphereZone { radius_mm: 2.0, latitude_deg, arc_deg, seam };
+                check(&meshed(zone, degree), |x| norm(x) - 2.0, |x| x);
+            }
+            let plate = Geometry::Plate { length_mm: 4.0, width_mm: 3.0 };
+            check(&meshed(plate, degree), |[_, _, z]| z, |_| [0.0, 0.0, 1.0]);
+        }
+    }
+
+    #[test]
+    fn a_patch_of_the_user_is_raised_exactly() {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let patch = NurbsPatch {
+            degrees: [1, 2],
+            knots_u: vec![0.0, 0.0, 2.0, 2.0],
+            knots_v: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
+            control_points_mm: vec![
+                [0.0, 0.0, 3.0],
+                [0.0, 3.0, 3.0],
+                [0.0, 3.0, 0.0],
+                [4.0, 0.0, 3.0],
+                [4.0, 3.0, 3.0],
+                [4.0, 3.0, 0.0],
+            ],
+            weights: vec![1.0, half, 1.0, 1.0, half, 1.0],
+        };
+        let mesh = meshed(Geometry::Nurbs(patch), [3, 5]);
+        check(&mesh, |[_, y, z]| y.hypot(z) - 3.0, |[_, y, z]| [0.0, y, z]);
+    }
+}
