@@ -1,6 +1,6 @@
 //! The stages of one load step, gathered into one line.
 
-use crate::pipeline::{Outcome, Record, Report};
+use crate::pipeline::{Outcome, Parameter, Record, Report};
 use crate::scene::{Scene, Stage};
 use crate::units::{count, duration};
 
@@ -22,9 +22,17 @@ impl LoadStep {
     /// One line: step, rotation, moment, elements, iterations, time, and what else happened.
     pub(super) fn line(&self) -> String {
         let Report { step, parameter, moment_n_mm, elements: [n1, n2], .. } = self.report;
+        let reached = match self.report.driven_by {
+            Parameter::Rotation => format!("{parameter:>8.3}°  {moment_n_mm:>9.3} N·mm"),
+            Parameter::LoadFactor => {
+                let probe = self.report.probes.first();
+                let reading = probe.map(|probe| format!("  {} {:>11.5} {}", probe.name, probe.value, probe.unit));
+                format!("factor {parameter:>8.4}{}", reading.unwrap_or_default())
+            }
+        };
         let elements = format!("{n1} × {n2}");
         let mut line = format!(
-            "step {step:>4}  {parameter:>8.3}°  {moment_n_mm:>9.3} N·mm  {elements:>9}  {:>3} iterations  {:>8}",
+            "step {step:>4}  {reached}  {elements:>9}  {:>3} iterations  {:>8}",
             self.iterations,
             duration(self.wall_s)
         );

@@ -7,8 +7,9 @@ use clap::Args;
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
 use super::output::{print, write_file};
-use crate::pipeline::Report;
+use crate::pipeline::{Parameter, Report};
 use crate::spline::Mesh;
+use crate::study::TapeSpring;
 use crate::units::rounded;
 use crate::view::{Picture, ViewDirection, deformed_surface, mesh_picture, moment_rotation_plot, vtu};
 
@@ -48,7 +49,10 @@ impl Arguments {
             });
         };
         // Everything is drawn before anything is written.
-        let curve = moment_rotation_plot(scene, &records, &name)?;
+        let curve = match TapeSpring::of_scene(scene) {
+            Some(_) => Some(("moment-rotation.svg", moment_rotation_plot(scene, &records, &name)?)),
+            None => None,
+        };
         let record = &records[last];
         let unusable = |source| Failure::WrongLog { log: log.clone(), source: Box::new(source) };
         let state = read.log.state(last).map_err(unusable)?;
@@ -59,16 +63,13 @@ impl Arguments {
             subtitle: subtitle(&record.report),
             ..Picture::default()
         };
-        let files = [
-            ("moment-rotation.svg", curve),
-            ("mesh.svg", mesh_picture(&samples, &picture)),
-            ("mesh.vtu", vtu(&samples)),
-        ];
+        let surface = [("mesh.svg", mesh_picture(&samples, &picture)), ("mesh.vtu", vtu(&samples))];
+        let files = curve.into_iter().chain(surface);
         let write = |(file, text): (&str, String)| {
             let path = Path::join(&folder, file);
             write_file(&path, &text).map(|()| format!("{}\n", path.display()))
         };
-        print(&files.into_iter().map(write).collect::<Result<String, Failure>>()?)
+        print(&files.map(write).collect::<Result<String, Failure>>()?)
     }
 }
 
@@ -81,7 +82,11 @@ fn cells_per_element(mesh: &Mesh) -> usize {
 /// The numbers of the state that a picture shows.
 fn subtitle(report: &Report) -> String {
     let Report { parameter, moment_n_mm, elements: [n1, n2], .. } = report;
-    format!("θ {}°, M {moment_n_mm:.2} N·mm, {n1} × {n2} elements in the model", rounded(*parameter))
+    let reached = match report.driven_by {
+        Parameter::Rotation => format!("θ {}°, M {moment_n_mm:.2} N·mm", rounded(*parameter)),
+        Parameter::LoadFactor => format!("load factor {}", rounded(*parameter)),
+    };
+    format!("{reached}, {n1} × {n2} elements in the model")
 }
 
 /// "AZIMUTH,ELEVATION".

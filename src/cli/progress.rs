@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::json_line::json_line;
 use super::load_step::Gatherer;
-use crate::pipeline::{Outcome, Record, Report, Sink, SinkError};
+use crate::pipeline::{Outcome, Parameter, Record, Report, Sink, SinkError};
 use crate::scene::Scene;
 use crate::state::State;
 use crate::units::rounded;
@@ -67,7 +67,9 @@ impl<'a, S: Sink> Shown<'a, S> {
         let gatherer = Gatherer::new(scene);
         let display = match manner {
             Manner::Quiet => Display::Quiet,
-            Manner::Live => Display::Live { bar: live_bar(target_deg, start_deg), target_deg, gatherer },
+            Manner::Live => {
+                Display::Live { bar: live_bar(Parameter::of(scene), target_deg, start_deg), target_deg, gatherer }
+            }
             Manner::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
             Manner::Json => Display::Json(Some(Box::new(io::stdout()))),
         };
@@ -112,7 +114,7 @@ impl<'a, S: Sink> Shown<'a, S> {
                     bar.println(step.line());
                 }
                 bar.set_position(thousandths(record.report.parameter));
-                bar.set_prefix(live_prefix(record.report.parameter, *target_deg));
+                bar.set_prefix(live_prefix(record.report.driven_by, record.report.parameter, *target_deg));
                 bar.set_message(live_message(&record.report));
             }
             Display::Lines { out, gatherer } => {
@@ -158,12 +160,12 @@ fn thousandths(parameter: f64) -> u64 {
     (parameter * 1000.0).max(0.0) as u64
 }
 
-fn live_bar(target_deg: f64, start_deg: f64) -> ProgressBar {
+fn live_bar(driven_by: Parameter, target_deg: f64, start_deg: f64) -> ProgressBar {
     let template = "{prefix}  {bar:10}  {wide_msg}  {elapsed}, {eta} left";
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::with_draw_target(Some(thousandths(target_deg)), ProgressDrawTarget::stderr())
         .with_style(style.progress_chars("━╸─"))
-        .with_prefix(live_prefix(start_deg, target_deg))
+        .with_prefix(live_prefix(driven_by, start_deg, target_deg))
         .with_position(thousandths(start_deg));
     bar.reset_eta();
     bar.enable_steady_tick(Duration::from_millis(200));
@@ -171,22 +173,29 @@ fn live_bar(target_deg: f64, start_deg: f64) -> ProgressBar {
 }
 
 /// What stands before the bar.
-fn live_prefix(parameter: f64, target_deg: f64) -> String {
-    format!("{parameter:.3}° of {}°", rounded(target_deg))
+fn live_prefix(driven_by: Parameter, parameter: f64, target: f64) -> String {
+    match driven_by {
+        Parameter::Rotation => format!("{parameter:.3}° of {}°", rounded(target)),
+        Parameter::LoadFactor => format!("{parameter:.4} of {}", rounded(target)),
+    }
 }
 
 /// What stands after the bar: the last stage and the numbers of the state that it made.
 fn live_message(report: &Report) -> String {
     let Report { stage, moment_n_mm, elements: [n1, n2], iterations, .. } = report;
+    let degree = if report.driven_by == Parameter::Rotation { "°" } else { "" };
     let outcome = match report.outcome {
         Outcome::Done if report.iterations > 0 => format!(", {iterations} iterations"),
         Outcome::Done => String::new(),
-        Outcome::RejectedJump => format!(" turned down at {:.3}°: jump", report.attempted_parameter),
+        Outcome::RejectedJump => format!(" turned down at {:.3}{degree}: jump", report.attempted_parameter),
         Outcome::RejectedNoEquilibrium => {
-            format!(" turned down at {:.3}°: no equilibrium", report.attempted_parameter)
+            format!(" turned down at {:.3}{degree}: no equilibrium", report.attempted_parameter)
         }
     };
-    format!("{moment_n_mm:.2} N·mm  {n1}×{n2}  {stage}{outcome}")
+    match report.driven_by {
+        Parameter::Rotation => format!("{moment_n_mm:.2} N·mm  {n1}×{n2}  {stage}{outcome}"),
+        Parameter::LoadFactor => format!("{n1}×{n2}  {stage}{outcome}"),
+    }
 }
 
 #[cfg(test)]
@@ -200,7 +209,7 @@ mod tests {
             step: 7,
             stage: Stage::Solve,
             outcome: Outcome::Done,
-            driven_by: crate::pipeline::Parameter::Rotation,
+            driven_by: Parameter::Rotation,
             work_n_mm: 0.0,
             probes: vec![],
             parameter: 9.6,
@@ -218,7 +227,7 @@ mod tests {
             marked: [0, 0],
             largest_indicator: [0.0, 0.0],
         };
-        assert_eq!(live_prefix(report.parameter, 20.0), "9.600° of 20°");
+        assert_eq!(live_prefix(Parameter::Rotation, report.parameter, 20.0), "9.600° of 20°");
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve, 5 iterations");
         report.outcome = Outcome::RejectedJump;
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve turned down at 9.615°: jump");

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::pipeline::{Outcome, Record, Report};
+use crate::pipeline::{Outcome, Parameter, Record, Report};
 use crate::scene::Stage;
 
 /// A column: its head, and whether its cells stand to the right.
@@ -30,13 +30,20 @@ const COLUMNS: [Column; 14] = [
 /// `mesh` is elements along the length × along the arc, `free` the free unknowns, `neg` the negative pivots; blank is
 /// zero. The last column says what else happened; ✗ is a solve turned down, at the rotation that it tried.
 pub fn stage_table(records: &[Record]) -> String {
+    let steps = records.first().is_some_and(|record| record.report.driven_by == Parameter::LoadFactor);
+    // Where no ends turn, the first probe stands in the place of their moment.
+    let probe = records.iter().find_map(|record| record.report.probes.first()).map(|reading| reading.name.clone());
     let rows: Vec<[String; COLUMNS.len()]> = records.iter().map(cells).collect();
     let width_of = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
         cells.chain([COLUMNS[column].0.chars().count()]).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..COLUMNS.len()).map(width_of).collect();
-    let heads = COLUMNS.map(|column| column.0.to_string());
+    let mut heads = COLUMNS.map(|column| column.0.to_string());
+    if steps {
+        heads[3] = "factor".into();
+        heads[4] = probe.unwrap_or_default();
+    }
     let mut table = String::new();
     for row in std::iter::once(&heads).chain(&rows) {
         let mut line = String::new();
@@ -59,7 +66,10 @@ fn cells(record: &Record) -> [String; COLUMNS.len()] {
         report.step.to_string(),
         report.stage.name().to_string(),
         format!("{:.3}", report.parameter),
-        format!("{:.3}", report.moment_n_mm),
+        match report.driven_by {
+            Parameter::Rotation => format!("{:.3}", report.moment_n_mm),
+            Parameter::LoadFactor => report.probes.first().map_or(String::new(), |probe| format!("{:.4}", probe.value)),
+        },
         format!("{:.3}", report.strain_energy_n_mm),
         format!("{}×{}", report.elements[0], report.elements[1]),
         report.unknowns.to_string(),
@@ -75,9 +85,10 @@ fn cells(record: &Record) -> [String; COLUMNS.len()] {
 /// What else happened, in few words.
 fn note(report: &Report) -> String {
     let attempted = report.attempted_parameter;
+    let degree = if report.driven_by == Parameter::Rotation { "°" } else { "" };
     match report.outcome {
-        Outcome::RejectedJump => format!("✗ jump at {attempted:.3}°"),
-        Outcome::RejectedNoEquilibrium => format!("✗ no solution {attempted:.3}°"),
+        Outcome::RejectedJump => format!("✗ jump at {attempted:.3}{degree}"),
+        Outcome::RejectedNoEquilibrium => format!("✗ no solution {attempted:.3}{degree}"),
         Outcome::Done if report.jumped => format!("snap, −{:.2} N·mm", report.energy_released_n_mm),
         Outcome::Done if report.marked != [0, 0] => {
             let verb = if report.stage == Stage::RefineKnots { "inserted" } else { "marked" };
@@ -117,15 +128,24 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
     let mut lines = vec![
         ("", format!("stage {}: {}, load step {}", commit.ordinal, report.stage, report.step)),
         ("outcome", outcome),
-        ("rotation", format!("{}°", report.parameter)),
+        match report.driven_by {
+            Parameter::Rotation => ("rotation", format!("{}°", report.parameter)),
+            Parameter::LoadFactor => ("load factor", report.parameter.to_string()),
+        },
     ];
     if report.attempted_parameter != report.parameter {
-        lines.push(("attempted rotation", format!("{}°", report.attempted_parameter)));
+        lines.push(match report.driven_by {
+            Parameter::Rotation => ("attempted rotation", format!("{}°", report.attempted_parameter)),
+            Parameter::LoadFactor => ("attempted factor", report.attempted_parameter.to_string()),
+        });
     }
-    lines.extend([
-        ("end moment", format!("{} N·mm", report.moment_n_mm)),
-        ("strain energy", format!("{} N·mm", report.strain_energy_n_mm)),
-    ]);
+    if report.driven_by == Parameter::Rotation {
+        lines.push(("end moment", format!("{} N·mm", report.moment_n_mm)));
+    }
+    for probe in &report.probes {
+        lines.push(("probe", format!("{} = {} {}", probe.name, probe.value, probe.unit)));
+    }
+    lines.push(("strain energy", format!("{} N·mm", report.strain_energy_n_mm)));
     if report.jumped {
         lines.push(("energy released", format!("{} N·mm", report.energy_released_n_mm)));
     }

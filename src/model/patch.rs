@@ -90,7 +90,9 @@ pub enum ModelError {
         z: String,
     },
     /// A mesh of lower degree than the surface has.
-    #[error("the surface has degree {geometry}, and the mesh degree {mesh} cannot hold it: raise mesh.degree to {geometry}")]
+    #[error(
+        "the surface has degree {geometry}, and the mesh degree {mesh} cannot hold it: raise mesh.degree to {geometry}"
+    )]
     DegreeTooLow {
         /// Degree of the geometry.
         geometry: usize,

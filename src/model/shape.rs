@@ -25,7 +25,9 @@ pub(super) fn shape(scene: &Scene) -> Result<Shape, ModelError> {
     let [p, q] = scene.mesh.degree;
     let elements = scene.mesh.elements;
     let mesh = match &scene.geometry {
-        Geometry::TapeSpring { length_mm, radius_mm, arc_deg } => return Ok(tape_spring(scene, *length_mm, *radius_mm, *arc_deg)),
+        Geometry::TapeSpring { length_mm, radius_mm, arc_deg } => {
+            return Ok(tape_spring(scene, *length_mm, *radius_mm, *arc_deg));
+        }
         Geometry::CylinderPanel { length_mm, radius_mm, arc_deg, .. } => {
             let half = arc_deg.to_radians() / 2.0;
             translated(&straight_line(*length_mm, p), &circular_arc(*radius_mm, -half, half, q))
@@ -72,12 +74,9 @@ fn translated(along: &HomogeneousCurve, across: &HomogeneousCurve) -> Mesh {
 }
 
 /// Control points from those of two curves, u slow.
-fn product(
-    u: &HomogeneousCurve,
-    v: &HomogeneousCurve,
-    point: impl Fn(&[f64; 3], &[f64; 3]) -> [f64; 4],
-) -> Mesh {
-    let control_points = u.points.iter().flat_map(|a| v.points.iter().map(|b| point(a, b)).collect::<Vec<_>>()).collect();
+fn product(u: &HomogeneousCurve, v: &HomogeneousCurve, point: impl Fn(&[f64; 3], &[f64; 3]) -> [f64; 4]) -> Mesh {
+    let control_points =
+        u.points.iter().flat_map(|a| v.points.iter().map(|b| point(a, b)).collect::<Vec<_>>()).collect();
     Mesh { degree: [u.degree, v.degree], knots: [u.knots.clone(), v.knots.clone()], control_points }
 }
 
@@ -117,8 +116,9 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
     }
     let degree = mesh.degree[way] + 1;
     let count = knots.len() - degree - 1;
-    let greville: Vec<f64> =
-        (0..count).map(|k| (knots[k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64).clamp(0.0, 1.0)).collect();
+    let greville: Vec<f64> = (0..count)
+        .map(|k| (knots[k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64).clamp(0.0, 1.0))
+        .collect();
     let collocate = |knots: &[f64], degree: usize, count: usize| {
         let mut matrix = DMatrix::zeros(greville.len(), count);
         for (row, parameter) in greville.iter().enumerate() {
@@ -137,7 +137,9 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
     let across = counts[1 - way];
     let mut new_counts = counts;
     new_counts[way] = count;
-    let index = |counts: [usize; 2], along: usize, j: usize| if way == 0 { along * counts[1] + j } else { j * counts[1] + along };
+    let index = |counts: [usize; 2], along: usize, j: usize| {
+        if way == 0 { along * counts[1] + j } else { j * counts[1] + along }
+    };
     let mut control_points = vec![[0.0; 4]; count * across];
     for j in 0..across {
         for row in 0..count {

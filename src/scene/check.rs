@@ -80,7 +80,11 @@ fn structure(reader: &Reader<'_, '_>, load: &Load) -> Checked<(Vec<Support>, Vec
     match load {
         Load::EndRotation(_) => {
             if let Some(table) = document.tables("support").first().or(document.tables("action").first()) {
-                return Err(table.wrong(None, "turning ends are the supports and the load of this scene", "write `kind = \"steps\"` in [load] to use supports and actions of your own"));
+                return Err(table.wrong(
+                    None,
+                    "turning ends are the supports and the load of this scene",
+                    "write `kind = \"steps\"` in [load] to use supports and actions of your own",
+                ));
             }
         }
         Load::Steps(_) => check_steps(reader, &supports, &actions)?,
@@ -93,27 +97,53 @@ fn check_steps(reader: &Reader<'_, '_>, supports: &[Support], actions: &[Action]
     let load = document.table("load");
     if let Some(header) = document.header("symmetry") {
         let symmetry = document.table("symmetry");
-        return Err(symmetry.wrong(Some(&header.place), "[symmetry] belongs to turning ends", "model the part itself, and give its cut edges [[support]] tables of kind = \"symmetric\""));
+        return Err(symmetry.wrong(
+            Some(&header.place),
+            "[symmetry] belongs to turning ends",
+            "model the part itself, and give its cut edges [[support]] tables of kind = \"symmetric\"",
+        ));
     }
     if supports.is_empty() {
-        return Err(load.wrong(None, "nothing holds the shell", "add [[support]] tables, such as on = \"u-start\", kind = \"clamped\""));
+        return Err(load.wrong(
+            None,
+            "nothing holds the shell",
+            "add [[support]] tables, such as on = \"u-start\", kind = \"clamped\"",
+        ));
     }
     for (index, (support, table)) in supports.iter().zip(document.tables("support")).enumerate() {
         if let Some(other) = supports[..index].iter().find(|other| other.name == support.name) {
-            return Err(table.wrong(table.place_of("name").as_ref(), format!("another support is called \"{}\"", other.name), "give each a name of its own"));
+            return Err(table.wrong(
+                table.place_of("name").as_ref(),
+                format!("another support is called \"{}\"", other.name),
+                "give each a name of its own",
+            ));
         }
-        if let Some(other) = supports[..index].iter().find(|other| other.on == support.on && hold_the_same(other, support)) {
+        if let Some(other) =
+            supports[..index].iter().find(|other| other.on == support.on && hold_the_same(other, support))
+        {
             let problem = format!("\"{}\" holds the same place already", other.name);
-            return Err(table.wrong(table.place_of("on").as_ref(), problem, "a place is held once: take one of them away, or hold other components"));
+            return Err(table.wrong(
+                table.place_of("on").as_ref(),
+                problem,
+                "a place is held once: take one of them away, or hold other components",
+            ));
         }
     }
     let moves = |support: &Support| match &support.hold {
-        Hold::Displacement { displacement_mm } => displacement_mm.iter().any(|value| value.is_some_and(|value| value != 0.0)),
-        Hold::Rigid { motions, .. } => motions.iter().any(|motion| matches!(motion, Motion::Given(value) if *value != 0.0)),
+        Hold::Displacement { displacement_mm } => {
+            displacement_mm.iter().any(|value| value.is_some_and(|value| value != 0.0))
+        }
+        Hold::Rigid { motions, .. } => {
+            motions.iter().any(|motion| matches!(motion, Motion::Given(value) if *value != 0.0))
+        }
         Hold::Symmetric => false,
     };
     if actions.is_empty() && !supports.iter().any(moves) {
-        return Err(load.wrong(None, "nothing acts on the shell", "add an [[action]], or give a support a displacement or rotation other than 0"));
+        return Err(load.wrong(
+            None,
+            "nothing acts on the shell",
+            "add an [[action]], or give a support a displacement or rotation other than 0",
+        ));
     }
     Ok(())
 }
@@ -215,7 +245,11 @@ fn load(reader: &Reader<'_, '_>, geometry: &Geometry) -> Checked<(Load, Option<F
     if !matches!(geometry, Geometry::TapeSpring { .. }) {
         let table = reader.document.table("load");
         let place = table.place_of("kind");
-        return Err(table.wrong(place.as_ref(), "only a tape spring has ends that turn", "write `kind = \"steps\"`, and add [[support]] and [[action]] tables"));
+        return Err(table.wrong(
+            place.as_ref(),
+            "only a tape spring has ends that turn",
+            "write `kind = \"steps\"`, and add [[support]] and [[action]] tables",
+        ));
     }
     let sense = reader.word(&keys::SENSE)?.value;
     let rotation = reader.number(&keys::ROTATION)?;
@@ -266,7 +300,11 @@ fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>, geometry: &Geome
         let flat = matches!(geometry, Geometry::Plate { .. } | Geometry::Annulus { .. });
         if flat && length_limit == LengthLimit::SqrtRadiusThickness {
             let table = reader.document.table("adapt");
-            return Err(table.wrong(None, "a flat shell has no radius to limit the elements by", "write `length_limit_mm`, a number or one for each direction"));
+            return Err(table.wrong(
+                None,
+                "a flat shell has no radius to limit the elements by",
+                "write `length_limit_mm`, a number or one for each direction",
+            ));
         }
         return Ok(Some(Adapt { threshold, length_limit }));
     }

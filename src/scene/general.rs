@@ -43,7 +43,8 @@ pub(super) fn geometry(table: Table<'_, '_>, folder: &std::path::Path) -> Checke
             let inner_radius_mm = table.number("inner_radius_mm", LENGTH, "6.0")?;
             let outer_radius_mm = table.number("outer_radius_mm", LENGTH, "10.0")?;
             if inner_radius_mm >= outer_radius_mm {
-                let problem = format!("the inner radius, {inner_radius_mm} mm, is not below the outer, {outer_radius_mm} mm");
+                let problem =
+                    format!("the inner radius, {inner_radius_mm} mm, is not below the outer, {outer_radius_mm} mm");
                 return Err(table.wrong(table.place_of("inner_radius_mm").as_ref(), problem, "exchange them"));
             }
             Geometry::Annulus { inner_radius_mm, outer_radius_mm, arc_deg, seam: seam(&table, arc_deg)? }
@@ -108,7 +109,13 @@ fn nurbs(table: &Table<'_, '_>, folder: &std::path::Path) -> Checked<NurbsPatch>
         }
         None => {
             let degrees: [f64; 2] = table.tuple("degrees", "[1, 2]")?;
-            let missing = |name: &str| table.wrong(None, format!("`{name}` is missing"), "a nurbs surface has degrees, knots_u, knots_v, control_points_mm and, if it is rational, weights");
+            let missing = |name: &str| {
+                table.wrong(
+                    None,
+                    format!("`{name}` is missing"),
+                    "a nurbs surface has degrees, knots_u, knots_v, control_points_mm and, if it is rational, weights",
+                )
+            };
             NurbsFile {
                 degrees: degrees.map(|degree| degree.max(0.0) as usize),
                 knots_u: table.maybe_numbers("knots_u")?.ok_or_else(|| missing("knots_u"))?,
@@ -130,7 +137,9 @@ fn nurbs(table: &Table<'_, '_>, folder: &std::path::Path) -> Checked<NurbsPatch>
     if patch.weights.is_empty() {
         patch.weights = vec![1.0; patch.control_points_mm.len()];
     }
-    sound(&patch).map_err(|problem| table.wrong(None, problem, "knots are ascending and clamped: the first and the last stand degree + 1 times"))?;
+    sound(&patch).map_err(|problem| {
+        table.wrong(None, problem, "knots are ascending and clamped: the first and the last stand degree + 1 times")
+    })?;
     Ok(patch)
 }
 
@@ -142,7 +151,11 @@ fn sound(patch: &NurbsPatch) -> Result<(), String> {
             return Err(format!("degree {degree} in {name} is not offered: 1 to 5 are"));
         }
         if knots.len() < 2 * (degree + 1) {
-            return Err(format!("{} knots in {name} are too few for degree {degree}: at least {}", knots.len(), 2 * (degree + 1)));
+            return Err(format!(
+                "{} knots in {name} are too few for degree {degree}: at least {}",
+                knots.len(),
+                2 * (degree + 1)
+            ));
         }
         if knots.iter().any(|knot| !knot.is_finite()) || knots.windows(2).any(|pair| pair[1] < pair[0]) {
             return Err(format!("the knots in {name} are not ascending numbers"));
@@ -151,16 +164,28 @@ fn sound(patch: &NurbsPatch) -> Result<(), String> {
         for group in knots.chunk_by(|a, b| a == b) {
             let at_end = ends.contains(&group[0]);
             if at_end && group.len() != degree + 1 {
-                return Err(format!("the knots in {name} are not clamped: {} stands {} times at an end, not {}", group[0], group.len(), degree + 1));
+                return Err(format!(
+                    "the knots in {name} are not clamped: {} stands {} times at an end, not {}",
+                    group[0],
+                    group.len(),
+                    degree + 1
+                ));
             }
             if !at_end && group.len() > degree {
-                return Err(format!("knot {} in {name} stands {} times: the surface would tear", group[0], group.len()));
+                return Err(format!(
+                    "knot {} in {name} stands {} times: the surface would tear",
+                    group[0],
+                    group.len()
+                ));
             }
         }
         expected *= knots.len() - degree - 1;
     }
     if patch.control_points_mm.len() != expected {
-        return Err(format!("the knots ask for {expected} control points, and there are {}", patch.control_points_mm.len()));
+        return Err(format!(
+            "the knots ask for {expected} control points, and there are {}",
+            patch.control_points_mm.len()
+        ));
     }
     if patch.weights.len() != expected {
         return Err(format!("there are {expected} control points and {} weights", patch.weights.len()));
@@ -176,9 +201,11 @@ fn sound(patch: &NurbsPatch) -> Result<(), String> {
 
 /// Moduli of one table; what is missing comes from `default`.
 fn law(table: &Table<'_, '_>, default: Option<OrthotropicLaw>) -> Checked<OrthotropicLaw> {
-    let modulus = |name: &'static str, default: Option<f64>| match (table.maybe_number(name, MODULUS)?, default) {
+    let modulus = |name: &'static str, default: Option<f64>| {
+        match (table.maybe_number(name, MODULUS)?, default) {
         (Some(value), _) | (None, Some(value)) => Ok(value),
         (None, None) => Err(table.wrong(None, format!("`{name}` is missing"), "an orthotropic layer has youngs_modulus_1_mpa, youngs_modulus_2_mpa, poissons_ratio_12, shear_modulus_12_mpa")),
+    }
     };
     let ratio = Range { above: -10.0, most: 10.0, reason: "Poisson's ratio nu12 is below sqrt(E1/E2) in magnitude" };
     let law = OrthotropicLaw {
@@ -187,13 +214,27 @@ fn law(table: &Table<'_, '_>, default: Option<OrthotropicLaw>) -> Checked<Orthot
         poissons_ratio_12: match (table.maybe_number("poissons_ratio_12", ratio)?, default) {
             (Some(value), _) => value,
             (None, Some(law)) => law.poissons_ratio_12,
-            (None, None) => return Err(table.wrong(None, "`poissons_ratio_12` is missing", "write for example `poissons_ratio_12 = 0.3`")),
+            (None, None) => {
+                return Err(table.wrong(
+                    None,
+                    "`poissons_ratio_12` is missing",
+                    "write for example `poissons_ratio_12 = 0.3`",
+                ));
+            }
         },
         shear_modulus_12_mpa: modulus("shear_modulus_12_mpa", default.map(|law| law.shear_modulus_12_mpa))?,
     };
     if law.poissons_ratio_12.powi(2) >= law.youngs_modulus_1_mpa / law.youngs_modulus_2_mpa {
-        let problem = format!("nu12 = {} is too large for E1/E2 = {}: the layer would have no stiffness", law.poissons_ratio_12, law.youngs_modulus_1_mpa / law.youngs_modulus_2_mpa);
-        return Err(table.wrong(table.place_of("poissons_ratio_12").as_ref(), problem, "nu12 squared must be below E1/E2"));
+        let problem = format!(
+            "nu12 = {} is too large for E1/E2 = {}: the layer would have no stiffness",
+            law.poissons_ratio_12,
+            law.youngs_modulus_1_mpa / law.youngs_modulus_2_mpa
+        );
+        return Err(table.wrong(
+            table.place_of("poissons_ratio_12").as_ref(),
+            problem,
+            "nu12 squared must be below E1/E2",
+        ));
     }
     Ok(law)
 }
@@ -213,7 +254,11 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
     let any = ["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa"];
     let default = if any.iter().any(|name| table.entry(name).is_some()) { Some(law(&table, None)?) } else { None };
     if plies.is_empty() {
-        return Err(table.wrong(None, "a laminate has no plies", "add `[[ply]]` tables from bottom to top, each with thickness_mm and angle_deg"));
+        return Err(table.wrong(
+            None,
+            "a laminate has no plies",
+            "add `[[ply]]` tables from bottom to top, each with thickness_mm and angle_deg",
+        ));
     }
     table.finish()?;
     let mut laminate = Vec::new();
@@ -231,7 +276,11 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
 /// Refuses plies that belong to no laminate.
 pub(super) fn no_plies(plies: Vec<Table<'_, '_>>) -> Checked<()> {
     match plies.first() {
-        Some(ply) => Err(ply.wrong(None, "plies belong to a laminate", "write `kind = \"laminate\"` in [material], or take the [[ply]] tables away")),
+        Some(ply) => Err(ply.wrong(
+            None,
+            "plies belong to a laminate",
+            "write `kind = \"laminate\"` in [material], or take the [[ply]] tables away",
+        )),
         None => Ok(()),
     }
 }
@@ -247,11 +296,15 @@ pub(super) fn steps(table: Table<'_, '_>) -> Checked<Load> {
         snap_tolerance: table.number_or("snap_tolerance", positive, 1e-3)?,
     };
     if load.increment > load.factor {
-        let problem = format!("the increment, {}, goes past the load factor at the end, {}", load.increment, load.factor);
+        let problem =
+            format!("the increment, {}, goes past the load factor at the end, {}", load.increment, load.factor);
         return Err(table.wrong(table.place_of("increment").as_ref(), problem, "make it smaller"));
     }
     if load.least_increment > load.increment || load.snap_tolerance < load.least_increment {
-        let problem = format!("least_increment = {} must be at most the increment ({}) and at most snap_tolerance ({})", load.least_increment, load.increment, load.snap_tolerance);
+        let problem = format!(
+            "least_increment = {} must be at most the increment ({}) and at most snap_tolerance ({})",
+            load.least_increment, load.increment, load.snap_tolerance
+        );
         return Err(table.wrong(table.place_of("least_increment").as_ref(), problem, "make it smaller"));
     }
     table.finish()?;
@@ -267,8 +320,7 @@ fn place(table: &Table<'_, '_>) -> Checked<Place> {
         let [u, v] = point(table)?;
         return Ok(Place::Point([u, v]));
     };
-    let edges =
-        [("u-start", Edge::UStart), ("u-end", Edge::UEnd), ("v-start", Edge::VStart), ("v-end", Edge::VEnd)];
+    let edges = [("u-start", Edge::UStart), ("u-end", Edge::UEnd), ("v-start", Edge::VStart), ("v-end", Edge::VEnd)];
     if let Some((_, edge)) = edges.iter().find(|(name, _)| *name == text) {
         return Ok(Place::Edge(*edge));
     }
@@ -301,7 +353,11 @@ fn point(table: &Table<'_, '_>) -> Checked<[f64; 2]> {
 fn edge(table: &Table<'_, '_>, what: &str) -> Checked<Edge> {
     match place(table)? {
         Place::Edge(edge) => Ok(edge),
-        _ => Err(table.wrong(table.place_of("on").as_ref(), format!("{what} needs a whole edge"), "write `on = \"u-start\"`, \"u-end\", \"v-start\" or \"v-end\"")),
+        _ => Err(table.wrong(
+            table.place_of("on").as_ref(),
+            format!("{what} needs a whole edge"),
+            "write `on = \"u-start\"`, \"u-end\", \"v-start\" or \"v-end\"",
+        )),
     }
 }
 
@@ -309,7 +365,11 @@ fn history(table: &Table<'_, '_>) -> Checked<History> {
     let rows: Vec<[f64; 2]> = table.maybe_rows("history", "[[0.0, 0.0], [1.0, 1.0]]")?.unwrap_or_default();
     if rows.windows(2).any(|pair| pair[1][0] <= pair[0][0]) || rows.first().is_some_and(|row| row[0] < 0.0) {
         let remedy = "each row is [load factor, factor]; load factors start at 0 or later and grow from row to row";
-        return Err(table.wrong(table.place_of("history").as_ref(), "the load factors of `history` do not grow", remedy));
+        return Err(table.wrong(
+            table.place_of("history").as_ref(),
+            "the load factors of `history` do not grow",
+            remedy,
+        ));
     }
     if rows.first().is_some_and(|row| row[0] == 0.0 && row[1] != 0.0) {
         let remedy = "the run starts from the undeformed shell: the factor at load factor 0 must be 0";
@@ -328,9 +388,14 @@ pub(super) fn support(table: Table<'_, '_>, ordinal: usize) -> Checked<Support> 
         "hinged" => (place(&table)?, Hold::Displacement { displacement_mm: [zero; 3] }),
         "fixed" => (place(&table)?, Hold::Displacement { displacement_mm: held(&table)? }),
         "displacement" => {
-            let displacement_mm = [table.maybe_number("x_mm", ANY)?, table.maybe_number("y_mm", ANY)?, table.maybe_number("z_mm", ANY)?];
+            let displacement_mm =
+                [table.maybe_number("x_mm", ANY)?, table.maybe_number("y_mm", ANY)?, table.maybe_number("z_mm", ANY)?];
             if displacement_mm == [None; 3] {
-                return Err(table.wrong(None, "no component is given", "write `x_mm`, `y_mm` or `z_mm`; those left out are free"));
+                return Err(table.wrong(
+                    None,
+                    "no component is given",
+                    "write `x_mm`, `y_mm` or `z_mm`; those left out are free",
+                ));
             }
             (place(&table)?, Hold::Displacement { displacement_mm })
         }
@@ -353,11 +418,21 @@ fn held(table: &Table<'_, '_>) -> Checked<[Option<f64>; 3]> {
     for word in &words {
         match ["x", "y", "z"].iter().position(|axis| axis == word) {
             Some(axis) => held[axis] = Some(0.0),
-            None => return Err(table.wrong(table.place_of("hold").as_ref(), format!("`hold` cannot name \"{word}\""), "components are \"x\", \"y\" and \"z\"")),
+            None => {
+                return Err(table.wrong(
+                    table.place_of("hold").as_ref(),
+                    format!("`hold` cannot name \"{word}\""),
+                    "components are \"x\", \"y\" and \"z\"",
+                ));
+            }
         }
     }
     if held == [None; 3] {
-        return Err(table.wrong(table.place_of("hold").as_ref(), "`hold` holds nothing", "name at least one of \"x\", \"y\", \"z\""));
+        return Err(table.wrong(
+            table.place_of("hold").as_ref(),
+            "`hold` holds nothing",
+            "name at least one of \"x\", \"y\", \"z\"",
+        ));
     }
     Ok(held)
 }
@@ -369,7 +444,13 @@ fn rigid(table: &Table<'_, '_>) -> Checked<Hold> {
         let Some(entry) = table.entry(name) else { continue };
         *motion = match entry.value.get_ref().as_str() {
             Some("free") => Motion::FREE,
-            Some(_) => return Err(table.wrong(Some(&entry.value_place()), format!("`{name}` must be a number or \"free\""), "0.0 holds the motion")),
+            Some(_) => {
+                return Err(table.wrong(
+                    Some(&entry.value_place()),
+                    format!("`{name}` must be a number or \"free\""),
+                    "0.0 holds the motion",
+                ));
+            }
             None => Motion::Given(table.number_or(name, ANY, 0.0)?),
         };
     }
@@ -387,13 +468,18 @@ pub(super) fn action(table: Table<'_, '_>, ordinal: usize) -> Checked<Action> {
         "line-force" => {
             let on = place(&table)?;
             if matches!(on, Place::Point(_)) {
-                return Err(table.wrong(table.place_of("on").as_ref(), "a force per length needs a length", "write an edge or a line in `on`, or use `kind = \"force\"` and `force_n`"));
+                return Err(table.wrong(
+                    table.place_of("on").as_ref(),
+                    "a force per length needs a length",
+                    "write an edge or a line in `on`, or use `kind = \"force\"` and `force_n`",
+                ));
             }
             ActionKind::LineForce { on, force_n_per_mm: table.tuple("force_n_per_mm", "[0.0, 0.0, 1.0]")? }
         }
-        "edge-moment" => {
-            ActionKind::EdgeMoment { on: edge(&table, "an edge moment")?, moment_n: table.number("moment_n", ANY, "1.0")? }
-        }
+        "edge-moment" => ActionKind::EdgeMoment {
+            on: edge(&table, "an edge moment")?,
+            moment_n: table.number("moment_n", ANY, "1.0")?,
+        },
         _ => ActionKind::Pressure {
             pressure_mpa: table.number("pressure_mpa", ANY, "0.001")?,
             follower: table.switch_or("follower", true)?,
@@ -419,11 +505,17 @@ const REACTIONS: [(&str, Reaction); 6] = [
 /// One `[[probe]]`.
 pub(super) fn probe(table: Table<'_, '_>, supports: &[Support]) -> Checked<Probe> {
     let Some(name) = table.maybe_text("name")? else {
-        return Err(table.wrong(None, "`name` is missing", "write what reports should call it, such as `name = \"tip\"`"));
+        return Err(table.wrong(
+            None,
+            "`name` is missing",
+            "write what reports should call it, such as `name = \"tip\"`",
+        ));
     };
     let kinds = ["displacement", "reaction", "section-moment", "energy", "bending-strain"];
     let kind = match table.word("kind", &kinds.map(|kind| (kind, kind)))? {
-        "displacement" => ProbeKind::Displacement { on: point(&table)?, component: table.word("component", &COMPONENTS)? },
+        "displacement" => {
+            ProbeKind::Displacement { on: point(&table)?, component: table.word("component", &COMPONENTS)? }
+        }
         "reaction" => {
             let known: Vec<String> = supports.iter().map(|support| format!("\"{}\"", support.name)).collect();
             let remedy = match known.is_empty() {
@@ -434,13 +526,23 @@ pub(super) fn probe(table: Table<'_, '_>, supports: &[Support]) -> Checked<Probe
                 return Err(table.wrong(None, "`support` is missing", remedy));
             };
             if supports.iter().all(|known| known.name != support) {
-                return Err(table.wrong(table.place_of("support").as_ref(), format!("no support is called \"{support}\""), remedy));
+                return Err(table.wrong(
+                    table.place_of("support").as_ref(),
+                    format!("no support is called \"{support}\""),
+                    remedy,
+                ));
             }
             ProbeKind::Reaction { support, component: table.word("component", &REACTIONS)? }
         }
         "section-moment" => match place(&table)? {
             on @ Place::Line(..) => ProbeKind::SectionMoment { on, component: table.word("component", &AXES)? },
-            _ => return Err(table.wrong(table.place_of("on").as_ref(), "a section is a line", "write for example `on = \"u=0.5\"`")),
+            _ => {
+                return Err(table.wrong(
+                    table.place_of("on").as_ref(),
+                    "a section is a line",
+                    "write for example `on = \"u=0.5\"`",
+                ));
+            }
         },
         "energy" => ProbeKind::Energy,
         _ => ProbeKind::BendingStrain,

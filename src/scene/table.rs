@@ -114,7 +114,11 @@ impl<'d, 't> Table<'d, 't> {
     pub fn maybe_numbers(&self, name: &'static str) -> Checked<Option<Vec<f64>>> {
         let Some(entry) = self.entry(name) else { return Ok(None) };
         let items = self.items(entry, "a list of numbers")?;
-        items.into_iter().map(|item| self.checked(entry, item, ANY, "a list of numbers")).collect::<Checked<_>>().map(Some)
+        items
+            .into_iter()
+            .map(|item| self.checked(entry, item, ANY, "a list of numbers"))
+            .collect::<Checked<_>>()
+            .map(Some)
     }
 
     /// A fixed count of numbers, if they are given.
@@ -189,14 +193,17 @@ impl<'d, 't> Table<'d, 't> {
         let Some(entry) = self.entry(name) else { return Ok(None) };
         let wanted = "a list of words in quotes";
         let text = |item: &Spanned<DeValue<'_>>| item.get_ref().as_str().map(str::to_owned);
-        let words = self.items(entry, wanted)?.into_iter().map(|item| text(item).ok_or_else(|| self.not_a(entry, wanted)));
+        let words =
+            self.items(entry, wanted)?.into_iter().map(|item| text(item).ok_or_else(|| self.not_a(entry, wanted)));
         words.collect::<Checked<_>>().map(Some)
     }
 
     /// Refuses keys that nobody asked for.
     pub fn finish(self) -> Checked<()> {
         let asked = self.asked.borrow().clone();
-        let Some(extra) = self.entries.iter().find(|entry| !asked.contains(&entry.name.as_str())) else { return Ok(()) };
+        let Some(extra) = self.entries.iter().find(|entry| !asked.contains(&entry.name.as_str())) else {
+            return Ok(());
+        };
         let given = |name: &&&'static str| self.entries.iter().any(|entry| entry.name == **name);
         let open = || asked.iter().filter(|name| !given(name)).copied();
         let mut all: Vec<String> = asked.iter().map(|name| format!("`{name}`")).collect();

@@ -35,6 +35,10 @@ pub struct PointReference {
     membrane: [[f64; 3]; 3],
     /// Bending stiffness times the area that the point stands for.
     bending: [[f64; 3]; 3],
+    /// Coupling stiffness times that area; zero unless `coupled`.
+    coupling: [[f64; 3]; 3],
+    /// Whether the layers are not symmetric, so that membrane and bending strains act on each other.
+    coupled: bool,
 }
 
 /// Strains at a point in the parameter basis, order (11, 22, 12), engineering shear.
@@ -67,6 +71,8 @@ impl PointReference {
             area,
             membrane: times(stiffness.membrane),
             bending: times(stiffness.bending),
+            coupling: times(stiffness.coupling.unwrap_or_default()),
+            coupled: stiffness.coupling.is_some(),
         }
     }
 
@@ -108,7 +114,7 @@ impl PointReference {
     pub fn hessian(&self, u: &[[f64; 3]; 5], hessian: &mut Hessian) -> (f64, Gradient) {
         let deformed = self.deform(u);
         let (energy, forces, moments) = self.resultants(&deformed.strains);
-        material_part(&deformed, &self.membrane, &self.bending, hessian);
+        material_part(&deformed, self, hessian);
         geometric_part(&deformed, forces, moments, hessian);
         (energy, gradient_of(&deformed, forces, moments))
     }
@@ -135,8 +141,16 @@ impl PointReference {
 
     /// Energy, membrane forces and bending moments, all times the point's area.
     fn resultants(&self, strains: &Strains) -> (f64, [f64; 3], [f64; 3]) {
-        let forces = self.membrane.map(|row| dot(row, strains.membrane));
-        let moments = self.bending.map(|row| dot(row, strains.bending));
+        let mut forces = self.membrane.map(|row| dot(row, strains.membrane));
+        let mut moments = self.bending.map(|row| dot(row, strains.bending));
+        if self.coupled {
+            for i in 0..3 {
+                for j in 0..3 {
+                    forces[i] += self.coupling[i][j] * strains.bending[j];
+                    moments[i] += self.coupling[j][i] * strains.membrane[j];
+                }
+            }
+        }
         (0.5 * (dot(forces, strains.membrane) + dot(moments, strains.bending)), forces, moments)
     }
 }
@@ -172,7 +186,8 @@ fn gradient_of(d: &Deformed, forces: [f64; 3], moments: [f64; 3]) -> Gradient {
 }
 
 /// Σ ∂ε C ∂ε + ∂κ D ∂κ.
-fn material_part(d: &Deformed, membrane: &[[f64; 3]; 3], bending: &[[f64; 3]; 3], hessian: &mut Hessian) {
+fn material_part(d: &Deformed, point: &PointReference, hessian: &mut Hessian) {
+    let PointReference { membrane, bending, coupling, coupled, .. } = point;
     let [a1, a2, ..] = d.a;
     let zero = [0.0; 3];
     let strain_rows = [[a1, zero], [zero, a2], [a2, a1]];
@@ -217,6 +232,20 @@ fn material_part(d: &Deformed, membrane: &[[f64; 3]; 3], bending: &[[f64; 3]; 3]
             hessian[p][q] += strain_flat[0][p] * stiff_strain[0][q]
                 + strain_flat[1][p] * stiff_strain[1][q]
                 + strain_flat[2][p] * stiff_strain[2][q];
+        }
+    }
+    if *coupled {
+        for p in 0..6 {
+            for q in 0..15 {
+                let mut value = 0.0;
+                for i in 0..3 {
+                    for j in 0..3 {
+                        value += strain_flat[i][p] * coupling[i][j] * bend_flat[j][q];
+                    }
+                }
+                hessian[p][q] += value;
+                hessian[q][p] += value;
+            }
         }
     }
 }
@@ -277,15 +306,34 @@ mod tests {
     use super::*;
 
     fn sample() -> (PointReference, [[f64; 3]; 5]) {
-        let material = Material::Isotropic { youngs_modulus_mpa: 100.0, poissons_ratio: 0.3, thickness_mm: 0.5 };
+        sample_of(&Material::Isotropic { youngs_modulus_mpa: 100.0, poissons_ratio: 0.3, thickness_mm: 0.5 })
+    }
+
+    fn laminate() -> Material {
+        let law = |youngs_modulus_1_mpa: f64| crate::scene::OrthotropicLaw {
+            youngs_modulus_1_mpa,
+            youngs_modulus_2_mpa: 20.0,
+            poissons_ratio_12: 0.3,
+            shear_modulus_12_mpa: 15.0,
+        };
+        let ply = |angle_deg: f64, modulus: f64| crate::scene::Ply { thickness_mm: 0.3, angle_deg, law: law(modulus) };
+        Material::Laminate { plies: vec![ply(10.0, 100.0), ply(-60.0, 40.0)] }
+    }
+
+    fn sample_of(material: &Material) -> (PointReference, [[f64; 3]; 5]) {
         let reference = [[1.0, 0.1, 0.0], [0.2, 1.3, -0.1], [0.1, 0.0, 0.4], [0.0, 0.2, -0.7], [0.05, -0.1, 0.3]];
         let u = [[0.1, -0.2, 0.3], [-0.15, 0.05, 0.2], [0.3, 0.1, -0.2], [0.2, 0.4, 0.1], [-0.3, 0.2, 0.25]];
-        (PointReference::new(reference, &material, 0.8), u)
+        (PointReference::new(reference, material, 0.8), u)
     }
 
     #[test]
     fn gradient_is_the_derivative_of_the_energy_and_hessian_that_of_the_gradient() {
-        let (point, u) = sample();
+        for (point, u) in [sample(), sample_of(&laminate())] {
+            check_derivatives(&point, u);
+        }
+    }
+
+    fn check_derivatives(point: &PointReference, u: [[f64; 3]; 5]) {
         let mut hessian = [[0.0; 16]; 15];
         let (energy, gradient) = point.hessian(&u, &mut hessian);
         assert_eq!(energy, point.energy(&u));

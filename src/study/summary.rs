@@ -1,8 +1,9 @@
 //! The summary of a run: what it found, beside what theory says, and what it cost.
 
-use crate::pipeline::{Outcome, Record};
-use crate::scene::{Scene, Stage};
+use crate::pipeline::{Outcome, Parameter, Reading, Record};
+use crate::scene::{Geometry, Scene, Stage};
 use crate::study::{PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
+use crate::units::rounded;
 
 /// From this rotation on a fold is far from the ends, and its moment is compared as it stands (theory: the plateau is
 /// flat to 0.1 N·mm beyond 40°).
@@ -11,8 +12,14 @@ const FAR_FROM_ENDS_DEG: f64 = 40.0;
 /// What a run found. Every number comes from the records; `Display` lays them out beside the closed-form laws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// The shell, for the laws that the run is held against.
-    pub spring: TapeSpring,
+    /// The tape spring, for the laws that the run is held against.
+    pub spring: Option<TapeSpring>,
+    /// What drives the run.
+    pub driven_by: Parameter,
+    /// Shape of the shell and its thickness, in words.
+    pub shell: String,
+    /// The scene's probes at the last equilibrium.
+    pub probes: Vec<Reading>,
     /// Rotation that the scene asks for, degrees.
     pub target_deg: f64,
     /// Elements of the whole shell for each element of the model: 1, 2 or 4.
@@ -111,6 +118,13 @@ impl Summary {
         steps.dedup();
         Self {
             spring: TapeSpring::of_scene(scene),
+            driven_by: Parameter::of(scene),
+            shell: shell_in_words(scene),
+            probes: records
+                .iter()
+                .rev()
+                .find(|record| !record.report.probes.is_empty())
+                .map_or(vec![], |record| record.report.probes.clone()),
             target_deg: scene.load.target(),
             symmetric_parts: scene.symmetry.copies(),
             initial_stiffness_n_mm: initial_stiffness(&path[..before_jump]),
@@ -137,6 +151,26 @@ impl Summary {
     }
 }
 
+fn shell_in_words(scene: &Scene) -> String {
+    let shape = match &scene.geometry {
+        Geometry::TapeSpring { length_mm, radius_mm, arc_deg } => {
+            format!("tape spring, L {length_mm} R {radius_mm} mm, arc {}°", rounded(*arc_deg))
+        }
+        Geometry::Plate { length_mm, width_mm } => format!("plate, {length_mm} × {width_mm} mm"),
+        Geometry::CylinderPanel { length_mm, radius_mm, arc_deg, .. } => {
+            format!("cylinder panel, L {length_mm} R {radius_mm} mm, arc {}°", rounded(*arc_deg))
+        }
+        Geometry::Annulus { inner_radius_mm, outer_radius_mm, arc_deg, .. } => {
+            format!("annulus, R {inner_radius_mm} to {outer_radius_mm} mm, arc {}°", rounded(*arc_deg))
+        }
+        Geometry::SphereZone { radius_mm, latitude_deg: [from, to], arc_deg, .. } => {
+            format!("sphere zone, R {radius_mm} mm, latitudes {from}° to {to}°, arc {}°", rounded(*arc_deg))
+        }
+        Geometry::Nurbs(_) => "NURBS surface".into(),
+    };
+    format!("{shape}, t {} mm", scene.material.thickness_mm())
+}
+
 /// Work of the end moments up to the last equilibrium before a jump, by the trapezoidal rule, and where it went.
 fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
     let mut sum = EnergyBalance::default();
@@ -147,12 +181,18 @@ fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
         }
         match report.stage {
             Stage::Solve if report.outcome == Outcome::Done => {
-                sum.work_n_mm += (moment + report.moment_n_mm) * (report.parameter - sum.parameter).to_radians();
+                sum.work_n_mm += match report.driven_by {
+                    Parameter::Rotation => {
+                        (moment + report.moment_n_mm) * (report.parameter - sum.parameter).to_radians()
+                    }
+                    Parameter::LoadFactor => report.work_n_mm,
+                };
                 sum.parameter = report.parameter;
             }
             // Refining integrates the energy anew, and re-equilibrating lowers it: neither is work of the ends.
             Stage::RefineKnots | Stage::ReEquilibrate => {
-                sum.taken_out_by_refinement_n_mm += sum.strain_energy_n_mm - report.strain_energy_n_mm;
+                sum.taken_out_by_refinement_n_mm +=
+                    report.work_n_mm + sum.strain_energy_n_mm - report.strain_energy_n_mm;
             }
             _ => continue,
         }

@@ -3,7 +3,9 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::Summary;
+use super::TapeSpring;
 use super::summary::{FoldMean, MeshChange};
+use crate::pipeline::{Parameter, Reading};
 use crate::scene::Sense;
 use crate::units::{count, duration, rounded, signed};
 
@@ -26,24 +28,28 @@ impl Display for Summary {
 
 impl Summary {
     fn write_head(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let spring = &self.spring;
-        let sense = match spring.sense {
-            Sense::Opposite => "opposite sense",
-            Sense::Equal => "equal sense",
-        };
         let part = match self.symmetric_parts {
             1 => "whole shell",
             2 => "half model",
             _ => "quarter model",
         };
-        writeln!(
-            f,
-            "tape spring, L {} R {} t {} mm, arc {}°, {sense}, {part}",
-            spring.length_mm,
-            spring.radius_mm,
-            spring.thickness_mm,
-            rounded(spring.arc_rad.to_degrees()),
-        )?;
+        match &self.spring {
+            Some(spring) => {
+                let sense = match spring.sense {
+                    Sense::Opposite => "opposite sense",
+                    Sense::Equal => "equal sense",
+                };
+                writeln!(
+                    f,
+                    "tape spring, L {} R {} t {} mm, arc {}°, {sense}, {part}",
+                    spring.length_mm,
+                    spring.radius_mm,
+                    spring.thickness_mm,
+                    rounded(spring.arc_rad.to_degrees()),
+                )?;
+            }
+            None => writeln!(f, "{}", self.shell)?,
+        }
         let Some(last) = self.last else {
             let turned_down = match self.rejections {
                 0 => String::new(),
@@ -52,11 +58,11 @@ impl Summary {
             return writeln!(f, "no equilibrium yet{turned_down}");
         };
         let reached = if last.parameter > self.target_deg * (1.0 + 1e-9) {
-            format!("{}°, beyond the {}° that the scene asks for", rounded(last.parameter), rounded(self.target_deg))
+            format!("{}, beyond the {} that the scene asks for", self.at(last.parameter), self.at(self.target_deg))
         } else if last.parameter >= self.target_deg * (1.0 - 1e-9) {
-            format!("{}°, as the scene asks", rounded(self.target_deg))
+            format!("{}, as the scene asks", self.at(self.target_deg))
         } else {
-            format!("{}° of {}°", rounded(last.parameter), rounded(self.target_deg))
+            format!("{} of {}", self.at(last.parameter), self.at(self.target_deg))
         };
         let (stages, steps) = (count(self.stages(), "stage"), count(self.load_steps, "load step"));
         writeln!(f, "{stages} in {steps} to {reached}, {}", duration(self.wall_s()))?;
@@ -67,11 +73,46 @@ impl Summary {
         Ok(())
     }
 
+    /// A value of the parameter with its unit.
+    fn at(&self, parameter: f64) -> String {
+        match self.driven_by {
+            Parameter::Rotation => format!("{}°", rounded(parameter)),
+            Parameter::LoadFactor => format!("load factor {}", rounded(parameter)),
+        }
+    }
+
+    /// Probes at the last equilibrium, jumps, and the balance of work and energy.
+    fn write_readings(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for Reading { name, value, unit, at } in &self.probes {
+            let place = at.map_or(String::new(), |[u, v]| format!("  at u {u:.3}, v {v:.3}"));
+            writeln!(f, "  {name:<17}  {value:>14.6} {unit}{place}")?;
+        }
+        for snap in &self.snaps {
+            writeln!(
+                f,
+                "  {:<17}  from {} to {}, released {:.3} N·mm",
+                "snap",
+                self.at(snap.before_deg),
+                self.at(snap.after_deg),
+                snap.energy_released_n_mm
+            )?;
+        }
+        let Some(balance) = self.balance else { return Ok(()) };
+        let stored = balance.strain_energy_n_mm + balance.taken_out_by_refinement_n_mm;
+        let off = signed(100.0 * (balance.work_n_mm / stored - 1.0), 2);
+        writeln!(
+            f,
+            "  {:<17}  {:>14.6} N·mm of loads and given motions (trapezoidal rule over the steps), strain energy {stored:.6}: {off} %",
+            "work", balance.work_n_mm
+        )
+    }
+
     fn write_findings(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Some(spring) = &self.spring else { return self.write_readings(f) };
         Line { name: "", measured: "this run".into(), law: Some(("theory", "".into())), off: None, note: "" }
             .write(f)?;
         if let Some(stiffness) = self.initial_stiffness_n_mm {
-            let law = self.spring.initial_stiffness_n_mm();
+            let law = spring.initial_stiffness_n_mm();
             Line {
                 name: "initial stiffness",
                 measured: format!("{stiffness:7.1}  N·mm/rad"),
@@ -81,7 +122,7 @@ impl Summary {
             }
             .write(f)?;
         }
-        self.write_peak(f)?;
+        self.write_peak(f, spring)?;
         if self.snaps.is_empty() {
             Line { name: "snap", measured: "   none".into(), law: None, off: None, note: "" }.write(f)?;
         }
@@ -104,7 +145,7 @@ impl Summary {
             );
             Line { name: "snap", measured, law: None, off: None, note: &drop }.write(f)?;
         }
-        self.fold.map_or(Ok(()), |fold| self.write_fold(f, fold))?;
+        self.fold.map_or(Ok(()), |fold| self.write_fold(f, spring, fold))?;
         self.write_balance(f)
     }
 
@@ -126,7 +167,7 @@ impl Summary {
         .write(f)
     }
 
-    fn write_peak(&self, f: &mut Formatter<'_>) -> fmt::Result {
+    fn write_peak(&self, f: &mut Formatter<'_>, spring: &TapeSpring) -> fmt::Result {
         let measured = match self.peak {
             Some(peak) => {
                 let how = if peak.interpolated { "" } else { ", jump" };
@@ -135,7 +176,7 @@ impl Summary {
             None if self.snaps.is_empty() => "   none, still rising".into(),
             None => "   none before the jump".into(),
         };
-        let law = self.spring.peak();
+        let law = spring.peak();
         Line {
             name: "peak",
             measured,
@@ -146,17 +187,17 @@ impl Summary {
         .write(f)
     }
 
-    fn write_fold(&self, f: &mut Formatter<'_>, fold: FoldMean) -> fmt::Result {
+    fn write_fold(&self, f: &mut Formatter<'_>, spring: &TapeSpring, fold: FoldMean) -> fmt::Result {
         let range = match fold.points {
             1 => format!("     at {:.1}°", fold.range_deg[0]),
             n => format!("     {n} steps, {:.1}° to {:.1}°", fold.range_deg[0], fold.range_deg[1]),
         };
-        let closed_form = match self.spring.sense {
+        let closed_form = match spring.sense {
             Sense::Opposite => "(1+ν)Dα",
             Sense::Equal => "(1−ν)Dα",
         };
-        let plateau = self.spring.plateau().map(|plateau| ("Wuest, equal energy", plateau.moment_n_mm));
-        let laws = plateau.into_iter().chain([(closed_form, self.spring.fold_moment_n_mm())]);
+        let plateau = spring.plateau().map(|plateau| ("Wuest, equal energy", plateau.moment_n_mm));
+        let laws = plateau.into_iter().chain([(closed_form, spring.fold_moment_n_mm())]);
         for (i, (name, value)) in laws.enumerate() {
             let measured = if i == 0 { format!("{:8.2} N·mm", fold.moment_n_mm) } else { range.clone() };
             Line {
@@ -180,7 +221,8 @@ impl Summary {
                 1 => String::new(),
                 parts => format!("   {:>11}", n1 * n2 * parts),
             };
-            writeln!(f, "  {:>10.3}°   {elements:>18}{whole}   {unknowns:>8}", parameter)?;
+            let degree = if self.driven_by == Parameter::Rotation { "°" } else { " " };
+            writeln!(f, "  {parameter:>10.3}{degree}   {elements:>18}{whole}   {unknowns:>8}")?;
         }
         Ok(())
     }

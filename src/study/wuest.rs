@@ -76,19 +76,22 @@ pub struct FoldMoments {
 }
 
 impl TapeSpring {
-    /// The tape spring that a scene describes, whatever part of it the scene models.
-    pub fn of_scene(scene: &Scene) -> Self {
-        let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry else { todo!() };
-        let Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm } = scene.material else { todo!() };
-        Self {
+    /// The tape spring with turning ends that a scene describes, whatever part of it the scene models; `None` for other
+    /// scenes and materials, for which these laws do not hold.
+    pub fn of_scene(scene: &Scene) -> Option<Self> {
+        let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry else { return None };
+        let Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm } = scene.material else {
+            return None;
+        };
+        Some(Self {
             length_mm,
             radius_mm,
             arc_rad: arc_deg.to_radians(),
             thickness_mm,
             youngs_modulus_mpa,
             poissons_ratio,
-            sense: scene.end_rotation().unwrap().sense,
-        }
+            sense: scene.end_rotation()?.sense,
+        })
     }
 
     /// Bending stiffness of the shell D = E t³ / 12(1−ν²), N·mm.

@@ -66,8 +66,13 @@ impl ViewerTopics for MeshHistory {
 
 /// One entity, which replaces that of the state before.
 fn scene_update(samples: &SurfaceSamples, scene: &Scene) -> Value {
-    let crate::scene::Geometry::TapeSpring { radius_mm, .. } = scene.geometry else { todo!() };
-    let colours: Vec<Value> = vertex_values(samples)
+    let values = vertex_values(samples);
+    // A tape spring keeps its colours from state to state; other shells have no curvature to measure by.
+    let radius_mm = match scene.geometry {
+        crate::scene::Geometry::TapeSpring { radius_mm, .. } => radius_mm,
+        _ => BRIGHTEST / values.iter().copied().fold(f64::MIN_POSITIVE, f64::max),
+    };
+    let colours: Vec<Value> = values
         .iter()
         .map(|value| {
             let [r, g, b] = Colour::viridis(value * radius_mm / BRIGHTEST).0.map(short);

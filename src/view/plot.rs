@@ -20,6 +20,9 @@ pub enum PlotError {
     /// The records hold no equilibrium yet.
     #[error("there is no equilibrium to plot: the run has not finished its first load step")]
     NoEquilibrium,
+    /// No moment over rotation.
+    #[error("only a tape spring whose ends turn has a moment to plot over a rotation")]
+    NoMoment,
     /// The drawing library gave up.
     #[error("the plot could not be drawn: {0}")]
     Drawing(String),
@@ -74,7 +77,7 @@ fn draw_moment(
     end_deg: f64,
     title: &str,
 ) -> Result<(), PlotError> {
-    let spring = TapeSpring::of_scene(scene);
+    let spring = TapeSpring::of_scene(scene).ok_or(PlotError::NoMoment)?;
     let law: Vec<(f64, f64)> = (0..=400)
         .map(|i| f64::from(i) / 400.0 * end_deg)
         .map(|parameter| (parameter, spring.moment_at_rotation(parameter)))
