@@ -32,7 +32,7 @@ pub(super) enum Failure {
     /// Everything that is wrong with a scene, rendered with its lines.
     #[error("{rendered}")]
     WrongScene { rendered: String },
-    #[error("--until {until_deg} is beyond the {}° that the scene asks for; raise `load.rotation_deg` there", scene.load.target())]
+    #[error("--until {until_deg} is beyond the {} that the scene asks for; raise `{}` there", scene.load.target(), if scene.end_rotation().is_some() { "load.rotation_deg" } else { "load.factor" })]
     UntilBeyondScene { until_deg: f64, scene: Box<Scene> },
     #[error("cannot use the log {}", log.display())]
     WrongLog { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },

@@ -11,7 +11,7 @@ use super::progress::Manner;
 use super::session::{RunOptions, drive, watch_signals};
 use crate::history::{basis, plan, restored_scene};
 use crate::journal::{Completeness, Log, Manifest, ReadError, Resume, ResumeError};
-use crate::pipeline::{Record, Run, Stages};
+use crate::pipeline::{Parameter, Record, Run, Stages};
 use crate::scene::Scene;
 use crate::study::Summary;
 
@@ -109,11 +109,12 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let before: Vec<Record> = log.entries()[..plan.keep].iter().map(|entry| entry.record.clone()).collect();
     let run = Run::new(stages, basis.state, basis.commit);
     let reached = run.state().parameter;
+    let shown = Parameter::of(&scene).shown(reached);
     let until_deg = options.until_deg;
     let next = run.next_stage().filter(|_| until_deg.is_none_or(|until| reached < until));
     match next {
-        Some(stage) => findings.push(format!("goes on from {reached}° with {stage}")),
-        None => findings.push(format!("nothing to do: the log has reached {reached}°")),
+        Some(stage) => findings.push(format!("goes on from {shown} with {stage}")),
+        None => findings.push(format!("nothing to do: the log has reached {shown}")),
     }
     if options.is_shown() {
         findings.iter().for_each(|line| say(line));

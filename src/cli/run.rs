@@ -11,7 +11,7 @@ use super::resume::{self, OldLog};
 use super::scene_file::{SceneFile, read_scene};
 use super::session::{RunOptions, drive, watch_signals};
 use crate::journal::{JournalWriter, Manifest};
-use crate::pipeline::{Run, Stages};
+use crate::pipeline::{Parameter, Run, Stages};
 use crate::scene::Quadrature;
 use crate::study::Summary;
 use crate::units::rounded;
@@ -28,7 +28,8 @@ pub(super) struct Arguments {
     /// Threads; the result is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Stop after the first step at or beyond this rotation of each end, in degrees; `resume` goes on from there
+    /// Stop after the first step at or beyond this rotation of each end, in degrees, or this load factor; `resume` goes on
+    /// from there
     #[arg(long, value_name = "DEG", value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Go on with the log if there is one, as far as it stands for this scene
@@ -89,7 +90,11 @@ impl Job {
             .map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         if options.is_shown() {
             let to = options.until_deg.unwrap_or(scene.load.target());
-            say(&format!("to {}° → {}", rounded(to), options.log.display()));
+            let to = match Parameter::of(&scene) {
+                Parameter::Rotation => format!("{}°", rounded(to)),
+                Parameter::LoadFactor => format!("load factor {}", rounded(to)),
+            };
+            say(&format!("to {to} → {}", options.log.display()));
         }
         if options.is_shown() && scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
             say(

@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::path::Path;
 
 use super::failure::Failure;
-use crate::scene::{Scene, SceneError, Stage, parse_with_settings};
+use crate::scene::{Geometry, Scene, SceneError, Stage, parse_with_settings};
 
 /// A scene with the text that it came from.
 pub(super) struct SceneFile {
@@ -16,6 +16,11 @@ pub(super) struct SceneFile {
 pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
     let text = std::fs::read_to_string(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
     let scene = checked(&text, &path.display().to_string(), &[])?;
+    // A log stands for itself: a surface from a file of its own goes into the text that the log keeps.
+    let text = match scene.geometry {
+        Geometry::Nurbs(_) => scene.to_toml(),
+        _ => text,
+    };
     Ok(SceneFile { scene, text })
 }
 

@@ -7,7 +7,7 @@ use crate::scene::{Difference, Reach, Scene, Stage};
 use crate::state::State;
 
 /// The key of the rotation at which a run stops.
-const TARGET: &str = "load.rotation_deg";
+const TARGETS: [&str; 2] = ["load.rotation_deg", "load.factor"];
 
 /// What a run goes on from.
 #[derive(Clone, Debug)]
@@ -92,7 +92,7 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     for difference in &differences {
         let what = shown(difference);
         changes.push(match difference.reach {
-            Reach::Free if keep == log.entries().len() || difference.path != TARGET => {
+            Reach::Free if keep == log.entries().len() || !TARGETS.contains(&difference.path.as_str()) => {
                 format!("{what}: every stage stands")
             }
             _ if last_step == 0 => format!("{what}: no complete step stands"),

@@ -317,3 +317,92 @@ fn gauss_points(mesh: &Mesh, way: usize) -> Vec<(f64, f64)> {
     };
     spans.bounds.iter().flat_map(in_span).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::model::{Discretization, starting_mesh};
+    use crate::scene::{Place, parse};
+
+    /// A panel with a follower pressure and an edge moment, displaced at random.
+    fn loaded(clamped: bool) -> (Discretization, Vec<[f64; 3]>) {
+        let mut scene = parse(include_str!("../../pipelines/verification/rolled-cantilever.toml"), "x.toml").unwrap();
+        scene.geometry =
+            crate::scene::Geometry::CylinderPanel { length_mm: 9.0, radius_mm: 5.0, arc_deg: 80.0, seam: None };
+        scene.mesh.elements = [3, 2];
+        let kind = ActionKind::Pressure { pressure_mpa: 0.7, follower: true };
+        let pressure = Action { name: "p".into(), kind, history: History::default() };
+        if clamped {
+            scene.actions.clear();
+            let hinged = |edge: Edge| crate::scene::Support {
+                name: format!("{edge:?}"),
+                on: Place::Edge(edge),
+                hold: crate::scene::Hold::Displacement { displacement_mm: [Some(0.0); 3] },
+                history: History::default(),
+            };
+            scene.supports = [Edge::UStart, Edge::UEnd, Edge::VStart, Edge::VEnd].map(hinged).to_vec();
+        }
+        scene.actions.push(pressure);
+        let mesh = Arc::new(starting_mesh(&scene).unwrap());
+        let discretization = Discretization::new(&scene, &mesh).unwrap();
+        let free: Vec<f64> =
+            (0..discretization.unknowns.count()).map(|i| 0.3 * ((i * 37 % 19) as f64 / 19.0 - 0.5)).collect();
+        let displacement = discretization.unknowns.place(&free, 1.0).displacement();
+        (discretization, displacement)
+    }
+
+    #[test]
+    fn the_tangent_is_the_derivative_of_the_forces() {
+        let (discretization, displacement) = loaded(false);
+        let mesh = &discretization.mesh;
+        let direction: Vec<[f64; 3]> =
+            (0..displacement.len()).map(|i| [0, 1, 2].map(|c| ((i * 31 + c * 17) % 23) as f64 / 23.0 - 0.5)).collect();
+        let mut exact = vec![[0.0; 3]; displacement.len()];
+        discretization.loads.tangent(mesh, &displacement, 0.8, |part| {
+            for c in 0..3 {
+                exact[part.points[0]][c] += dot(part.block[c], direction[part.points[1]]);
+            }
+        });
+        let step = 1e-6;
+        let moved = |sign: f64| -> Vec<[f64; 3]> {
+            let at: Vec<[f64; 3]> =
+                displacement.iter().zip(&direction).map(|(u, d)| add(*u, scaled(sign * step, *d))).collect();
+            discretization.loads.forces(mesh, &at, 0.8)
+        };
+        let (plus, minus) = (moved(1.0), moved(-1.0));
+        let scale = exact.iter().map(|force| norm(*force)).fold(0.0, f64::max);
+        for (k, slope) in exact.iter().enumerate() {
+            let found = [0, 1, 2].map(|c| (plus[k][c] - minus[k][c]) / (2.0 * step));
+            assert!(norm([0, 1, 2].map(|c| found[c] - slope[c])) < 1e-6 * scale, "{k}: {found:?} {slope:?}");
+        }
+    }
+
+    /// With all edges held, the pressure has a potential: its tangent on the free unknowns is symmetric. With free edges
+    /// it is not.
+    #[test]
+    fn the_skew_part_is_that_of_free_edges() {
+        let skew = |clamped: bool| {
+            let (discretization, displacement) = loaded(clamped);
+            let mesh = &discretization.mesh;
+            let count = discretization.unknowns.count();
+            let free = discretization.unknowns.of_displacement(&displacement, &[], 1.0);
+            let placement = discretization.unknowns.place(&free, 1.0);
+            let field = |seed: usize| {
+                let q: Vec<f64> = (0..count).map(|i| ((i * 7919 + seed) % 1013) as f64 / 1013.0 - 0.5).collect();
+                placement.velocity(&q, &[])
+            };
+            let (a, b) = (field(3), field(11));
+            let (mut ab, mut ba) = (0.0, 0.0);
+            discretization.loads.tangent(mesh, &displacement, 1.0, |part| {
+                let [i, j] = part.points;
+                ab += (0..3).map(|c| a[i][c] * dot(part.block[c], b[j])).sum::<f64>();
+                ba += (0..3).map(|c| b[i][c] * dot(part.block[c], a[j])).sum::<f64>();
+            });
+            (ab - ba).abs() / (ab.abs() + ba.abs())
+        };
+        assert!(skew(true) < 1e-10, "{}", skew(true));
+        assert!(skew(false) > 1e-3, "{}", skew(false));
+    }
+}

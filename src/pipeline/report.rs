@@ -101,18 +101,23 @@ pub struct WrittenReport {
     outcome: Outcome,
     /// Turning ends: rotation of each end in the state, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
     rotation_deg: Option<f64>,
     /// Turning ends: rotation that the stage worked at; differs from `rotation_deg` where a solve was turned down, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
     attempted_rotation_deg: Option<f64>,
     /// Turning ends: end moment, N·mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
     moment_n_mm: Option<f64>,
     /// Other scenes: load factor of the state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
     load_factor: Option<f64>,
     /// Other scenes: load factor that the stage worked at.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
     attempted_load_factor: Option<f64>,
     /// Strain energy of the whole shell, N·mm.
     strain_energy_n_mm: f64,

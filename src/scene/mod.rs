@@ -35,6 +35,7 @@ mod stage_order;
 mod syntax;
 mod table;
 mod write;
+mod write_general;
 
 pub use check::{parse, parse_with_settings};
 pub use data::{

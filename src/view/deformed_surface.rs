@@ -130,7 +130,7 @@ mod tests {
         [load]
         kind = "end-rotation"
         sense = "opposite"
-        parameter = 10.0
+        rotation_deg = 10.0
         increment_deg = 1.0
         [pipeline]
         stages = ["solve"]

@@ -164,7 +164,10 @@ fn restamp(bytes: &mut [u8]) {
 #[test]
 fn fuzz_reader() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("checkpoints/golden");
-    let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let files = |folder: &Path| -> Vec<_> {
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()).collect()
+    };
+    let mut names = [files(&folder), files(&folder.join("verification"))].concat();
     names.sort();
     names.retain(|path| path.extension().is_some_and(|extension| extension == "mcap"));
     let golden: Vec<Vec<u8>> = names.iter().map(|path| std::fs::read(path).unwrap()).collect();
@@ -197,7 +200,10 @@ fn fuzz_reader() {
 #[test]
 fn fuzz_scene_parser() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines");
-    let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let files = |folder: &Path| -> Vec<_> {
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()).collect()
+    };
+    let mut names = [files(&folder), files(&folder.join("verification"))].concat();
     names.sort();
     let scenes: Vec<String> = names.iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
     let piece = prop_oneof![

@@ -2,6 +2,7 @@
 
 mod assembly;
 mod baseline;
+mod benchmarks;
 mod house;
 mod refinement;
 mod support;
