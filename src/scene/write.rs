@@ -21,8 +21,8 @@ impl Scene {
                 .filter_map(|key| {
                     let value = match (leaves.get(&key.path()), &key.kind) {
                         (Some(value), _) => toml(value),
-                        // A kind that is the only one is not kept in the scene.
-                        (None, Kind::Word([only])) if key.name == "kind" => format!("\"{}\"", only.word),
+                        // The first kind of a load is not kept in the scene; the others are written elsewhere.
+                        (None, Kind::Word([first, ..])) if key.name == "kind" => format!("\"{}\"", first.word),
                         (None, _) => return None,
                     };
                     Some(format!("{} = {value}\n", key.name))

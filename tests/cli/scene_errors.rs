@@ -339,3 +339,180 @@ fn settings() {
 fn help() {
     pin("help", &help_text());
 }
+
+/// A plate and a laminate with supports, actions and probes of their own.
+const GENERAL: &str = r#"# A plate.
+[geometry]
+kind = "plate"
+length_mm = 100.0
+width_mm = 40.0
+
+[material]
+kind = "laminate"
+youngs_modulus_1_mpa = 140000.0
+youngs_modulus_2_mpa = 10000.0
+poissons_ratio_12 = 0.3
+shear_modulus_12_mpa = 5000.0
+
+[[ply]]
+thickness_mm = 0.125
+angle_deg = 0.0
+
+[mesh]
+elements = [8, 4]
+
+[load]
+kind = "steps"
+factor = 2.0
+increment = 0.25
+
+[[support]]
+name = "root"
+on = "u-start"
+kind = "clamped"
+
+[[support]]
+name = "side"
+on = "v-start"
+kind = "fixed"
+hold = ["y"]
+
+[[support]]
+name = "pin"
+on = [1.0, 1.0]
+kind = "displacement"
+z_mm = 0.5
+
+[[action]]
+name = "lift"
+on = "u-end"
+kind = "line-force"
+force_n_per_mm = [0.0, 0.0, 0.02]
+history = [[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]
+
+[[probe]]
+name = "tip"
+kind = "displacement"
+on = [1.0, 0.5]
+component = "z"
+
+[[probe]]
+name = "root moment"
+kind = "reaction"
+support = "root"
+component = "moment-y"
+
+[adapt]
+threshold = 0.02
+length_limit_mm = [4.0, 8.0]
+"#;
+
+fn general_errors(slips: &[(&str, &str)]) -> String {
+    let show = |(right, wrong): &(&str, &str)| {
+        assert_eq!(GENERAL.matches(right).count(), 1, "`{right}` does not name one place");
+        match parse(&GENERAL.replace(right, wrong), "scene.toml") {
+            Ok(_) => panic!("`{wrong}` is taken"),
+            Err(error) => report(&error),
+        }
+    };
+    slips.iter().map(show).collect::<Vec<_>>().join("\n")
+}
+
+const PLATE: &str = "kind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 40.0";
+
+#[test]
+fn general_geometry() {
+    parse(GENERAL, "scene.toml").unwrap();
+    pin(
+        "general_geometry",
+        &general_errors(&[
+            ("kind = \"plate\"", "kind = \"plat\""),
+            ("width_mm = 40.0", "widht_mm = 40.0"),
+            ("width_mm = 40.0", "width_mm = -40.0"),
+            ("width_mm = 40.0", "width_mm = \"40\""),
+            ("length_mm = 100.0\nwidth_mm", "width_mm"),
+            (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 3.0\narc_deg = 400.0"),
+            (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 3.0\narc_deg = 360.0"),
+            (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 3.0\narc_deg = 90.0\nseam = \"free\""),
+            (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 0.1\narc_deg = 90.0"),
+            (PLATE, "kind = \"annulus\"\ninner_radius_mm = 9.0\nouter_radius_mm = 3.0\narc_deg = 90.0"),
+            (PLATE, "kind = \"sphere-zone\"\nradius_mm = 9.0\nlatitude_deg = [0.0, 90.0]\narc_deg = 90.0"),
+            (PLATE, "kind = \"sphere-zone\"\nradius_mm = 9.0\nlatitude_deg = 45.0\narc_deg = 90.0"),
+            (PLATE, "kind = \"nurbs\"\ndegrees = [1, 1]"),
+            (PLATE, "kind = \"nurbs\"\nfile = \"nowhere.json\""),
+            (
+                PLATE,
+                "kind = \"nurbs\"\ndegrees = [1, 1]\nknots_u = [0, 0, 1, 1]\nknots_v = [0, 1, 1, 1]\ncontrol_points_mm = [[0, 0, 0]]",
+            ),
+            (
+                PLATE,
+                "kind = \"nurbs\"\ndegrees = [1, 1]\nknots_u = [0, 0, 1, 1]\nknots_v = [0, 0, 1, 1]\ncontrol_points_mm = [[0, 0, 0]]",
+            ),
+            (
+                PLATE,
+                "kind = \"nurbs\"\ndegrees = [1, 1]\nknots_u = [0, 0, 1, 1]\nknots_v = [0, 0, 1, 1]\ncontrol_points_mm = [[0, 0]]",
+            ),
+        ]),
+    );
+}
+
+#[test]
+fn general_material_and_load() {
+    pin(
+        "general_material_and_load",
+        &general_errors(&[
+            ("kind = \"laminate\"", "kind = \"isotropic\""),
+            ("kind = \"laminate\"", "kind = \"composite\""),
+            ("poissons_ratio_12 = 0.3", "poissons_ratio_12 = 4.0"),
+            ("youngs_modulus_1_mpa = 140000.0\n", ""),
+            ("thickness_mm = 0.125", "thickness_mm = 0.0"),
+            ("angle_deg = 0.0", "angel_deg = 0.0"),
+            ("[[ply]]\nthickness_mm = 0.125\nangle_deg = 0.0", ""),
+            ("[[ply]]", "[ply]"),
+            ("kind = \"steps\"", "kind = \"end-rotation\"\nsense = \"equal\""),
+            ("increment = 0.25", "increment = 2.5"),
+            ("increment = 0.25", "increment = 0.0"),
+            ("increment = 0.25", "increment = 0.25\nleast_increment = 0.5"),
+            ("[adapt]", "[solver]\nleast_increment_deg = 1e-5\n[adapt]"),
+            ("[adapt]", "[symmetry]\npart = \"quarter\"\n[adapt]"),
+            ("\nlength_limit_mm = [4.0, 8.0]", ""),
+            ("length_limit_mm = [4.0, 8.0]", "length_limit_mm = [4.0, 8.0, 9.0]"),
+        ]),
+    );
+}
+
+#[test]
+fn general_supports_actions_and_probes() {
+    pin(
+        "general_supports_actions_and_probes",
+        &general_errors(&[
+            ("kind = \"clamped\"", "kind = \"clamp\""),
+            ("on = \"u-start\"", "on = \"left\""),
+            ("on = \"u-start\"", "on = [0.0, 0.5]"),
+            ("on = \"u-start\"\nkind = \"clamped\"", "kind = \"clamped\""),
+            ("on = \"v-start\"", "on = \"v=1.0\""),
+            ("on = [1.0, 1.0]", "on = [1.0, 1.5]"),
+            ("hold = [\"y\"]", "hold = [\"r\"]"),
+            ("hold = [\"y\"]", "hold = []"),
+            ("hold = [\"y\"]", "hold = \"y\""),
+            ("z_mm = 0.5", ""),
+            ("z_mm = 0.5", "z_mm = \"free\""),
+            ("name = \"side\"", "name = \"root\""),
+            ("on = \"v-start\"", "on = \"u-start\""),
+            ("kind = \"displacement\"\nz_mm = 0.5", "kind = \"rigid\"\nrotation_x_deg = 3.0"),
+            ("kind = \"line-force\"", "kind = \"force\""),
+            ("kind = \"line-force\"", "kind = \"edge-load\""),
+            ("[0.0, 0.0, 0.02]", "0.02"),
+            ("[0.0, 0.0, 0.02]", "[0.0, 0.02]"),
+            ("[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]", "[[0.0, 0.0], [2.0, 1.0], [1.0, 0.0]]"),
+            ("[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]", "[[0.0, 1.0], [2.0, 1.0]]"),
+            ("[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]", "[0.0, 1.0]"),
+            ("component = \"z\"", "component = \"w\""),
+            ("support = \"root\"", "support = \"foot\""),
+            ("name = \"tip\"\n", ""),
+            ("name = \"root moment\"", "name = \"tip\""),
+            ("kind = \"reaction\"", "kind = \"section-moment\"\non = \"u-end\""),
+            ("[[probe]]\nname = \"tip\"", "[[probe]]\nname = \"tip\"\ncolour = \"red\""),
+        ]),
+    );
+}

@@ -252,6 +252,46 @@ fn observed_orders() {
     }
 }
 
+/// What the supports leave free is found before the first solve, and named.
+#[test]
+fn free_rigid_motions_are_named() {
+    let mut scene = read("rolled-cantilever");
+    let hinged = |on: Place, components: [bool; 3]| Hold::Displacement {
+        displacement_mm: components.map(|held| held.then_some(0.0)),
+    };
+    let cases = [
+        (Place::Edge(Edge::UStart), [true, true, true], "it can turn about an axis along y through"),
+        (Place::Edge(Edge::UStart), [true, false, true], "it can move along y"),
+        (Place::Point([0.0, 0.0]), [true, true, true], "it can turn about an axis along"),
+        (Place::Line(foldline::scene::ParametricDirection::U, 0.5), [false, true, true], "it can move along x"),
+    ];
+    for (on, components, words) in cases {
+        scene.supports[0].on = on;
+        scene.supports[0].hold = hinged(on, components);
+        let error = Stages::new(scene.clone()).start().unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+    scene.supports[0].on = Place::Edge(Edge::UStart);
+    scene.supports[0].hold = Hold::Symmetric;
+    let error = Stages::new(scene.clone()).start().unwrap_err().to_string();
+    assert!(error.contains("it can move along"), "{error}");
+}
+
+/// A refining run in steps of a load factor, killed between stages: the chain is that of the run left alone.
+#[test]
+fn refinement_in_any_scene() {
+    let mut scene = read("cantilever-end-shear");
+    scene.mesh.elements = [2, 1];
+    scene.adapt = Some(foldline::scene::Adapt {
+        threshold: [0.1, 0.1],
+        length_limit: foldline::scene::LengthLimit::Millimetres([0.4, 0.4]),
+    });
+    scene.pipeline = foldline::scene::Stage::ALL.to_vec();
+    let (state, report) = run_to(&scene, None, 1.0);
+    assert!(state.mesh.element_counts()[0] >= 8 && state.mesh.element_counts()[1] == 1, "{:?}", report.elements);
+    assert!((probe(&report, "w") - 6.698).abs() < 0.01, "{}", probe(&report, "w"));
+}
+
 /// The end rotation of a tape spring, written with supports of its own, is the same problem to the last digits.
 #[test]
 fn a_tape_spring_in_other_words() {
