@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use crate::history::{ConditionError, NothingStands, ReplayError, SnapError};
 use crate::model::ModelError;
+use crate::pipeline::Parameter;
 use crate::scene::{Scene, Stage};
 use crate::study::BenchError;
 use crate::view::{PlotError, SamplesError};
@@ -32,7 +33,11 @@ pub(super) enum Failure {
     /// Everything that is wrong with a scene, rendered with its lines.
     #[error("{rendered}")]
     WrongScene { rendered: String },
-    #[error("--until {until_deg} is beyond the {} that the scene asks for; raise `{}` there", scene.load.target(), if scene.end_rotation().is_some() { "load.rotation_deg" } else { "load.factor" })]
+    #[error(
+        "--until {until_deg} is beyond the {} that the scene asks for; raise `{}` there",
+        Parameter::of(scene).shown(scene.load.target()),
+        if scene.end_rotation().is_some() { "load.rotation_deg" } else { "load.factor" }
+    )]
     UntilBeyondScene { until_deg: f64, scene: Box<Scene> },
     #[error("cannot use the log {}", log.display())]
     WrongLog { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },

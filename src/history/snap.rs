@@ -66,7 +66,7 @@ pub enum SnapError {
         /// Where it was to end.
         to: String,
         /// Why.
-        source: SolveError,
+        source: Box<SolveError>,
     },
     /// The equations do not fit in memory, or the scene not the mesh.
     #[error(transparent)]
@@ -108,7 +108,7 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
     let mode = soft_mode(&mut work, Standing::of(&stable)).map_err(|source| SnapError::Solve {
         from: shown(stable.parameter),
         to: shown(stable.parameter),
-        source,
+        source: Box::new(source),
     })?;
     let [x, y, z, w] = stable.mesh.control_points[mode.largest_at];
     Ok(SnapReport {
@@ -150,7 +150,7 @@ impl Tries<'_> {
 
     fn failed(&self, from: &State, parameter: f64, source: SolveError) -> SnapError {
         let shown = |value: f64| Parameter::of(self.scene).shown(value);
-        SnapError::Solve { from: shown(from.parameter), to: shown(parameter), source }
+        SnapError::Solve { from: shown(from.parameter), to: shown(parameter), source: Box::new(source) }
     }
 
     /// The equilibrium at a rotation however it is reached, the work done, and the most negative pivots on the way.
