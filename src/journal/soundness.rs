@@ -167,6 +167,7 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
     finite("displacement component", state.displacement.iter().flatten().copied())?;
     finite("rotation", [state.parameter])?;
     finite("moment", [state.moment_n_mm])?;
+    finite("turn", state.turns.iter().flatten().copied())?;
     finite("strain energy", [state.strain_energy_n_mm])?;
     finite("rotation of a known jump", state.control.jump_seen_at_deg)
 }

@@ -1,6 +1,6 @@
 //! Rotations by rotation vectors, with their first and second derivatives.
 //!
-//! exp(ω) = I + a [ω] + b [ω]², with a = sin θ/θ, b = (1 − cos θ)/θ², θ = |ω| (Rodrigues). Both are functions of t = θ²,
+//! exp(ω) = I + a Ω + b Ω², with Ω x = ω × x, a = sin θ/θ, b = (1 − cos θ)/θ², θ = |ω| (Rodrigues). Both are functions of t = θ²,
 //! so that nothing is singular at ω = 0; derivatives follow from ∂t/∂ω_k = 2 ω_k.
 
 use crate::shell::dot;
@@ -85,7 +85,7 @@ fn series(t: f64, order: u32) -> [f64; 3] {
     sums
 }
 
-/// [x], with [x] y = x × y.
+/// The matrix of y ↦ x × y.
 fn skew(x: [f64; 3]) -> Matrix {
     [[0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]]
 }

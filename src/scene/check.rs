@@ -409,7 +409,13 @@ mod tests {
             let Kind::Word(choices) = &key.kind else { continue };
             for choice in *choices {
                 let setting = format!("{}={}", key.path(), choice.word);
-                parse_with_settings(EVERYTHING, "table.toml", &[setting]).unwrap();
+                let parsed = parse_with_settings(EVERYTHING, "table.toml", &[setting]);
+                let general = [&general::GEOMETRIES[..], &general::MATERIALS, &general::LOADS].concat();
+                match general.contains(&choice.word) {
+                    // It has keys of its own, which this scene lacks.
+                    true => assert!(matches!(parsed.unwrap_err().problem(), Problem::Table { .. }), "{}", choice.word),
+                    false => assert!(parsed.is_ok(), "{}", choice.word),
+                }
             }
         }
     }

@@ -63,7 +63,7 @@ fn state() -> impl Strategy<Value = State> {
             let mesh = Arc::new(mesh);
             prop::collection::vec(prop::array::uniform3(number()), mesh.control_points.len()).prop_map(
                 move |displacement| State {
-                    turns: vec![],
+                    turns: if step % 2 == 0 { vec![[rotation, 0.5, -1.0]] } else { vec![] },
                     mesh: mesh.clone(),
                     displacement,
                     marked: [marks.clone(), Vec::new()],
