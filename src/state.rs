@@ -34,6 +34,37 @@ pub struct State {
     pub negative_pivots: u64,
     /// What the next solve will try.
     pub control: StepControl,
+    /// How the path of equilibria goes on, where it is followed by arc length; from its first step on.
+    pub path: Option<PathMemory>,
+}
+
+/// Memory of continuation by arc length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathMemory {
+    /// Unit tangent of the path: rates of the control points' displacements with its length, in the order of the mesh. A
+    /// motion is as long as its root mean square over the parameter domain.
+    pub heading: Vec<[f64; 3]>,
+    /// Rate of the parameter with the length, per mm.
+    pub parameter_rate: f64,
+    /// Length of the first step, mm: the unit of the scene's limits.
+    pub first_mm: f64,
+    /// Length of the next step, mm.
+    pub next_mm: f64,
+    /// Length of the path so far, mm.
+    pub travelled_mm: f64,
+    /// A critical point ahead that is being located.
+    pub critical_ahead: Option<CriticalAhead>,
+    /// Whether the last step passed a bifurcation.
+    pub at_bifurcation: bool,
+}
+
+/// A limit point or a bifurcation known to lie ahead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CriticalAhead {
+    /// A step of this length passes it, mm.
+    pub within_mm: f64,
+    /// Rate of the parameter beyond it, per mm.
+    pub rate_beyond: f64,
 }
 
 /// Memory of the step control.
@@ -54,6 +85,10 @@ pub enum Rejection {
     NoEquilibrium,
     /// The shell jumped, and the jump is not located well enough yet.
     Jump,
+    /// The step passed a limit point or a bifurcation that is not located well enough yet.
+    CriticalPoint,
+    /// The path turned too far, or the step ended on another branch.
+    SharpTurn,
 }
 
 impl State {
@@ -83,12 +118,33 @@ impl State {
             None => 0,
             Some(Rejection::NoEquilibrium) => 1,
             Some(Rejection::Jump) => 2,
+            Some(Rejection::CriticalPoint) => 3,
+            Some(Rejection::SharpTurn) => 4,
         });
         // Only where there are any, so that states without them hash as they always did.
         if !self.turns.is_empty() {
             feed.bytes(b"turns");
             self.turns.iter().flatten().for_each(|value| feed.number(*value));
         }
+        if let Some(path) = &self.path {
+            path.feed(&mut feed);
+        }
         feed.finish()
+    }
+}
+
+impl PathMemory {
+    fn feed(&self, feed: &mut Feed) {
+        feed.bytes(b"path");
+        self.heading.iter().flatten().for_each(|value| feed.number(*value));
+        for value in [self.parameter_rate, self.first_mm, self.next_mm, self.travelled_mm] {
+            feed.number(value);
+        }
+        feed.integer(u64::from(self.critical_ahead.is_some()));
+        if let Some(ahead) = self.critical_ahead {
+            feed.number(ahead.within_mm);
+            feed.number(ahead.rate_beyond);
+        }
+        feed.integer(u64::from(self.at_bifurcation));
     }
 }

@@ -1,6 +1,6 @@
 //! The stages of one load step, gathered into one line.
 
-use crate::pipeline::{Outcome, Parameter, Record, Report};
+use crate::pipeline::{CriticalPoint, Outcome, Parameter, Record, Report};
 use crate::scene::{Scene, Stage};
 use crate::units::{count, duration};
 
@@ -12,8 +12,10 @@ pub(super) struct LoadStep {
     elements_before: [usize; 2],
     iterations: usize,
     wall_s: f64,
-    /// Solves turned down on the way: without equilibrium, and for a jump.
-    rejected: [usize; 2],
+    /// Solves turned down on the way: without equilibrium, for a jump, for a critical point, for a sharp turn.
+    rejected: [usize; 4],
+    /// What the step passed on its path.
+    passed: Option<CriticalPoint>,
     /// Energy released, where it jumped.
     released_n_mm: Option<f64>,
 }
@@ -55,19 +57,30 @@ impl LoadStep {
         if self.report.negative_pivots > 0 {
             events.push(format!("not stable ({})", count(self.report.negative_pivots as usize, "negative pivot")));
         }
-        let [no_equilibrium, jump] = self.rejected;
+        if let Some(passed) = self.passed {
+            events.push(format!("passed {}", passed.in_words()));
+        }
+        let [no_equilibrium, jump, critical, turn] = self.rejected;
         if no_equilibrium > 0 {
             events.push(format!("after {} without equilibrium", count(no_equilibrium, "solve")));
         }
         if jump > 0 {
             events.push(format!("after {} too far past the jump", count(jump, "solve")));
         }
+        if critical > 0 {
+            events.push(format!("after {} too far past it", count(critical, "solve")));
+        }
+        if turn > 0 {
+            events.push(format!("after {} round too sharp a turn", count(turn, "solve")));
+        }
         events
     }
 
     /// Whether it is worth a line of its own above a live one.
     pub(super) fn is_eventful(&self) -> bool {
-        self.released_n_mm.is_some() || self.elements_before != self.report.elements || self.report.negative_pivots > 0
+        self.released_n_mm.is_some()
+            || self.passed.is_some()
+            || self.elements_before != self.report.elements || self.report.negative_pivots > 0
     }
 }
 
@@ -77,7 +90,7 @@ pub(super) struct Gatherer {
     refines: bool,
     last_stage: Option<Stage>,
     elements: Option<[usize; 2]>,
-    pending_rejections: [usize; 2],
+    pending_rejections: [usize; 4],
     pending_iterations: usize,
     pending_wall_s: f64,
     open: Option<LoadStep>,
@@ -90,7 +103,7 @@ impl Gatherer {
             refines: scene.pipeline.contains(&Stage::RefineKnots),
             last_stage: scene.pipeline.last().copied(),
             elements: None,
-            pending_rejections: [0, 0],
+            pending_rejections: [0; 4],
             pending_iterations: 0,
             pending_wall_s: 0.0,
             open: None,
@@ -111,6 +124,7 @@ impl Gatherer {
                     wall_s: std::mem::take(&mut self.pending_wall_s),
                     rejected: std::mem::take(&mut self.pending_rejections),
                     released_n_mm: None,
+                    passed: report.critical_point,
                 });
             }
         }
@@ -119,6 +133,8 @@ impl Gatherer {
             Outcome::Done => {}
             Outcome::RejectedNoEquilibrium => self.pending_rejections[0] += 1,
             Outcome::RejectedJump => self.pending_rejections[1] += 1,
+            Outcome::RejectedCriticalPoint => self.pending_rejections[2] += 1,
+            Outcome::RejectedSharpTurn => self.pending_rejections[3] += 1,
         }
         match &mut self.open {
             Some(step) => {

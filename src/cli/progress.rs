@@ -188,6 +188,12 @@ fn live_message(report: &Report) -> String {
         Outcome::Done if report.iterations > 0 => format!(", {iterations} iterations"),
         Outcome::Done => String::new(),
         Outcome::RejectedJump => format!(" turned down at {:.3}{degree}: jump", report.attempted_parameter),
+        Outcome::RejectedCriticalPoint => {
+            format!(" turned down at {:.3}{degree}: past a critical point", report.attempted_parameter)
+        }
+        Outcome::RejectedSharpTurn => {
+            format!(" turned down at {:.3}{degree}: too sharp a turn", report.attempted_parameter)
+        }
         Outcome::RejectedNoEquilibrium => {
             format!(" turned down at {:.3}{degree}: no equilibrium", report.attempted_parameter)
         }

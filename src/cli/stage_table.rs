@@ -88,8 +88,16 @@ fn note(report: &Report) -> String {
     let degree = if report.driven_by == Parameter::Rotation { "°" } else { "" };
     match report.outcome {
         Outcome::RejectedJump => format!("✗ jump at {attempted:.3}{degree}"),
+        Outcome::RejectedCriticalPoint => format!("✗ past critical {attempted:.3}{degree}"),
+        Outcome::RejectedSharpTurn => format!("✗ sharp turn {attempted:.3}{degree}"),
         Outcome::RejectedNoEquilibrium => format!("✗ no solution {attempted:.3}{degree}"),
         Outcome::Done if report.jumped => format!("snap, −{:.2} N·mm", report.energy_released_n_mm),
+        Outcome::Done if report.stage == Stage::SwitchBranch => {
+            format!("left, −{:.2e} N·mm", report.energy_released_n_mm)
+        }
+        Outcome::Done if report.critical_point.is_some() => {
+            report.critical_point.map_or(String::new(), |passed| passed.in_words())
+        }
         Outcome::Done if report.marked != [0, 0] => {
             let verb = if report.stage == Stage::RefineKnots { "inserted" } else { "marked" };
             format!("{verb} {} + {}", report.marked[0], report.marked[1])
@@ -122,6 +130,12 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
         Outcome::Done if report.jumped => "done; the shell jumped".to_string(),
         Outcome::Done => "done".to_string(),
         Outcome::RejectedJump => "turned down: jumped; the increment is halved until the jump is located".to_string(),
+        Outcome::RejectedCriticalPoint => {
+            "turned down: past a limit point or a bifurcation; the step is halved until that is located".to_string()
+        }
+        Outcome::RejectedSharpTurn => {
+            "turned down: the path turned too far, or this is another branch; the step is halved".to_string()
+        }
         Outcome::RejectedNoEquilibrium => "turned down: no equilibrium found; the increment is halved".to_string(),
     };
     let [n1, n2] = report.elements;
@@ -146,14 +160,20 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
         lines.push(("probe", format!("{} = {} {}", probe.name, probe.value, probe.unit)));
     }
     lines.push(("strain energy", format!("{} N·mm", report.strain_energy_n_mm)));
-    if report.jumped {
+    if let Some(length) = report.path_length_mm {
+        lines.push(("length of the path", format!("{length} mm (root mean square displacement)")));
+    }
+    if let Some(passed) = report.critical_point {
+        lines.push(("passed", passed.in_words()));
+    }
+    if report.jumped || report.stage == Stage::SwitchBranch {
         lines.push(("energy released", format!("{} N·mm", report.energy_released_n_mm)));
     }
     lines.extend([
         ("elements", format!("{n1} × {n2} = {} (length × arc, of the model)", n1 * n2)),
         ("free unknowns", report.unknowns.to_string()),
     ]);
-    if matches!(report.stage, Stage::Solve | Stage::ReEquilibrate) {
+    if report.stage.finds_equilibrium() {
         lines.extend([
             ("Newton iterations", report.iterations.to_string()),
             ("factorizations", report.factorizations.to_string()),

@@ -19,7 +19,6 @@
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::external::{External, work};
-use crate::equilibrium::gmres::gmres;
 use crate::equilibrium::newton::{Effort, Iterate, SolveError, Workspace};
 use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::sparse::SparseSolver;
@@ -34,10 +33,6 @@ const ENERGY_ROUNDING: f64 = 1e-12;
 const MAX_BACKTRACKS: usize = 30;
 /// Doublings of a step along negative curvature.
 const MAX_DOUBLINGS: usize = 6;
-/// Residual of the direction where the tangent has a skew part, relative; Newton's convergence asks for no more.
-const SKEW_TOLERANCE: f64 = 1e-9;
-/// Iterations at most there: the skew part comes from free edges alone, so that its rank, in effect, is small.
-const SKEW_ITERATIONS: usize = 100;
 
 /// A descent under way: residual and stiffness are assembled at the point in hand.
 pub(super) struct Descent<'a> {
@@ -182,16 +177,8 @@ impl<'a> Descent<'a> {
     fn direction(&mut self, indefinite: bool) -> Vec<f64> {
         let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
         if self.external.has_skew() && !indefinite {
-            let Self { solver, placement, external, discretization, assembled, pattern, values, .. } = self;
-            let _ = assembled;
-            let whole = |x: &[f64]| {
-                let mut product = pattern.multiply(values, x);
-                let moved = placement.velocity(x, &[]);
-                let skew = placement.restrict(&external.multiply_skew(discretization, &moved));
-                product.iter_mut().zip(skew).for_each(|(a, b)| *a += b);
-                product
-            };
-            let solved = gmres(&direction, whole, |x| solver.solve(x), SKEW_TOLERANCE, SKEW_ITERATIONS);
+            let Self { solver, placement, external, discretization, pattern, values, .. } = self;
+            let solved = external.solve(discretization, placement, (pattern, values), solver, &direction);
             if product(&self.gradient, &solved) < 0.0 {
                 return solved;
             }
@@ -309,11 +296,11 @@ pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Euclidean length of forces on all control points.
-fn length(forces: &[[f64; 3]]) -> f64 {
+pub(super) fn length(forces: &[[f64; 3]]) -> f64 {
     forces.iter().map(|force| dot(*force, *force)).sum::<f64>().sqrt()
 }
 
 /// Index of the largest magnitude; the first of equals.
-fn largest(vector: &[f64]) -> usize {
+pub(super) fn largest(vector: &[f64]) -> usize {
     (0..vector.len()).fold(0, |best, i| if vector[i].abs() > vector[best].abs() { i } else { best })
 }

@@ -4,7 +4,15 @@
 //! is kept beside it.
 
 use crate::equilibrium::assembly::{Assembled, neighbour, neighbour_slot, stencil, stencil_len};
-use crate::model::{Discretization, Loads};
+use crate::equilibrium::gmres::gmres;
+use crate::equilibrium::pattern::Pattern;
+use crate::equilibrium::sparse::SparseSolver;
+use crate::model::{Discretization, Loads, Placement};
+
+/// Residual of a solution where the tangent has a skew part, relative; Newton's convergence asks for no more.
+const SKEW_TOLERANCE: f64 = 1e-9;
+/// Iterations at most there: the skew part comes from free edges alone, so that its rank, in effect, is small.
+const SKEW_ITERATIONS: usize = 100;
 
 /// Forces of the loads at a displacement.
 #[derive(Debug, Default)]
@@ -22,6 +30,11 @@ impl External {
             true => Vec::new(),
             false => discretization.loads.forces(&discretization.mesh, displacement, parameter),
         }
+    }
+
+    /// Forces where no load follows the shell.
+    pub fn dead(discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64) -> Self {
+        Self { forces: Self::forces_at(discretization, displacement, parameter), skew: Vec::new() }
     }
 
     /// Forces and tangent; the symmetric part of the tangent is added to the stiffness in `assembled`.
@@ -85,6 +98,9 @@ impl External {
         let n2 = discretization.mesh.control_counts()[1];
         let offsets = stencil(discretization.mesh.degree);
         let mut product = vec![[0.0; 3]; field.len()];
+        if !self.has_skew() {
+            return product;
+        }
         for i in 0..field.len() {
             for (slot, offset) in offsets.iter().enumerate() {
                 let Some(j) = neighbour(i, *offset, n2, field.len()) else { continue };
@@ -100,6 +116,27 @@ impl External {
             }
         }
         product
+    }
+}
+
+impl External {
+    /// Solves the whole system, the symmetric part of which is factored in `solver` and stands in the matrix.
+    pub fn solve(
+        &self,
+        discretization: &Discretization,
+        placement: &Placement,
+        (pattern, values): (&Pattern, &[f64]),
+        solver: &mut SparseSolver,
+        right_hand_side: &[f64],
+    ) -> Vec<f64> {
+        let whole = |x: &[f64]| {
+            let mut product = pattern.multiply(values, x);
+            let moved = placement.velocity(x, &[]);
+            let skew = placement.restrict(&self.multiply_skew(discretization, &moved));
+            product.iter_mut().zip(skew).for_each(|(a, b)| *a += b);
+            product
+        };
+        gmres(right_hand_side, whole, |x| solver.solve(x), SKEW_TOLERANCE, SKEW_ITERATIONS)
     }
 }
 

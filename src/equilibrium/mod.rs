@@ -1,10 +1,13 @@
 //! Equilibrium: assembly, the sparse solver, Newton's method as a descent on the energy.
 
 mod assembly;
+mod continuation;
 mod descent;
+mod equations;
 mod external;
 mod gmres;
 mod kernel;
+mod metric;
 mod newton;
 mod pattern;
 mod sparse;
@@ -12,6 +15,7 @@ mod stability;
 mod timing;
 
 pub use assembly::{Assembled, Want, strain_energy};
+pub use continuation::{Continuation, Direction, PathPoint, Sense};
 pub use newton::{Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Standing, Workspace, WorkspaceError};
 pub use sparse::DenseProduct;
 pub use sparse::FactorError;

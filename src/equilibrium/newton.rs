@@ -7,10 +7,11 @@
 use std::sync::Arc;
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
-use crate::equilibrium::descent::{Descent, product};
+use crate::equilibrium::descent::{Descent, Ended, product};
 use crate::equilibrium::external::{External, subtract, work};
 use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::sparse::{FactorError, SparseSolver};
+use crate::equilibrium::stability::SoftMode;
 use crate::model::{Discretization, ModelError};
 use crate::scene::Scene;
 use crate::spline::Mesh;
@@ -103,6 +104,14 @@ pub enum SolveError {
         /// What it took.
         effort: Effort,
     },
+    /// Nothing moves as the parameter changes: there is no path to follow.
+    #[error("nothing moves as the parameter changes at {parameter}: give the loads or motions a history that goes on there")]
+    NothingMoves {
+        /// The parameter.
+        parameter: f64,
+        /// What it took.
+        effort: Effort,
+    },
     /// The observer asked to stop.
     #[error("stopped at iteration {} (energy {:.6e} N·mm)", last.iteration, last.energy)]
     Stopped {
@@ -121,6 +130,7 @@ impl SolveError {
             | Self::LineSearchFailed { effort, .. }
             | Self::NotANumber { effort, .. }
             | Self::Factor { effort, .. }
+            | Self::NothingMoves { effort, .. }
             | Self::Stopped { effort, .. } => *effort,
         }
     }
@@ -132,7 +142,7 @@ impl SolveError {
             | Self::LineSearchFailed { last, .. }
             | Self::NotANumber { last, .. }
             | Self::Stopped { last, .. } => Some(last),
-            Self::Factor { .. } => None,
+            Self::Factor { .. } | Self::NothingMoves { .. } => None,
         }
     }
 }
@@ -175,11 +185,11 @@ pub struct Workspace {
     pub(super) assembled: Assembled,
     pub(super) values: Vec<f64>,
     /// Where the stiffness in `assembled` and its factor were formed, and its negative pivots.
-    factored_at: Option<Factored>,
+    pub(super) factored_at: Option<Factored>,
 }
 
 #[derive(Debug)]
-struct Factored {
+pub(super) struct Factored {
     parameter: f64,
     displacement: Vec<[f64; 3]>,
     turns: Vec<[f64; 3]>,
@@ -264,9 +274,22 @@ pub struct Equilibrium<'a> {
 pub type Observer<'o> = &'o mut dyn FnMut(&Iterate) -> bool;
 
 /// Forces at the start of a solve, for the work done on the way.
-struct Before {
+pub(super) struct Before {
     reactions: Vec<f64>,
     loads: Vec<[f64; 3]>,
+}
+
+impl Before {
+    /// At a state.
+    pub fn at(work: &mut Workspace, from: Standing) -> Self {
+        let forces = work.forces(from);
+        let Discretization { unknowns, .. } = &work.discretization;
+        let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
+        Self {
+            reactions: unknowns.place(&free, from.parameter).reactions(&forces),
+            loads: External::forces_at(&work.discretization, from.displacement, from.parameter),
+        }
+    }
 }
 
 impl<'a> Equilibrium<'a> {
@@ -293,6 +316,27 @@ impl<'a> Equilibrium<'a> {
         let start = discretization.unknowns.of_displacement(from.displacement, from.turns, from.parameter);
         let loads = External::forces_at(discretization, from.displacement, from.parameter);
         let before = Before { reactions: vec![0.0; discretization.unknowns.given_count()], loads };
+        self.minimize(start, from, from.parameter, &before, observer)
+    }
+
+    /// Down from an unstable equilibrium at the same parameter: off along its soft mode by a largest motion of `amplitude`
+    /// mm, to the side that has less energy, and then as in [`Self::relax`].
+    ///
+    /// # Errors
+    /// As for [`Self::advance`].
+    pub fn leave(
+        &mut self,
+        from: Standing,
+        mode: &SoftMode,
+        amplitude: f64,
+        observer: Observer,
+    ) -> Result<Solved, SolveError> {
+        let unknowns = &self.work.discretization.unknowns;
+        let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
+        let side = |share: f64| -> Vec<f64> { free.iter().zip(&mode.free).map(|(q, m)| q + share * m).collect() };
+        let (one, other) = (side(amplitude), side(-amplitude));
+        let start = if self.lies_lower(&one, &other, from.parameter) { one } else { other };
+        let before = Before::at(self.work, from);
         self.minimize(start, from, from.parameter, &before, observer)
     }
 
@@ -359,20 +403,35 @@ impl<'a> Equilibrium<'a> {
             descent.step(&last)?;
         };
         let ended = descent.finish();
+        Ok(self.work.solved(self.scene, from, parameter, before, ended, &last))
+    }
+}
+
+impl Workspace {
+    /// What a solve has found; remembers that stiffness and factor stand there.
+    pub(super) fn solved(
+        &mut self,
+        scene: &Scene,
+        from: Standing,
+        parameter: f64,
+        before: &Before,
+        ended: Ended,
+        last: &Iterate,
+    ) -> Solved {
         let at = Standing { displacement: &ended.displacement, turns: &ended.turns, parameter };
-        self.work.factored_at = Some(Factored::new(at, last.negative_pivots));
-        let unknowns = &self.work.discretization.unknowns;
+        self.factored_at = Some(Factored::new(at, last.negative_pivots));
+        let unknowns = &self.discretization.unknowns;
         let (given, target) = (unknowns.given_at(from.parameter), unknowns.given_at(parameter));
         let moved: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| 0.5 * (m1 - m0)).collect();
         let of_motions = product(&before.reactions, &moved) + product(&ended.reactions, &moved);
         let of_loads = work(&before.loads, &ended.forces, from.displacement, &ended.displacement);
-        let parts = self.scene.symmetry.copies() as f64;
-        let moment = match self.scene.end_rotation() {
+        let parts = scene.symmetry.copies() as f64;
+        let moment = match scene.end_rotation() {
             // All given motions are proportional to θ in degrees.
             Some(_) => 0.5 * parts * product(&ended.reactions, &unknowns.given_at(1.0)) * 1.0_f64.to_degrees(),
             None => 0.0,
         };
-        Ok(Solved {
+        Solved {
             energy: parts * last.energy,
             work: parts * (of_motions + of_loads),
             moment,
@@ -381,7 +440,7 @@ impl<'a> Equilibrium<'a> {
             effort: ended.effort,
             displacement: ended.displacement,
             turns: ended.turns,
-        })
+        }
     }
 }
 

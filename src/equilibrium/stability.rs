@@ -1,65 +1,156 @@
-//! Stability of an equilibrium: the lowest eigenvalue of the tangent stiffness and its mode.
+//! Stability of an equilibrium: the lowest eigenvalue of the tangent stiffness, and its mode.
+//!
+//! The eigenvalue is that of K φ = μ M φ, M = Tᵀ m T with the integrals m of the basis functions ([`super::metric`]): the
+//! stiffness against a motion whose root mean square is 1 mm, so that it hardly depends on the mesh. It is found below
+//! all others, whatever the number of negative pivots, by Sylvester's law of inertia: K − σ M has as many negative pivots
+//! as there are eigenvalues below σ (spectrum slicing, Parlett, *The Symmetric Eigenvalue Problem*, section 3.3). Inverse
+//! iteration (Golub & Van Loan, *Matrix Computations*, 4th ed., section 8.2.2) from a shift close below then gives the mode.
 
-use crate::equilibrium::newton::{SolveError, Standing, Workspace};
+use crate::equilibrium::assembly::Assembled;
+use crate::equilibrium::descent::product;
+use crate::equilibrium::metric::Metric;
+use crate::equilibrium::newton::{Effort, SolveError, Standing, Workspace};
 use crate::shell::dot;
 
-/// Inverse iterations at most; near a limit point the lowest eigenvalue stands far below the next, and a handful
-/// suffice.
+/// Inverse iterations at most; with the shift as close as [`CLOSE`] a handful suffice, but for eigenvalues that are
+/// nearly equal, of which any mixture of modes will do.
 const MAX_ITERATIONS: usize = 200;
-/// The eigenvalue has settled when it changes by less than this, relatively.
+/// The eigenvalue has settled when it changes by less than this, relatively to its distance from the shift.
 const SETTLED: f64 = 1e-10;
+/// How close below the lowest eigenvalue the shift is put, relative to it.
+const CLOSE: f64 = 0.25;
+/// Trials of shifts at most: from the smallest magnitude of a number to the largest.
+const MAX_SHIFTS: usize = 200;
 
-/// The eigenpair of the stiffness on the free unknowns whose eigenvalue is smallest in magnitude.
+/// The lowest eigenvalue of the stiffness on the free unknowns, with its mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SoftMode {
-    /// Eigenvalue, N/mm (unknowns are displacements of control points).
+    /// Eigenvalue, N/mm: twice the energy of a small motion along the mode with a root mean square of 1 mm.
     pub eigenvalue: f64,
     /// Displacement of the control points, scaled to a largest length of 1.
     pub shape: Vec<[f64; 3]>,
+    /// The free unknowns of that motion.
+    pub(super) free: Vec<f64>,
     /// Control point that moves most.
     pub largest_at: usize,
     /// Inverse iterations that it took.
     pub iterations: usize,
+    /// Factorizations that it took.
+    pub factorizations: usize,
 }
 
-/// Inverse iteration (Golub & Van Loan, *Matrix Computations*, 4th ed., section 8.2.2) with the L D Lᵀ factor at a
-/// state; the sign of the Rayleigh quotient tells a stable state from an unstable one.
+/// Finds it at a state.
 ///
 /// # Errors
 /// Where the stiffness has no factor.
 pub fn soft_mode(work: &mut Workspace, at: Standing) -> Result<SoftMode, SolveError> {
     work.factorize_at(at)?;
-    let Workspace { discretization, solver, .. } = &mut *work;
-    let count = discretization.unknowns.count();
+    // The factor becomes that of a shifted matrix.
+    work.factored_at = None;
+    let free = work.discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
+    let mut slicing = Slicing { mass: mass(work, &free, at.parameter), stiffness: work.values.clone(), work, tried: 0 };
     // A start that no symmetry is orthogonal to, the same in every run.
-    let mut vector: Vec<f64> = (0..count).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
-    normalize(&mut vector);
-    let mut eigenvalue = 0.0;
-    let mut iterations = 0;
-    while iterations < MAX_ITERATIONS {
-        iterations += 1;
-        let mut next = vector.clone();
-        solver.solve(&mut next);
-        // λ ≈ 1 / (v · K⁻¹ v) for a unit v.
-        let settled = 1.0 / vector.iter().zip(&next).map(|(a, b)| a * b).sum::<f64>();
-        normalize(&mut next);
-        vector = next;
-        let change = (settled - eigenvalue).abs();
-        eigenvalue = settled;
-        if change <= SETTLED * settled.abs() {
-            break;
-        }
-    }
-    let free = discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
-    let mut shape = discretization.unknowns.place(&free, at.parameter).velocity(&vector, &[]);
+    let start: Vec<f64> = (0..free.len()).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
+    slicing.shift_below(&start)?;
+    let (vector, eigenvalue, iterations) = slicing.iterate(start);
+    let factorizations = slicing.tried;
+    let placement = work.discretization.unknowns.place(&free, at.parameter);
+    let mut shape = placement.velocity(&vector, &[]);
     let lengths: Vec<f64> = shape.iter().map(|u| dot(*u, *u).sqrt()).collect();
     let largest_at = (0..lengths.len()).fold(0, |best, i| if lengths[i] > lengths[best] { i } else { best });
     let largest = lengths[largest_at];
     shape.iter_mut().for_each(|u| *u = u.map(|value| value / largest));
-    Ok(SoftMode { eigenvalue, shape, largest_at, iterations })
+    let free = vector.iter().map(|value| value / largest).collect();
+    Ok(SoftMode { eigenvalue, shape, free, largest_at, iterations, factorizations })
 }
 
-fn normalize(vector: &mut [f64]) {
-    let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-    vector.iter_mut().for_each(|x| *x /= length);
+/// Tᵀ m T in the structure of the stiffness.
+fn mass(work: &Workspace, free: &[f64], parameter: f64) -> Vec<f64> {
+    let Workspace { discretization, pattern, .. } = work;
+    let mut diagonal = Assembled::new(discretization);
+    let blocks = diagonal.stiffness.len() / discretization.mesh.control_points.len();
+    for (point, weight) in Metric::new(&discretization.mesh).weights.iter().enumerate() {
+        // The first block of a control point is its own.
+        (0..3).for_each(|c| diagonal.stiffness[point * blocks + 4 * c] = *weight);
+    }
+    let placement = discretization.unknowns.place(free, parameter);
+    let mut values = vec![0.0; pattern.entry_count()];
+    pattern.fill(discretization, &placement, &diagonal, &mut values);
+    values
+}
+
+/// K − σ M for changing σ.
+struct Slicing<'w> {
+    work: &'w mut Workspace,
+    stiffness: Vec<f64>,
+    mass: Vec<f64>,
+    tried: usize,
+}
+
+impl Slicing<'_> {
+    /// Factors K − σ M; returns the number of eigenvalues below σ.
+    fn count_below(&mut self, shift: f64) -> Result<usize, SolveError> {
+        let Workspace { solver, values, .. } = &mut *self.work;
+        for (value, (k, m)) in values.iter_mut().zip(self.stiffness.iter().zip(&self.mass)) {
+            *value = k - shift * m;
+        }
+        self.tried += 1;
+        let effort = Effort::default();
+        solver.factorize(values).map(|negative| negative.count).map_err(|cause| SolveError::Factor { cause, effort })
+    }
+
+    /// Puts the shift below the lowest eigenvalue and close to it, and leaves its factor in the solver.
+    fn shift_below(&mut self, start: &[f64]) -> Result<f64, SolveError> {
+        // A Rayleigh quotient is no less than the lowest eigenvalue, and has its units.
+        let quotient = self.form(start, &self.stiffness) / self.form(start, &self.mass);
+        let scale = quotient.abs().max(f64::MIN_POSITIVE);
+        let mut above = quotient.max(0.0);
+        let mut below = match self.count_below(0.0)? {
+            0 => 0.0,
+            _ => {
+                above = 0.0;
+                let mut shift = -1e-12 * scale;
+                while self.count_below(shift)? > 0 && self.tried < MAX_SHIFTS {
+                    (above, shift) = (shift, 4.0 * shift);
+                }
+                shift
+            }
+        };
+        while above - below > CLOSE * above.abs().max(below.abs()) && self.tried < MAX_SHIFTS {
+            // Between numbers of one sign in the geometric mean: they may be many orders of magnitude apart.
+            let middle = match below.abs().min(above.abs()) {
+                0.0 => 0.1 * (below + above),
+                _ => below.signum() * (below * above).sqrt(),
+            };
+            match self.count_below(middle)? {
+                0 => below = middle,
+                _ => above = middle,
+            }
+        }
+        self.count_below(below)?;
+        Ok(below)
+    }
+
+    /// vᵀ A v.
+    fn form(&self, vector: &[f64], values: &[f64]) -> f64 {
+        product(vector, &self.work.pattern.multiply(values, vector))
+    }
+
+    /// Inverse iteration with the factor at hand: mode, eigenvalue and iterations.
+    fn iterate(&mut self, mut vector: Vec<f64>) -> (Vec<f64>, f64, usize) {
+        let mut last = f64::INFINITY;
+        for iteration in 1..=MAX_ITERATIONS {
+            let mut next = self.work.pattern.multiply(&self.mass, &vector);
+            self.work.solver.solve(&mut next);
+            let length = self.form(&next, &self.mass).sqrt();
+            vector = next.into_iter().map(|value| value / length).collect();
+            let eigenvalue = self.form(&vector, &self.stiffness);
+            // 1/length is the distance of the eigenvalue from the shift.
+            if (eigenvalue - last).abs() <= SETTLED / length || iteration == MAX_ITERATIONS {
+                return (vector, eigenvalue, iteration);
+            }
+            last = eigenvalue;
+        }
+        (vector, last, MAX_ITERATIONS)
+    }
 }

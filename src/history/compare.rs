@@ -45,6 +45,11 @@ pub fn compare(a: &State, b: &State) -> Comparison {
     .collect();
     differences.extend(displacement(a, b));
     differences.extend(control_points(&a.mesh, &b.mesh));
+    if let (Some(p), Some(q)) = (&a.path, &b.path) {
+        differences.extend(worst("direction of the path", &a.mesh, &p.heading, &q.heading));
+        differences.extend(number("length of the path", p.travelled_mm, q.travelled_mm));
+        differences.extend(number("length of the next step", p.next_mm, q.next_mm));
+    }
     differences.sort_by(|x, y| x.agreeing_bits.total_cmp(&y.agreeing_bits));
     if differences.is_empty() {
         return Comparison::Structure("knots or step control differ".to_string());
@@ -60,6 +65,8 @@ fn structure(a: &State, b: &State) -> Option<String> {
             None => format!("a solve that reached {}°", state.parameter),
             Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
             Some(Rejection::Jump) => "a solve that was turned down for a jump".to_string(),
+            Some(Rejection::CriticalPoint) => "a solve that was turned down for a critical point".to_string(),
+            Some(Rejection::SharpTurn) => "a solve that was turned down for a sharp turn".to_string(),
         };
         return Some(format!("{} against {}", what(a), what(b)));
     }
@@ -77,6 +84,10 @@ fn structure(a: &State, b: &State) -> Option<String> {
     }
     if a.negative_pivots != b.negative_pivots {
         return Some(format!("{} negative pivots against {}", a.negative_pivots, b.negative_pivots));
+    }
+    if a.path.is_some() != b.path.is_some() {
+        let what = |state: &State| if state.path.is_some() { "by arc length" } else { "by load" };
+        return Some(format!("a step {} against one {}", what(a), what(b)));
     }
     if a.control != b.control {
         return Some(format!("step control {:?} against {:?}", a.control, b.control));

@@ -154,7 +154,13 @@ fn parse_term(term: &str, fields: &[(String, Value)]) -> Result<Term, ConditionE
 
 /// Every word that a field can hold; empty for fields that hold numbers.
 fn words_of(field: &str) -> Vec<String> {
-    let outcomes = [Outcome::Done, Outcome::RejectedJump, Outcome::RejectedNoEquilibrium];
+    let outcomes = [
+        Outcome::Done,
+        Outcome::RejectedJump,
+        Outcome::RejectedNoEquilibrium,
+        Outcome::RejectedCriticalPoint,
+        Outcome::RejectedSharpTurn,
+    ];
     match field {
         "stage" => Stage::ALL.iter().map(|stage| stage.name().to_string()).collect(),
         "outcome" => {

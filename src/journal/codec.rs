@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 use super::format::CHUNK_BYTES_LIMIT;
 use super::soundness::{Flaw, check_mesh, check_state};
 use crate::scene::Stage;
-use crate::state::{Hash, Mesh, Rejection, State, StepControl};
+use crate::state::{CriticalAhead, Hash, Mesh, PathMemory, Rejection, State, StepControl};
 
 /// The newest version that is written, in front of every state and mesh. A state is written in the oldest version that
 /// holds it.
-pub const CODEC_VERSION: u8 = 2;
+pub const CODEC_VERSION: u8 = 3;
 
 /// Why bytes are not a state or a mesh that can be used.
 #[derive(Debug, thiserror::Error)]
@@ -126,6 +126,54 @@ struct StateV2<'a> {
     turns: Cow<'a, [[f64; 3]]>,
 }
 
+/// Version 3: continuation by arc length, and what came with it. Written only where there is any of that.
+#[derive(Serialize, Deserialize)]
+struct StateV3<'a> {
+    base: StateV1<'a>,
+    turns: Cow<'a, [[f64; 3]]>,
+    path: Option<PathV3<'a>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct PathV3<'a> {
+    heading: Cow<'a, [[f64; 3]]>,
+    parameter_rate: f64,
+    first_mm: f64,
+    next_mm: f64,
+    travelled_mm: f64,
+    /// Length and rate.
+    critical_ahead: Option<[f64; 2]>,
+    at_bifurcation: bool,
+}
+
+impl<'a> PathV3<'a> {
+    fn of(path: &'a PathMemory) -> Self {
+        Self {
+            heading: Cow::from(&path.heading),
+            parameter_rate: path.parameter_rate,
+            first_mm: path.first_mm,
+            next_mm: path.next_mm,
+            travelled_mm: path.travelled_mm,
+            critical_ahead: path.critical_ahead.map(|ahead| [ahead.within_mm, ahead.rate_beyond]),
+            at_bifurcation: path.at_bifurcation,
+        }
+    }
+
+    fn into_memory(self) -> PathMemory {
+        PathMemory {
+            heading: self.heading.into_owned(),
+            parameter_rate: self.parameter_rate,
+            first_mm: self.first_mm,
+            next_mm: self.next_mm,
+            travelled_mm: self.travelled_mm,
+            critical_ahead: self
+                .critical_ahead
+                .map(|[within_mm, rate_beyond]| CriticalAhead { within_mm, rate_beyond }),
+            at_bifurcation: self.at_bifurcation,
+        }
+    }
+}
+
 #[derive(Serialize, Deserialize)]
 enum StageV1 {
     Solve,
@@ -133,12 +181,18 @@ enum StageV1 {
     RefineKnots,
     ProjectDisplacements,
     ReEquilibrate,
+    /// From version 3 on.
+    SwitchBranch,
 }
 
 #[derive(Serialize, Deserialize)]
 enum RejectionV1 {
     NoEquilibrium,
     Jump,
+    /// From version 3 on.
+    CriticalPoint,
+    /// From version 3 on.
+    SharpTurn,
 }
 
 fn config() -> impl bincode::config::Config {
@@ -221,6 +275,7 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
             Stage::RefineKnots => StageV1::RefineKnots,
             Stage::ProjectDisplacements => StageV1::ProjectDisplacements,
             Stage::ReEquilibrate => StageV1::ReEquilibrate,
+            Stage::SwitchBranch => StageV1::SwitchBranch,
         }),
         parameter: state.parameter,
         moment_n_mm: state.moment_n_mm,
@@ -231,11 +286,17 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
         rejection: state.control.rejection.map(|rejection| match rejection {
             Rejection::NoEquilibrium => RejectionV1::NoEquilibrium,
             Rejection::Jump => RejectionV1::Jump,
+            Rejection::CriticalPoint => RejectionV1::CriticalPoint,
+            Rejection::SharpTurn => RejectionV1::SharpTurn,
         }),
     };
-    let state = match state.turns.is_empty() {
-        true => encode(1, &base)?,
-        false => encode(2, &StateV2 { base, turns: Cow::from(&state.turns) })?,
+    let turns = Cow::from(&state.turns);
+    let state = if state.path.is_some() || state.stage == Some(Stage::SwitchBranch) {
+        encode(3, &StateV3 { base, turns, path: state.path.as_ref().map(PathV3::of) })?
+    } else if !turns.is_empty() {
+        encode(2, &StateV2 { base, turns })?
+    } else {
+        encode(1, &base)?
     };
     Ok(EncodedState { state, displacement, displacement_hash })
 }
@@ -252,12 +313,16 @@ pub fn decode_state<'a>(
     mesh_hash: Hash,
     expected: Hash,
 ) -> Result<State, CodecError> {
-    let (stored, turns) = match bytes.first() {
+    let (stored, turns, path) = match bytes.first() {
+        Some(3) => {
+            let StateV3 { base, turns, path } = decode(bytes)?;
+            (base, turns.into_owned(), path.map(PathV3::into_memory))
+        }
         Some(2) => {
             let StateV2 { base, turns } = decode(bytes)?;
-            (base, turns.into_owned())
+            (base, turns.into_owned(), None)
         }
-        _ => (decode::<StateV1>(bytes)?, Vec::new()),
+        _ => (decode::<StateV1>(bytes)?, Vec::new(), None),
     };
     let found = Hash::from_bytes(stored.mesh);
     if found != mesh_hash {
@@ -277,6 +342,7 @@ pub fn decode_state<'a>(
             StageV1::RefineKnots => Stage::RefineKnots,
             StageV1::ProjectDisplacements => Stage::ProjectDisplacements,
             StageV1::ReEquilibrate => Stage::ReEquilibrate,
+            StageV1::SwitchBranch => Stage::SwitchBranch,
         }),
         parameter: stored.parameter,
         turns,
@@ -289,8 +355,11 @@ pub fn decode_state<'a>(
             rejection: stored.rejection.map(|rejection| match rejection {
                 RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,
                 RejectionV1::Jump => Rejection::Jump,
+                RejectionV1::CriticalPoint => Rejection::CriticalPoint,
+                RejectionV1::SharpTurn => Rejection::SharpTurn,
             }),
         },
+        path,
     };
     let found = state.hash();
     if found != expected {

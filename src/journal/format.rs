@@ -50,8 +50,9 @@ pub const OWN_TOPICS: [&str; 6] =
     [MESH_TOPIC, DISPLACEMENT_TOPIC, STATE_TOPIC, REPORT_TOPIC, COMMIT_TOPIC, FINISHED_TOPIC];
 
 /// Largest chunk that is written or read, bytes. Bounds what a damaged length can make a reader allocate; a state
-/// with its mesh takes 56 bytes for each control point, so this is room for half a million of them.
-pub const CHUNK_BYTES_LIMIT: usize = 32 << 20;
+/// with its mesh and the direction of its path takes 80 bytes for each control point, so this is room for half a million
+/// of them.
+pub const CHUNK_BYTES_LIMIT: usize = 48 << 20;
 
 /// Distance of two stages in `log_time`.
 const NANOSECONDS_PER_STAGE: u64 = 100_000_000;

@@ -169,5 +169,14 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
     finite("moment", [state.moment_n_mm])?;
     finite("turn", state.turns.iter().flatten().copied())?;
     finite("strain energy", [state.strain_energy_n_mm])?;
+    if let Some(path) = &state.path {
+        if path.heading.len() != expected {
+            return Err(Flaw::Length { what: "rates along the path", expected, found: path.heading.len() });
+        }
+        finite("rate along the path", path.heading.iter().flatten().copied())?;
+        let ahead = path.critical_ahead.map_or([0.0; 2], |ahead| [ahead.within_mm, ahead.rate_beyond]);
+        let lengths = [path.parameter_rate, path.first_mm, path.next_mm, path.travelled_mm];
+        finite("length or rate of the path", lengths.into_iter().chain(ahead))?;
+    }
     finite("rotation of a known jump", state.control.jump_seen_at_deg)
 }

@@ -140,15 +140,25 @@ impl Loads {
 
     /// Forces on the control points, N.
     pub fn forces(&self, mesh: &Mesh, displacement: &[[f64; 3]], parameter: f64) -> Vec<[f64; 3]> {
+        self.sum(mesh, displacement, |history| history.at(parameter))
+    }
+
+    /// Derivatives of the forces with respect to the parameter where the shell does not move, N.
+    pub fn rates(&self, mesh: &Mesh, displacement: &[[f64; 3]], parameter: f64) -> Vec<[f64; 3]> {
+        self.sum(mesh, displacement, |history| history.rate(parameter))
+    }
+
+    /// Forces on the control points with a factor for each action, N.
+    fn sum(&self, mesh: &Mesh, displacement: &[[f64; 3]], factor: impl Fn(&History) -> f64) -> Vec<[f64; 3]> {
         let mut forces = vec![[0.0; 3]; mesh.control_points.len()];
         for dead in &self.dead {
-            let factor = dead.history.at(parameter);
+            let factor = factor(&dead.history);
             for (point, force) in &dead.forces {
                 forces[*point] = add(forces[*point], scaled(factor, *force));
             }
         }
         for following in &self.following {
-            let factor = following.history.at(parameter);
+            let factor = factor(&following.history);
             for point in &following.points {
                 let (h, _) = following.kind.work(point.deformed(mesh, displacement));
                 for (a, control) in point.controls(mesh).enumerate() {

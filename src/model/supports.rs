@@ -27,6 +27,11 @@ impl Law {
     pub fn at(&self, parameter: f64) -> f64 {
         self.at_one * self.history.at(parameter)
     }
+
+    /// Derivative with respect to the parameter, mm.
+    pub fn rate(&self, parameter: f64) -> f64 {
+        self.at_one * self.history.rate(parameter)
+    }
 }
 
 /// A rigid section that moves.

@@ -113,6 +113,11 @@ impl Unknowns {
         self.given.iter().map(|law| law.at(parameter)).collect()
     }
 
+    /// Derivatives of the given coordinates with respect to the parameter, mm.
+    pub fn given_rates_at(&self, parameter: f64) -> Vec<f64> {
+        self.given.iter().map(|law| law.rate(parameter)).collect()
+    }
+
     /// The rigid sections that move.
     pub fn sections(&self) -> &[Section] {
         &self.supports.sections

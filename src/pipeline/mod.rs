@@ -1,10 +1,14 @@
 //! Stages, the loop that runs them, step control, and the sinks that see every stage.
 
+mod load_solve;
+mod path_control;
+mod path_solve;
 mod probes;
 mod record;
 mod report;
 mod run;
 mod sink;
+mod stage_error;
 mod stages;
 mod step_control;
 
@@ -12,6 +16,8 @@ pub use record::{Commit, Record};
 pub use report::{Outcome, Parameter, Reading, Report, WrittenReport};
 pub use run::{Ending, Run, RunError};
 pub use sink::{MemorySink, Sink, SinkError};
-pub use stages::{StageError, Stages};
+pub use path_control::CriticalPoint;
+pub use stage_error::StageError;
+pub use stages::Stages;
 pub use step_control::next_stage;
 pub(crate) use step_control::{is_jump, next_attempt};

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::pipeline::CriticalPoint;
 use crate::scene::{Scene, Stage};
 
 /// What a stage reports beside the state that it made. Pure: holds no clock and no host.
@@ -49,6 +50,10 @@ pub struct Report {
     pub largest_indicator: [f64; 2],
     /// The scene's probes at a new equilibrium; empty after other stages.
     pub probes: Vec<Reading>,
+    /// Arc length: length of the path so far, mm.
+    pub path_length_mm: Option<f64>,
+    /// Arc length: what the step passed, where it is located.
+    pub critical_point: Option<CriticalPoint>,
 }
 
 /// What drives a run.
@@ -147,6 +152,14 @@ pub struct WrittenReport {
     /// The scene's probes at a new equilibrium.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     probes: Vec<Reading>,
+    /// Continuation by arc length: length of the path so far (root mean square displacements), mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
+    path_length_mm: Option<f64>,
+    /// Continuation by arc length: the limit point or bifurcation that the step passed, where it is located.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "CriticalPoint")]
+    critical_point: Option<CriticalPoint>,
 }
 
 impl From<WrittenReport> for Report {
@@ -173,6 +186,8 @@ impl From<WrittenReport> for Report {
             marked: written.marked,
             largest_indicator: written.largest_indicator,
             probes: written.probes,
+            path_length_mm: written.path_length_mm,
+            critical_point: written.critical_point,
         }
     }
 }
@@ -203,6 +218,8 @@ impl From<Report> for WrittenReport {
             marked: report.marked,
             largest_indicator: report.largest_indicator,
             probes: report.probes,
+            path_length_mm: report.path_length_mm,
+            critical_point: report.critical_point,
         }
     }
 }
@@ -215,6 +232,10 @@ pub enum Outcome {
     Done,
     /// Solve: the increment jumped and will be halved until the jump is located.
     RejectedJump,
-    /// Solve: no equilibrium was found; the increment will be halved.
+    /// Solve: no equilibrium was found; the increment, or the step along the path, will be halved.
     RejectedNoEquilibrium,
+    /// Solve: the step passed a limit point or a bifurcation, and will be halved until that is located.
+    RejectedCriticalPoint,
+    /// Solve: the path turned too far, or the step ended on another branch; it will be halved.
+    RejectedSharpTurn,
 }

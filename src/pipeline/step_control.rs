@@ -56,7 +56,9 @@ pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
 
 /// Whether a rotation is reached, to the rounding of its steps.
 pub fn has_reached(scene: &Scene, state: &State, parameter: f64) -> bool {
-    state.parameter >= parameter - SAME * scene.load.increment()
+    // Along a path the parameter may also go beyond the target on the other side.
+    let here = if scene.continuation.is_some() { state.parameter.abs() } else { state.parameter };
+    here >= parameter - SAME * scene.load.increment()
 }
 
 /// The stage that follows a state; `None` where the run has reached its target.
@@ -67,7 +69,10 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
         Some(Stage::Solve) if state.control.rejection.is_some() => return Some(Stage::Solve),
         Some(Stage::RefineKnots) => return Some(Stage::ProjectDisplacements),
         Some(Stage::ProjectDisplacements) => return Some(Stage::ReEquilibrate),
-        Some(Stage::Solve | Stage::ReEquilibrate) => false,
+        Some(Stage::Solve | Stage::ReEquilibrate) if has(Stage::SwitchBranch) && is_to_be_left(scene, state) => {
+            return Some(Stage::SwitchBranch);
+        }
+        Some(Stage::Solve | Stage::ReEquilibrate | Stage::SwitchBranch) => false,
         Some(Stage::EvaluateIndicators) => true,
     };
     if !evaluated && has(Stage::EvaluateIndicators) {
@@ -77,6 +82,14 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
         return Some(Stage::RefineKnots);
     }
     (!has_reached(scene, state, scene.load.target())).then_some(Stage::Solve)
+}
+
+/// Whether an unstable equilibrium is one that a run does not stay on. Along a path only those on a branch that has just
+/// become unstable are: behind a limit point the path itself is what is asked for.
+fn is_to_be_left(scene: &Scene, state: &State) -> bool {
+    let along_path = scene.continuation.is_some();
+    let bifurcated = state.path.as_ref().is_some_and(|path| path.at_bifurcation);
+    state.negative_pivots > 0 && (!along_path || bifurcated)
 }
 
 impl Attempt {
@@ -162,6 +175,7 @@ mod tests {
             strain_energy_n_mm: 0.0,
             negative_pivots: 0,
             control,
+            path: None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Entries to a scene, and what must hold between keys.
 
 use super::data::{
-    Action, Adapt, EndRotation, Geometry, Hold, LengthLimit, Load, Material, MeshSpec, Motion, Output, Probe, Scene,
+    Action, Adapt, ArcLength, ArcLengthWord, EndRotation, Geometry, Hold, LengthLimit, Load, Material, MeshSpec, Motion, Output, Probe, Scene,
     Solver, Stage, Support, Symmetry,
 };
 use super::document::Document;
@@ -49,10 +49,25 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
     let pipeline = stages(reader)?;
     let adapt = adapt(reader, &pipeline, &geometry)?;
     let solver = solver(reader, increment.as_ref())?;
+    let continuation = continuation(reader)?;
     let output =
         Output { sync: reader.word(&keys::SYNC)?.value, mesh_history: reader.switch(&keys::MESH_HISTORY)?.value };
     let pipeline = pipeline.value;
-    Ok(Scene { geometry, material, mesh, symmetry, load, supports, actions, probes, adapt, solver, pipeline, output })
+    Ok(Scene {
+        geometry,
+        material,
+        mesh,
+        symmetry,
+        load,
+        supports,
+        actions,
+        probes,
+        adapt,
+        solver,
+        continuation,
+        pipeline,
+        output,
+    })
 }
 
 /// Supports, actions and probes, and whether they make a problem.
@@ -267,7 +282,7 @@ fn stages(reader: &Reader<'_, '_>) -> Checked<Found<Vec<Stage>>> {
         return Ok(Found { value: stage_order::read(&keys::STAGES, entry)?, place: Some(entry.value_place()) });
     }
     let adapts = reader.document.header(keys::THRESHOLD.section).is_some();
-    let value = if adapts { Stage::ALL.to_vec() } else { vec![Stage::Solve] };
+    let value = if adapts { Stage::REFINING.to_vec() } else { vec![Stage::Solve] };
     Ok(Found { value, place: None })
 }
 
@@ -344,6 +359,28 @@ fn solver(reader: &Reader<'_, '_>, increment: Option<&Found<f64>>) -> Checked<So
         least_increment_deg: Some(least_increment_deg),
         snap_tolerance_deg: Some(snap_tolerance_deg),
     })
+}
+
+fn continuation(reader: &Reader<'_, '_>) -> Checked<Option<ArcLength>> {
+    let control = reader.bare_word(&keys::CONTROL)?;
+    let (longest, shortest) = (reader.number(&keys::LONGEST_STEP)?, reader.number(&keys::SHORTEST_STEP)?);
+    let most_steps = reader.count(&keys::MOST_STEPS)?;
+    if control.value == "arc-length" {
+        return Ok(Some(ArcLength {
+            control: ArcLengthWord::ArcLength,
+            longest_step: longest.value,
+            shortest_step: shortest.value,
+            most_steps: most_steps.value,
+        }));
+    }
+    match longest.place.or(shortest.place).or(most_steps.place) {
+        None => Ok(None),
+        Some(place) => Err(reader.document.table("continuation").wrong(
+            Some(&place),
+            "this is about lengths along the path, and the steps of this scene are increments of its load",
+            "write `control = \"arc-length\"` beside it, or take it out",
+        )),
+    }
 }
 
 /// The error for two values that do not go together; either may be a default, which stands nowhere.

@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn the_example_is_a_scene() {
         let scene = parse(&example_scene(), "example.toml").unwrap();
-        assert_eq!(scene.pipeline, Stage::ALL);
+        assert_eq!(scene.pipeline, Stage::REFINING);
         assert_eq!(scene.symmetry, Symmetry::Quarter);
     }
 

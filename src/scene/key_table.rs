@@ -6,7 +6,7 @@ use super::keys::Unit::{Degree, Megapascal, Millimetre, None};
 use super::keys::{Choice, Key, Kind, Limit, Limits, Section};
 
 /// The tables of a scene file, in the order in which one would write them.
-pub static SECTIONS: [Section; 9] = [
+pub static SECTIONS: [Section; 10] = [
     section("geometry", true, "The undeformed mid-surface."),
     section("material", true, "Constitutive law and thickness."),
     section("mesh", true, "Spline space and quadrature that the run starts with."),
@@ -14,12 +14,13 @@ pub static SECTIONS: [Section; 9] = [
     section("load", true, "What moves the shell."),
     section("adapt", false, "When and how far the mesh is refined."),
     section("solver", false, "Tolerances and limits of the equilibrium solver."),
+    section("continuation", false, "How the path of equilibria is followed."),
     section("pipeline", false, "The stages of one load step."),
     section("output", false, "What is written beside the states; never changes a state."),
 ];
 
 /// The keys of a scene file, table by table.
-pub static KEYS: [&Key; 26] = [
+pub static KEYS: [&Key; 30] = [
     &GEOMETRY_KIND,
     &LENGTH,
     &RADIUS,
@@ -43,6 +44,10 @@ pub static KEYS: [&Key; 26] = [
     &MAX_ITERATIONS,
     &LEAST_INCREMENT,
     &SNAP_TOLERANCE,
+    &CONTROL,
+    &LONGEST_STEP,
+    &SHORTEST_STEP,
+    &MOST_STEPS,
     &STAGES,
     &SYNC,
     &MESH_HISTORY,
@@ -415,6 +420,72 @@ pub(super) static SNAP_TOLERANCE: Key = Key {
     aliases: &["jump_tolerance_deg"],
 };
 
+pub(super) static CONTROL: Key = Key {
+    section: "continuation",
+    name: "control",
+    unit: None,
+    kind: Kind::Word(&[
+        choice("load", "each step moves the rotation or the load factor on by an increment"),
+        choice(
+            "arc-length",
+            "each step goes a length along the path, on which the rotation or the load factor may go back: past limit points, \
+             through snap-through and snap-back, along unstable branches",
+        ),
+    ]),
+    presence: Default("\"load\""),
+    reach: Steps,
+    meaning: "What is prescribed in a load step. Under arc-length the first step is one increment; lengths are multiples of \
+              its length, and the run ends where the rotation or the load factor reaches its target, on either side of 0. \
+              Limit points and bifurcations on the way are located to the snap tolerance.",
+    example: "\"arc-length\"",
+    aliases: &["kind", "type", "method", "riks", "crisfield"],
+};
+
+pub(super) static LONGEST_STEP: Key = Key {
+    section: "continuation",
+    name: "longest_step",
+    unit: None,
+    kind: Kind::Number(Limits {
+        low: Limit::included(1.0, "the first step has length 1"),
+        high: Limit::included(1e6, "no path is that long"),
+    }),
+    presence: Default("4.0"),
+    reach: Steps,
+    meaning: "Steps are not longer than this many first steps.",
+    example: "4.0",
+    aliases: &["max_step", "longest", "maximum_step", "max_length"],
+};
+
+pub(super) static SHORTEST_STEP: Key = Key {
+    section: "continuation",
+    name: "shortest_step",
+    unit: None,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "a step that fails would be halved without end"),
+        high: Limit::included(1.0, "the first step has length 1"),
+    }),
+    presence: Default("1e-4"),
+    reach: Steps,
+    meaning: "Steps are not cut below this many first steps; then the run stops with all good steps kept.",
+    example: "1e-4",
+    aliases: &["min_step", "shortest", "minimum_step", "min_length"],
+};
+
+pub(super) static MOST_STEPS: Key = Key {
+    section: "continuation",
+    name: "most_steps",
+    unit: None,
+    kind: Kind::Count(Limits {
+        low: Limit::included(1.0, "a path has at least one step"),
+        high: Limit::included(1e6, "a path that has not ended by then will not"),
+    }),
+    presence: Default("2000"),
+    reach: Steps,
+    meaning: "Load steps after which the run stops: a path may close in itself and never reach its target.",
+    example: "2000",
+    aliases: &["max_steps", "steps", "step_limit"],
+};
+
 pub(super) static STAGES: Key = Key {
     section: "pipeline",
     name: "stages",
@@ -422,7 +493,9 @@ pub(super) static STAGES: Key = Key {
     kind: Kind::Stages,
     presence: Follows("all five stages where the scene has [adapt], else [\"solve\"]"),
     reach: Steps,
-    meaning: "The stages of one load step: solve alone, with evaluate-indicators to watch, or all five to refine.",
+    meaning: "The stages of one load step: solve alone, with evaluate-indicators to watch, or with refine-knots, \
+              project-displacements and re-equilibrate to refine. switch-branch after solve leaves an unstable equilibrium \
+              along its soft mode, down to a stable one.",
     example: "[\"solve\", \"evaluate-indicators\", \"refine-knots\", \"project-displacements\", \"re-equilibrate\"]",
     aliases: &["steps", "stage"],
 };

@@ -1,5 +1,6 @@
 //! Which lists of stages can run. Each stage after solve takes what the one before it made, and what refine-knots
-//! begins must be carried to its end; so a list is solve, then perhaps evaluate-indicators, then perhaps the rest.
+//! begins must be carried to its end; so a list is solve, perhaps switch-branch, perhaps evaluate-indicators, and then
+//! perhaps the rest.
 
 use toml::de::DeValue;
 
@@ -13,7 +14,7 @@ use super::{names, read};
 pub(super) fn needs(stage: Stage) -> Option<Stage> {
     match stage {
         Stage::Solve => None,
-        Stage::EvaluateIndicators => Some(Stage::Solve),
+        Stage::EvaluateIndicators | Stage::SwitchBranch => Some(Stage::Solve),
         Stage::RefineKnots => Some(Stage::EvaluateIndicators),
         Stage::ProjectDisplacements => Some(Stage::RefineKnots),
         Stage::ReEquilibrate => Some(Stage::ProjectDisplacements),
@@ -23,7 +24,7 @@ pub(super) fn needs(stage: Stage) -> Option<Stage> {
 /// The stage that must carry on from where a stage leaves the state.
 fn sequel(stage: Stage) -> Option<Stage> {
     match stage {
-        Stage::Solve | Stage::EvaluateIndicators | Stage::ReEquilibrate => None,
+        Stage::Solve | Stage::SwitchBranch | Stage::EvaluateIndicators | Stage::ReEquilibrate => None,
         Stage::RefineKnots => Some(Stage::ProjectDisplacements),
         Stage::ProjectDisplacements => Some(Stage::ReEquilibrate),
     }
@@ -85,6 +86,12 @@ fn check(named: &[(Stage, Place)], whole: &Place) -> Checked<()> {
             return Err(problem(StageOrderProblem::Twice { stage: *stage }, place).also(Some(first)));
         }
     }
+    if let (Some(switch), Some(evaluate)) = (at(Stage::SwitchBranch), at(Stage::EvaluateIndicators))
+        && switch > evaluate
+    {
+        let order = StageOrderProblem::TooEarly { stage: Stage::EvaluateIndicators, needs: Stage::SwitchBranch };
+        return Err(problem(order, &named[evaluate].1).also(Some(&named[switch].1)));
+    }
     for (index, (stage, place)) in named.iter().enumerate() {
         let Some(needs) = needs(*stage) else { continue };
         match at(needs) {
@@ -101,7 +108,8 @@ fn check(named: &[(Stage, Place)], whole: &Place) -> Checked<()> {
             let last = named.last().map_or(place, |(_, place)| place);
             let behind = Place { source: last.source, span: last.span.end..last.span.end };
             let fault = problem(StageOrderProblem::WithoutSequel { stage: *stage, sequel }, place);
-            let rest = Stage::ALL.into_iter().filter(|later| *later > *stage && at(*later).is_none());
+            let begun = Stage::REFINING.into_iter().skip_while(|earlier| *earlier != *stage);
+            let rest = begun.filter(|later| at(*later).is_none());
             return Err(fault.edit(&behind, rest.map(|later| format!(", \"{later}\"")).collect::<String>()));
         }
     }
@@ -112,9 +120,9 @@ fn check(named: &[(Stage, Place)], whole: &Place) -> Checked<()> {
 mod tests {
     use super::*;
 
-    /// Every list without repetition: exactly three can run.
+    /// Every list without repetition: exactly six can run.
     #[test]
-    fn three_lists_can_run() {
+    fn six_lists_can_run() {
         let mut lists: Vec<Vec<Stage>> = vec![vec![]];
         let mut from = 0;
         while from < lists.len() {
@@ -126,7 +134,7 @@ mod tests {
             }
             from += 1;
         }
-        assert_eq!(lists.len(), 326);
+        assert_eq!(lists.len(), 1957);
         let whole = Place { source: 0, span: 0..0 };
         let place = |index| Place { source: 0, span: index..index + 1 };
         let can_run = |list: &Vec<Stage>| {
@@ -134,6 +142,10 @@ mod tests {
             check(&named, &whole).is_ok()
         };
         lists.retain(can_run);
-        assert_eq!(lists, [&Stage::ALL[..1], &Stage::ALL[..2], &Stage::ALL]);
+        let refining = &Stage::REFINING;
+        assert_eq!(
+            lists,
+            [&refining[..1], &Stage::ALL[..2], &refining[..2], &Stage::ALL[..3], &refining[..], &Stage::ALL[..]]
+        );
     }
 }

@@ -1,7 +1,6 @@
 //! The equilibrium path of a run: which of its stages are points of the moment–rotation curve, and where it jumped.
 
 use crate::pipeline::{Outcome, Record};
-use crate::scene::Stage;
 
 /// A point of the moment–rotation curve: the last equilibrium of a load step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +92,6 @@ pub fn snaps(records: &[Record]) -> Vec<Snap> {
 fn equilibria(records: &[Record]) -> impl Iterator<Item = &Record> {
     records.iter().filter(|record| {
         let Record { report, .. } = record;
-        report.outcome == Outcome::Done && matches!(report.stage, Stage::Solve | Stage::ReEquilibrate)
+        report.outcome == Outcome::Done && report.stage.finds_equilibrium()
     })
 }

@@ -11,7 +11,7 @@ use super::deformed_surface::deformed_surface;
 use super::samples::SurfaceSamples;
 use crate::journal::{ViewerMessage, ViewerTopic, ViewerTopics};
 use crate::pipeline::{Outcome, Record};
-use crate::scene::{Scene, Stage};
+use crate::scene::Scene;
 use crate::state::State;
 
 /// Topic of the meshes.
@@ -51,7 +51,7 @@ impl MeshHistory {
 impl ViewerTopics for MeshHistory {
     fn messages(&mut self, state: &State, record: &Record) -> Vec<ViewerMessage> {
         let report = &record.report;
-        let moved = report.outcome == Outcome::Done && matches!(report.stage, Stage::Solve | Stage::ReEquilibrate);
+        let moved = report.outcome == Outcome::Done && report.stage.finds_equilibrium();
         if !moved {
             return Vec::new();
         }

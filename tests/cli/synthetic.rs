@@ -46,7 +46,7 @@ pub fn scene() -> Scene {
             least_increment_deg: Some(1e-3),
             snap_tolerance_deg: Some(0.02),
         },
-        pipeline: Stage::ALL.to_vec(),
+        pipeline: Stage::REFINING.to_vec(),
         output: Output { sync: SyncPolicy::EachSecond, mesh_history: false },
     }
 }

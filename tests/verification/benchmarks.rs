@@ -286,7 +286,7 @@ fn refinement_in_any_scene() {
         threshold: [0.1, 0.1],
         length_limit: foldline::scene::LengthLimit::Millimetres([0.4, 0.4]),
     });
-    scene.pipeline = foldline::scene::Stage::ALL.to_vec();
+    scene.pipeline = foldline::scene::Stage::REFINING.to_vec();
     let (state, report) = run_to(&scene, None, 1.0);
     let (half, _) = run_to(&scene, None, 0.5);
     assert_eq!(run_to(&scene, Some(half), 1.0).0.hash(), state.hash());

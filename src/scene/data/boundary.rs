@@ -190,6 +190,19 @@ impl History {
         }
     }
 
+    /// Derivative of the factor at a load factor; at a kink, that beyond it.
+    pub fn rate(&self, load_factor: f64) -> f64 {
+        let points = &self.0;
+        if points.is_empty() {
+            return 1.0;
+        }
+        let after = points.partition_point(|point| point[0] <= load_factor);
+        match (after.checked_sub(1).map(|before| points[before]), points.get(after)) {
+            (Some([from, low]), Some([to, high])) => (high - low) / (to - from),
+            _ => 0.0,
+        }
+    }
+
     /// Load factors at which the factor has a kink.
     pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
         self.0.iter().map(|point| point[0])

@@ -38,6 +38,9 @@ pub struct Scene {
     pub adapt: Option<Adapt>,
     /// Tolerances and limits of the equilibrium solver.
     pub solver: Solver,
+    /// How the path of equilibria is followed where not by increments of the parameter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub continuation: Option<ArcLength>,
     /// The stages of one load step, in order.
     pub pipeline: Vec<Stage>,
     /// What is written beside the states; never changes a state.
@@ -205,6 +208,28 @@ pub struct Solver {
     pub snap_tolerance_deg: Option<f64>,
 }
 
+/// Continuation by arc length: a load step is a length along the path of equilibria, and the parameter, which may go back,
+/// is found with the displacements. Lengths are multiples of the first step's, which is one increment of the parameter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ArcLength {
+    /// The word of the scene.
+    pub control: ArcLengthWord,
+    /// No step is longer than this.
+    pub longest_step: f64,
+    /// No step is cut below this; then the run stops with all good steps kept.
+    pub shortest_step: f64,
+    /// Load steps after which the run stops, wherever it stands: a path may close in itself.
+    pub most_steps: usize,
+}
+
+/// The word `arc-length`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ArcLengthWord {
+    /// The only one.
+    ArcLength,
+}
+
 impl Load {
     /// Sets the parameter at which the run stops.
     pub fn set_target(&mut self, target: f64) {
@@ -278,17 +303,35 @@ pub enum Stage {
     ProjectDisplacements,
     /// Find equilibrium at the same load on the refined mesh.
     ReEquilibrate,
+    /// Leave an unstable equilibrium along its soft mode, down to a stable one at the same load.
+    SwitchBranch,
 }
 
 impl Stage {
-    /// All stages, in the order in which a load step runs them.
-    pub const ALL: [Stage; 5] = [
+    /// All stages, in the order in which a load step runs them. The order in the enum is that in which they came to be: it
+    /// decides hashes.
+    pub const ALL: [Stage; 6] = [
+        Stage::Solve,
+        Stage::SwitchBranch,
+        Stage::EvaluateIndicators,
+        Stage::RefineKnots,
+        Stage::ProjectDisplacements,
+        Stage::ReEquilibrate,
+    ];
+
+    /// The stages of a load step that refines the mesh.
+    pub const REFINING: [Stage; 5] = [
         Stage::Solve,
         Stage::EvaluateIndicators,
         Stage::RefineKnots,
         Stage::ProjectDisplacements,
         Stage::ReEquilibrate,
     ];
+
+    /// Whether the stage ends in an equilibrium.
+    pub fn finds_equilibrium(self) -> bool {
+        matches!(self, Stage::Solve | Stage::ReEquilibrate | Stage::SwitchBranch)
+    }
 
     /// The name in scenes, logs and on the terminal.
     pub fn name(self) -> &'static str {
@@ -298,6 +341,7 @@ impl Stage {
             Stage::RefineKnots => "refine-knots",
             Stage::ProjectDisplacements => "project-displacements",
             Stage::ReEquilibrate => "re-equilibrate",
+            Stage::SwitchBranch => "switch-branch",
         }
     }
 }

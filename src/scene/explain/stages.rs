@@ -32,22 +32,23 @@ pub(super) fn wrong_order(problem: &StageOrderProblem) -> Explanation {
         }
     };
     explanation
-        .help(format!("to solve on the mesh as it is: {}", list(&Stage::ALL[..1])))
-        .help(format!("to watch where it is too coarse: {}", list(&Stage::ALL[..2])))
-        .help(format!("to refine it: {}", list(&Stage::ALL)))
+        .help(format!("to solve on the mesh as it is: {}", list(&Stage::REFINING[..1])))
+        .help(format!("to watch where it is too coarse: {}", list(&Stage::REFINING[..2])))
+        .help(format!("to refine it: {}", list(&Stage::REFINING)))
 }
 
 pub(super) fn adapt_unused() -> Explanation {
     Explanation::new("[adapt] is given, but no stage reads it", "read by no stage")
         .also("these stages neither measure nor refine")
         .help("take [adapt] out for a uniform mesh")
-        .help(format!("to refine: stages = {}", list(&Stage::ALL)))
+        .help(format!("to refine: stages = {}", list(&Stage::REFINING)))
 }
 
 /// What a stage takes from the one before it.
 fn takes(stage: Stage) -> &'static str {
     match stage {
         Stage::Solve => "begins the load step",
+        Stage::SwitchBranch => "leaves an unstable equilibrium that solve has found",
         Stage::EvaluateIndicators => "measures the bending of an equilibrium that solve has found",
         Stage::RefineKnots => "inserts the knots that evaluate-indicators has marked",
         Stage::ProjectDisplacements => "carries displacements to the mesh that refine-knots has made",
@@ -60,7 +61,7 @@ fn leaves(stage: Stage) -> &'static str {
     match stage {
         Stage::RefineKnots => "leaves displacements that belong to the mesh before",
         Stage::ProjectDisplacements => "leaves a mesh on which equilibrium is not found yet",
-        Stage::Solve | Stage::EvaluateIndicators | Stage::ReEquilibrate => "leaves an equilibrium",
+        Stage::Solve | Stage::SwitchBranch | Stage::EvaluateIndicators | Stage::ReEquilibrate => "leaves an equilibrium",
     }
 }
 

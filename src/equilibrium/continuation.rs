@@ -1,0 +1,267 @@
+//! Continuation along the path of equilibria, with the parameter λ as an unknown beside the free unknowns q.
+//!
+//! A step of length s goes from a point of the path along its unit tangent t to a point of the plane t·Δx = s: the residual
+//! R(q, λ) and the equation of the plane are solved together by Newton's method (Riks 1979; Wempner 1971; the linear
+//! constraint makes the consistently linearised method of Schweizerhof & Wriggers 1986 exact, and has none of the two roots
+//! of Crisfield's sphere). With K δ₁ = −R and K δ₂ = −∂R/∂λ the bordered system takes one factorization an iteration.
+//! Between a limit point in λ and the next, K has a negative pivot, and its L D Lᵀ factor serves as it is.
+//!
+//! Lengths are of displacements alone, λ has no weight (Crisfield's cylindrical choice): λ may be degrees or a load factor,
+//! and a prescribed motion shows in the displacements anyway. See [`Metric`] for how they are measured.
+
+use crate::equilibrium::equations::{Equations, Point};
+use crate::equilibrium::metric::Metric;
+use crate::equilibrium::newton::{Before, Effort, Observer, SolveError, Solved, Standing, Workspace};
+use crate::scene::Scene;
+use crate::shell::{add, scaled, sub};
+
+/// Newton iterations after which a step is too long. Steps of the tape spring's path that converge take 3 to 7; what has
+/// not converged by then has mostly left the neighbourhood of the path.
+const MOST_ITERATIONS: usize = 12;
+/// The plane is reached to this, relative to the length of the step.
+const ON_PLANE: f64 = 1e-6;
+
+/// A direction of the path: rates along its length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Direction {
+    /// Of the displacements of the control points; its length is 1.
+    pub motion: Vec<[f64; 3]>,
+    /// Of the parameter, per mm.
+    pub parameter: f64,
+}
+
+/// A point of the path, reached from another.
+#[derive(Clone, Debug)]
+pub struct PathPoint {
+    /// The equilibrium.
+    pub solved: Solved,
+    /// Its parameter.
+    pub parameter: f64,
+    /// Tangent of the path there, onwards.
+    pub heading: Direction,
+    /// Straight distance from the point before, mm.
+    pub distance: f64,
+    /// Cosine of the angle between the tangents at both points.
+    pub turn: f64,
+}
+
+/// Which way the path goes on from a point.
+#[derive(Clone, Copy, Debug)]
+pub enum Sense<'s> {
+    /// With a growing (or falling) parameter.
+    Parameter { grows: bool },
+    /// At less than a right angle to this motion of the control points.
+    Along(&'s [[f64; 3]]),
+}
+
+/// What a solve is to end on.
+enum Constraint<'c> {
+    /// A value of the parameter.
+    Parameter(f64),
+    /// The plane t·(u − u₀) = s.
+    Plane { normal: &'c [[f64; 3]], from: &'c [[f64; 3]], distance: f64 },
+}
+
+/// Tangent of the path at a point.
+struct Tangent {
+    direction: Direction,
+    /// Rates of the free unknowns.
+    free: Vec<f64>,
+}
+
+/// Continuation of a scene on the mesh of a workspace.
+#[derive(Debug)]
+pub struct Continuation<'a> {
+    scene: &'a Scene,
+    work: &'a mut Workspace,
+    metric: Metric,
+}
+
+impl<'a> Continuation<'a> {
+    /// Works in these buffers.
+    pub fn new(scene: &'a Scene, work: &'a mut Workspace) -> Self {
+        let metric = Metric::new(&work.discretization.mesh);
+        Self { scene, work, metric }
+    }
+
+    /// The first step of a path: a change of the parameter, along the tangent first.
+    ///
+    /// # Errors
+    /// Where no equilibrium is found in a few iterations, or nothing moves.
+    pub fn begin(&mut self, from: Standing, to: f64, observer: Observer) -> Result<PathPoint, SolveError> {
+        let (tangent, free) = self.tangent_at(from, Sense::Parameter { grows: to > from.parameter })?;
+        let distance = (to - from.parameter) / tangent.direction.parameter;
+        let start = (along(&free, &tangent.free, distance), to);
+        self.solve(from, &tangent.direction, start, &Constraint::Parameter(to), observer)
+    }
+
+    /// A step of this length, in the sense of `heading`.
+    ///
+    /// # Errors
+    /// Where no equilibrium is found in a few iterations.
+    pub fn step(
+        &mut self,
+        from: Standing,
+        heading: &[[f64; 3]],
+        distance: f64,
+        observer: Observer,
+    ) -> Result<PathPoint, SolveError> {
+        let (Tangent { direction, free: rates }, free) = self.tangent_at(from, Sense::Along(heading))?;
+        let start = (along(&free, &rates, distance), from.parameter + distance * direction.parameter);
+        let plane = Constraint::Plane { normal: &direction.motion, from: from.displacement, distance };
+        self.solve(from, &direction, start, &plane, observer)
+    }
+
+    /// The point with this parameter between `from` and a point that was reached from there.
+    ///
+    /// # Errors
+    /// Where no equilibrium is found in a few iterations.
+    pub fn step_to(
+        &mut self,
+        from: Standing,
+        beyond: &PathPoint,
+        parameter: f64,
+        observer: Observer,
+    ) -> Result<PathPoint, SolveError> {
+        let (tangent, _) = self.tangent_at(from, Sense::Along(&beyond.heading.motion))?;
+        let share = (parameter - from.parameter) / (beyond.parameter - from.parameter);
+        let between = |a: &[[f64; 3]], b: &[[f64; 3]]| -> Vec<[f64; 3]> {
+            a.iter().zip(b).map(|(a, b)| add(*a, scaled(share, sub(*b, *a)))).collect()
+        };
+        let displacement = between(from.displacement, &beyond.solved.displacement);
+        let turns = between(from.turns, &beyond.solved.turns);
+        let free = self.work.discretization.unknowns.of_displacement(&displacement, &turns, parameter);
+        self.solve(from, &tangent.direction, (free, parameter), &Constraint::Parameter(parameter), observer)
+    }
+
+    /// Equilibrium in the plane across `heading` through a displacement that may be out of balance.
+    ///
+    /// # Errors
+    /// Where none is found in a few iterations.
+    pub fn correct(
+        &mut self,
+        from: Standing,
+        heading: &Direction,
+        observer: Observer,
+    ) -> Result<PathPoint, SolveError> {
+        let unknowns = &self.work.discretization.unknowns;
+        let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
+        let plane = Constraint::Plane { normal: &heading.motion, from: from.displacement, distance: 0.0 };
+        self.solve(from, heading, (free, from.parameter), &plane, observer)
+    }
+
+    /// Unit tangent of the path at an equilibrium.
+    ///
+    /// # Errors
+    /// Where the stiffness has no factor, or nothing moves.
+    pub fn heading_at(&mut self, at: Standing, sense: Sense) -> Result<Direction, SolveError> {
+        self.tangent_at(at, sense).map(|(tangent, _)| tangent.direction)
+    }
+
+    /// Tangent at an equilibrium, and its free unknowns.
+    fn tangent_at(&mut self, at: Standing, sense: Sense) -> Result<(Tangent, Vec<f64>), SolveError> {
+        let mut equations = Equations::factored_at(self.work, at)?;
+        let point = equations.at_standing(at)?;
+        let tangent = tangent(&mut equations, &point, &self.metric, sense)?;
+        Ok((tangent, point.free))
+    }
+
+    fn solve(
+        &mut self,
+        from: Standing,
+        heading: &Direction,
+        (mut free, mut parameter): (Vec<f64>, f64),
+        constraint: &Constraint,
+        observer: Observer,
+    ) -> Result<PathPoint, SolveError> {
+        let before = Before::at(self.work, from);
+        let Self { scene, work, metric } = self;
+        let mut effort = Effort::default();
+        let mut equations = Equations::of(work);
+        let point = loop {
+            let point = equations.at(free, parameter, &mut effort)?;
+            let last = point.iterate;
+            if observer(&last) {
+                return Err(SolveError::Stopped { last, effort });
+            }
+            let (off, scale) = constraint.distance(&point, metric);
+            if last.residual <= scene.solver.tolerance * last.reactions && off.abs() <= ON_PLANE * scale {
+                break point;
+            }
+            if last.iteration >= MOST_ITERATIONS {
+                return Err(SolveError::TooManyIterations { last, effort });
+            }
+            let step = equations.solve(&point, &negative(&point.gradient));
+            let rates = equations.solve(&point, &negative(&point.gradient_rate));
+            let change = constraint.change(&point, metric, off, &step, &rates);
+            effort.iterations += 1;
+            parameter += change;
+            free = along(&along(&point.free, &step, 1.0), &rates, change);
+        };
+        let chord: Vec<[f64; 3]> = point.displacement.iter().zip(from.displacement).map(|(u, v)| sub(*u, *v)).collect();
+        let sense = match constraint {
+            Constraint::Plane { distance: 0.0, .. } => &heading.motion,
+            _ => &chord,
+        };
+        let end = tangent(&mut equations, &point, metric, Sense::Along(sense))?.direction;
+        let (last, ended) = (point.iterate, point.ended(&equations, effort));
+        Ok(PathPoint {
+            distance: metric.length(&chord),
+            turn: metric.product(&heading.motion, &end.motion),
+            heading: end,
+            parameter,
+            solved: work.solved(scene, from, parameter, &before, ended, &last),
+        })
+    }
+}
+
+impl Constraint<'_> {
+    /// How far a point is from where the solve is to end, and what that is measured by.
+    fn distance(&self, point: &Point, metric: &Metric) -> (f64, f64) {
+        match self {
+            Constraint::Parameter(parameter) => (parameter - point.parameter, parameter.abs()),
+            Constraint::Plane { normal, from, distance } => {
+                let moved: Vec<[f64; 3]> = point.displacement.iter().zip(*from).map(|(u, v)| sub(*u, *v)).collect();
+                (distance - metric.product(normal, &moved), distance.abs().max(metric.length(&moved)))
+            }
+        }
+    }
+
+    /// Change of the parameter with which `step` + change · `rates` leads there.
+    fn change(&self, point: &Point, metric: &Metric, off: f64, step: &[f64], rates: &[f64]) -> f64 {
+        match self {
+            Constraint::Parameter(_) => off,
+            Constraint::Plane { normal, .. } => {
+                let ahead = metric.product(normal, &point.placement.velocity(step, &[]));
+                (off - ahead) / metric.product(normal, &point.placement.velocity(rates, &point.given_rates))
+            }
+        }
+    }
+}
+
+/// The path's tangent at a point of equilibrium: q̇ = −K⁻¹ ∂R/∂λ λ̇, scaled to a motion of length 1.
+fn tangent(equations: &mut Equations, point: &Point, metric: &Metric, sense: Sense) -> Result<Tangent, SolveError> {
+    let rates = equations.solve(point, &negative(&point.gradient_rate));
+    let motion = point.placement.velocity(&rates, &point.given_rates);
+    let length = metric.length(&motion);
+    if !(length.is_finite() && length > 0.0) {
+        return Err(SolveError::NothingMoves { parameter: point.parameter, effort: Effort::default() });
+    }
+    let onwards = match sense {
+        Sense::Parameter { grows } => grows,
+        Sense::Along(heading) => metric.product(heading, &motion) >= 0.0,
+    };
+    let parameter = if onwards { 1.0 / length } else { -1.0 / length };
+    Ok(Tangent {
+        direction: Direction { motion: motion.into_iter().map(|rate| scaled(parameter, rate)).collect(), parameter },
+        free: rates.iter().map(|rate| parameter * rate).collect(),
+    })
+}
+
+fn along(from: &[f64], direction: &[f64], distance: f64) -> Vec<f64> {
+    from.iter().zip(direction).map(|(q, d)| q + distance * d).collect()
+}
+
+fn negative(vector: &[f64]) -> Vec<f64> {
+    vector.iter().map(|value| -value).collect()
+}

@@ -1,0 +1,142 @@
+//! The equations R(q, λ) = 0 at a point: residual, its rate with the parameter, and the factor of the stiffness.
+
+use crate::equilibrium::assembly::{Assembled, Want};
+use crate::equilibrium::descent::{Ended, largest, length};
+use crate::equilibrium::external::External;
+use crate::equilibrium::newton::{Effort, Iterate, SolveError, Standing, Workspace};
+use crate::equilibrium::pattern::Pattern;
+use crate::equilibrium::sparse::SparseSolver;
+use crate::model::{Discretization, Placement};
+
+/// The pieces of a workspace that the equations take.
+pub(super) struct Equations<'w> {
+    discretization: &'w Discretization,
+    pattern: &'w Pattern,
+    solver: &'w mut SparseSolver,
+    assembled: &'w mut Assembled,
+    values: &'w mut [f64],
+    /// Whether residual, stiffness and factor are those of the state that is asked for next.
+    ready: bool,
+}
+
+/// The equations at a point; the factor of their stiffness is in the workspace.
+pub(super) struct Point<'w> {
+    pub free: Vec<f64>,
+    pub parameter: f64,
+    pub placement: Placement<'w>,
+    pub displacement: Vec<[f64; 3]>,
+    pub external: External,
+    /// R: forces on the free unknowns, N.
+    pub gradient: Vec<f64>,
+    /// ∂R/∂λ.
+    pub gradient_rate: Vec<f64>,
+    /// Rates of the given coordinates with λ, mm.
+    pub given_rates: Vec<f64>,
+    pub iterate: Iterate,
+}
+
+impl<'w> Equations<'w> {
+    pub fn of(work: &'w mut Workspace) -> Self {
+        let Workspace { discretization, pattern, solver, assembled, values, factored_at } = work;
+        *factored_at = None;
+        Self { discretization, pattern, solver, assembled, values, ready: false }
+    }
+
+    /// Ready for [`Self::at_standing`] at this state, with the stiffness and factor that a solve left there if there are
+    /// any. Where sections turn freely or loads follow the shell all is formed anew: what the state holds decides the
+    /// unknowns to rounding only, and the stiffness of loads is added to that of the shell.
+    pub fn factored_at(work: &'w mut Workspace, at: Standing) -> Result<Self, SolveError> {
+        let discretization = &work.discretization;
+        if discretization.unknowns.turns_are_unknown() || discretization.loads.follow() {
+            return Ok(Self::of(work));
+        }
+        work.factorize_at(at)?;
+        let Workspace { discretization, pattern, solver, assembled, values, .. } = work;
+        Ok(Self { discretization, pattern, solver, assembled, values, ready: true })
+    }
+
+    /// At a state.
+    pub fn at_standing(&mut self, at: Standing) -> Result<Point<'w>, SolveError> {
+        let free = self.discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
+        // Not an effort of the solve that follows: it would depend on what ran before in the same process.
+        self.at(free, at.parameter, &mut Effort::default())
+    }
+
+    /// Assembles and factors at a point.
+    pub fn at(&mut self, free: Vec<f64>, parameter: f64, effort: &mut Effort) -> Result<Point<'w>, SolveError> {
+        let discretization = self.discretization;
+        let placement = discretization.unknowns.place(&free, parameter);
+        let displacement = placement.displacement();
+        let ready = std::mem::take(&mut self.ready);
+        let external = if ready {
+            External::dead(discretization, &displacement, parameter)
+        } else {
+            self.assembled.assemble(discretization, &displacement, Want::Stiffness);
+            External::new(discretization, &displacement, parameter, self.assembled)
+        };
+        let forces = external.subtract_from(&self.assembled.residual);
+        let gradient = placement.restrict(&forces);
+        let mut iterate = Iterate {
+            iteration: effort.iterations,
+            energy: self.assembled.energy,
+            residual: gradient.iter().map(|g| g * g).sum::<f64>().sqrt(),
+            reactions: length(&self.assembled.residual).max(length(&external.forces)),
+            negative_pivots: 0,
+            step_length: 1.0,
+            shift: 0.0,
+            worst_point: discretization.unknowns.home_of(largest(&gradient)),
+        };
+        if !(iterate.energy.is_finite() && iterate.residual.is_finite()) {
+            return Err(SolveError::NotANumber { last: iterate, effort: *effort });
+        }
+        if !ready {
+            self.pattern.fill(discretization, &placement, self.assembled, self.values);
+            self.pattern.add(&placement.curvature(&forces), self.values);
+            effort.factorizations += 1;
+            let factored = self.solver.factorize(self.values);
+            let negative = factored.map_err(|cause| SolveError::Factor { cause, effort: *effort })?;
+            iterate.negative_pivots = negative.count;
+            iterate.shift = 2.0 * negative.largest;
+        }
+        let given_rates = discretization.unknowns.given_rates_at(parameter);
+        let motion = placement.velocity(&[], &given_rates);
+        let mut force_rates = self.assembled.multiply(discretization, &motion);
+        let loads = discretization.loads.rates(&discretization.mesh, &displacement, parameter);
+        let skew = external.multiply_skew(discretization, &motion);
+        for (point, rate) in force_rates.iter_mut().enumerate() {
+            (0..3).for_each(|c| rate[c] += skew[point][c] - loads[point][c]);
+        }
+        let mut gradient_rate = placement.restrict(&force_rates);
+        for (sum, turned) in gradient_rate.iter_mut().zip(placement.restrict_rate(&forces, &given_rates)) {
+            *sum += turned;
+        }
+        Ok(Point { free, parameter, placement, displacement, external, gradient, gradient_rate, given_rates, iterate })
+    }
+
+    /// Solves ∂R/∂q x = b at a point.
+    pub fn solve(&mut self, point: &Point, right_hand_side: &[f64]) -> Vec<f64> {
+        let Self { discretization, pattern, solver, values, .. } = self;
+        match point.external.has_skew() {
+            true => point.external.solve(discretization, &point.placement, (pattern, values), solver, right_hand_side),
+            false => {
+                let mut solution = right_hand_side.to_vec();
+                solver.solve(&mut solution);
+                solution
+            }
+        }
+    }
+}
+
+impl Point<'_> {
+    /// What a solve that ends here leaves.
+    pub fn ended(self, equations: &Equations, effort: Effort) -> Ended {
+        let forces = self.external.subtract_from(&equations.assembled.residual);
+        Ended {
+            reactions: self.placement.reactions(&forces),
+            turns: self.placement.turns(),
+            displacement: self.displacement,
+            forces: self.external.forces,
+            effort,
+        }
+    }
+}

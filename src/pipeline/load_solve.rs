@@ -1,0 +1,183 @@
+//! Solve and re-equilibrate where the load is prescribed, and the way from an unstable equilibrium to a stable one.
+
+use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
+use crate::pipeline::stages::{out_of_order, reject, settle};
+use crate::pipeline::step_control::{Attempt, is_jump, is_jump_on_refinement, next_attempt};
+use crate::pipeline::{Outcome, Parameter, Report, StageError, Stages};
+use crate::scene::Stage;
+use crate::state::State;
+
+/// Largest motion off an unstable equilibrium along its soft mode, in thicknesses: beyond rounding by far, and far less
+/// than what bending makes of it.
+const SWITCHING_AMPLITUDE: f64 = 0.1;
+/// Modes that are left one after the other. Each descent ends in a minimum of the energy but where a symmetry holds it on a
+/// ridge; the tape spring in equal-sense bending has two such modes at once.
+const MOST_MODES: usize = 8;
+
+impl Stages {
+    /// Moves the load on by one increment. Where that fails or jumps too coarsely, the state stays and only its step
+    /// control changes.
+    pub(super) fn move_load(
+        &mut self,
+        state: &State,
+        observer: &mut dyn FnMut(&Iterate),
+    ) -> Result<(State, Report), StageError> {
+        let step = state.step + 1;
+        let attempt = next_attempt(&self.scene, state);
+        let (scene, work) = self.workspace(&state.mesh, step, Stage::Solve)?;
+        // A run that stands on an unstable branch (and says so) follows it; what ends an attempt is a further loss of
+        // stability.
+        let mut watch = |iterate: &Iterate| {
+            observer(iterate);
+            !attempt.may_jump && iterate.negative_pivots as u64 > state.negative_pivots
+        };
+        let solved = Equilibrium::new(scene, work).advance(Standing::of(state), attempt.target_deg, &mut watch);
+        let mut report = self.report(state, step);
+        report.attempted_parameter = attempt.target_deg;
+        match solved {
+            Ok(solved) => {
+                let released = attempt.energy_released(state, &solved);
+                let jumped = is_jump(released, state.strain_energy_n_mm, solved.energy);
+                if jumped && !attempt.may_jump {
+                    report.record_effort(solved.effort);
+                    let control = attempt.control_after_jump(&state.control);
+                    return Ok(reject(state, report, Outcome::RejectedJump, control));
+                }
+                let mut next = settle(state, &solved);
+                next.step = step;
+                next.parameter = attempt.target_deg;
+                next.control = attempt.control_after_success(&state.control);
+                next.path = None;
+                report.record(&next, &solved);
+                report.probes = self.read_probes(&next)?;
+                report.jumped = jumped;
+                report.energy_released_n_mm = if jumped { released } else { 0.0 };
+                Ok((next, report))
+            }
+            Err(cause) => {
+                report.record_failure(&cause);
+                if matches!(cause, SolveError::Stopped { .. }) {
+                    let control = attempt.control_after_jump(&state.control);
+                    return Ok(reject(state, report, Outcome::RejectedJump, control));
+                }
+                match attempt.control_after_failure(&self.scene, state) {
+                    Some(control) => Ok(reject(state, report, Outcome::RejectedNoEquilibrium, control)),
+                    None => Err(self.stopped(state, attempt, cause)),
+                }
+            }
+        }
+    }
+
+    /// The error of a solve that cannot be tried with a smaller increment.
+    pub(super) fn stopped(&self, state: &State, attempt: Attempt, cause: SolveError) -> StageError {
+        let parameter = Parameter::of(&self.scene);
+        let (reached, attempted) = (parameter.shown(state.parameter), parameter.shown(attempt.target_deg));
+        let (step, cause) = (state.step + 1, Box::new(cause));
+        match state.control.jump_seen_at_deg {
+            Some(_) => StageError::JumpNotFollowed { step, reached, attempted, cause },
+            None => {
+                let least = self.scene.least_increment();
+                let least_key = match parameter {
+                    Parameter::Rotation => "solver.least_increment_deg",
+                    Parameter::LoadFactor => "load.least_increment",
+                };
+                StageError::NoEquilibrium { step, reached, attempted, least_key, least, cause }
+            }
+        }
+    }
+
+
+    /// Finds equilibrium on a refined mesh at the same load.
+    pub(super) fn relax(
+        &mut self,
+        state: &State,
+        observer: &mut dyn FnMut(&Iterate),
+    ) -> Result<(State, Report), StageError> {
+        let step = state.step;
+        let mut unstable_on_the_way = false;
+        let mut watch = |iterate: &Iterate| {
+            observer(iterate);
+            unstable_on_the_way |= iterate.negative_pivots > 0;
+            false
+        };
+        let (scene, work) = self.workspace(&state.mesh, step, Stage::ReEquilibrate)?;
+        let solved = Equilibrium::new(scene, work).relax(Standing::of(state), &mut watch);
+        let solved = solved.map_err(|cause| self.not_re_equilibrated(state, cause))?;
+        let released = state.strain_energy_n_mm + solved.work - solved.energy;
+        let next = settle(state, &solved);
+        let mut report = self.report(&next, step);
+        report.record(&next, &solved);
+        report.probes = self.read_probes(&next)?;
+        // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
+        report.jumped = unstable_on_the_way && is_jump_on_refinement(released, state.strain_energy_n_mm);
+        if report.jumped {
+            report.energy_released_n_mm = released;
+        }
+        Ok((next, report))
+    }
+
+
+    pub(super) fn not_re_equilibrated(&self, state: &State, cause: SolveError) -> StageError {
+        StageError::NotReEquilibrated {
+            step: state.step,
+            reached: Parameter::of(&self.scene).shown(state.parameter),
+            elements: state.mesh.element_counts(),
+            cause: Box::new(cause),
+        }
+    }
+
+    /// Leaves an unstable equilibrium along its soft modes, one after the other.
+    pub(super) fn switch_branch(
+        &mut self,
+        state: &State,
+        observer: &mut dyn FnMut(&Iterate),
+    ) -> Result<(State, Report), StageError> {
+        if state.negative_pivots == 0 {
+            return Err(out_of_order(state, Stage::SwitchBranch, "the equilibrium is stable"));
+        }
+        let amplitude = SWITCHING_AMPLITUDE * self.scene.material.thickness_mm();
+        let failed = |stages: &Self, cause: SolveError| StageError::NotSwitched {
+            step: state.step,
+            reached: Parameter::of(&stages.scene).shown(state.parameter),
+            cause: Box::new(cause),
+        };
+        let mut next = state.clone();
+        let mut effort = Effort::default();
+        let mut work_done = 0.0;
+        for _ in 0..MOST_MODES {
+            let (scene, work) = self.workspace(&state.mesh, state.step, Stage::SwitchBranch)?;
+            let from = Standing::of(&next);
+            let mut watch = |iterate: &Iterate| {
+                observer(iterate);
+                false
+            };
+            let left = soft_mode(work, from).and_then(|mode| {
+                effort.factorizations += mode.factorizations;
+                Equilibrium::new(scene, work).leave(from, &mode, amplitude, &mut watch)
+            });
+            let left = left.map_err(|cause| failed(self, cause))?;
+            effort.iterations += left.effort.iterations;
+            effort.factorizations += left.effort.factorizations;
+            work_done += left.work;
+            next = settle(&next, &left);
+            if next.negative_pivots == 0 {
+                let released = state.strain_energy_n_mm + work_done - next.strain_energy_n_mm;
+                if let Some(path) = &state.path {
+                    next.path = Some(self.path_on_branch(&next, path).map_err(|cause| failed(self, cause))?);
+                }
+                let mut report = self.report(&next, next.step);
+                report.record(&next, &Solved { effort, work: work_done, ..left });
+                report.probes = self.read_probes(&next)?;
+                report.jumped = is_jump(released, state.strain_energy_n_mm, next.strain_energy_n_mm);
+                report.energy_released_n_mm = released;
+                return Ok((next, report));
+            }
+        }
+        Err(StageError::StillUnstable {
+            step: state.step,
+            reached: Parameter::of(&self.scene).shown(state.parameter),
+            modes: MOST_MODES,
+            negative_pivots: next.negative_pivots,
+        })
+    }
+}

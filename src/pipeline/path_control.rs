@@ -1,0 +1,167 @@
+//! How long the next step along the path is, and what a step that was made teaches.
+//!
+//! | the last step | the next one |
+//! |---|---|
+//! | went on | as long as its iterations and its turn say, between the scene's shortest and longest |
+//! | found no equilibrium, turned too sharply or ended too far away | half as long |
+//! | passed a limit point or a bifurcation | half as long, then on with the rest: bisection until the parameter changes by less than the snap tolerance over what is left; then past it |
+//!
+//! Critical points are told by the pivots: at a limit point of the parameter the rate of the parameter along the path
+//! and the determinant of the stiffness change sign; at a bifurcation the pivots change without the rate. The sign of
+//! (rate of the parameter) · (−1)^(negative pivots) is therefore constant along a branch (Keller 1977), and a step that ends
+//! on its own path turned round, or on another branch, shows as a bifurcation that vanishes when the step is halved: it
+//! is never taken, while a real one stays however short the step.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::equilibrium::PathPoint;
+use crate::scene::{ArcLength, Scene};
+use crate::state::{CriticalAhead, PathMemory, State};
+
+/// Newton iterations that a step is to take: the hinged roof, 12.7 mm, takes least in all with 4 to 6.
+const AIMED_ITERATIONS: f64 = 5.0;
+/// Angle, in radians, that the tangent is to turn by in a step. What takes fewest iterations leaves sharp turns to chance:
+/// the path of the tape spring's snap turns by a right angle within 0.2 mm.
+const AIMED_TURN: f64 = 0.3;
+/// Cosine of the largest turn in a step that is taken.
+const SHARPEST_TURN: f64 = 0.8;
+/// A step that ends farther away than this, relative to its length, has left the path.
+const FARTHEST: f64 = 1.5;
+
+/// A limit point or a bifurcation that a step has passed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct CriticalPoint {
+    /// Whether the parameter turns back: a limit point.
+    pub limit_point: bool,
+    /// By how many the negative pivots of the stiffness changed.
+    pub pivots_changed: i64,
+}
+
+impl CriticalPoint {
+    /// Between two points of the path, each with the rate of the parameter there and the negative pivots.
+    pub fn between(before: (f64, u64), after: (f64, u64)) -> Option<Self> {
+        let limit_point = before.0.signum() != after.0.signum();
+        let pivots_changed = after.1 as i64 - before.1 as i64;
+        (limit_point || pivots_changed != 0).then_some(Self { limit_point, pivots_changed })
+    }
+
+    /// For a table: what it is, and how the pivots changed.
+    pub fn in_words(&self) -> String {
+        let change = format!("{:+} negative pivot{}", self.pivots_changed, if self.pivots_changed.abs() == 1 { "" } else { "s" });
+        match (self.limit_point, self.is_bifurcation()) {
+            (true, false) => format!("limit point ({change})"),
+            (true, true) => format!("limit point and bifurcation ({change})"),
+            (false, _) => format!("bifurcation ({change})"),
+        }
+    }
+
+    /// Whether another path crosses here.
+    pub fn is_bifurcation(&self) -> bool {
+        self.pivots_changed.unsigned_abs() != u64::from(self.limit_point)
+    }
+}
+
+/// A step to try.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathAttempt {
+    /// Its length, mm.
+    pub length_mm: f64,
+    /// Whether a critical point on the way is located well enough to be passed.
+    pub may_pass: bool,
+}
+
+/// The step that follows.
+pub fn next_path_attempt(scene: &Scene, limits: &ArcLength, path: &PathMemory) -> PathAttempt {
+    let Some(ahead) = path.critical_ahead else {
+        return PathAttempt { length_mm: path.next_mm, may_pass: false };
+    };
+    let rate = ahead.rate_beyond.abs().max(path.parameter_rate.abs());
+    let shortest = limits.shortest_step * path.first_mm;
+    let may_pass = rate * ahead.within_mm <= scene.snap_tolerance() || ahead.within_mm <= 2.0 * shortest;
+    PathAttempt { length_mm: if may_pass { ahead.within_mm } else { 0.5 * ahead.within_mm }, may_pass }
+}
+
+/// What to do with a point that a step has found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Judgement {
+    /// Go on from it.
+    Taken(Option<CriticalPoint>),
+    /// It lies beyond a critical point that is not located yet.
+    Past(CriticalAhead),
+    /// It may be on another branch.
+    TooFar,
+}
+
+impl PathAttempt {
+    /// Judges the point that the step found.
+    pub fn judge(&self, state: &State, path: &PathMemory, point: &PathPoint) -> Judgement {
+        if point.turn < SHARPEST_TURN || point.distance > FARTHEST * self.length_mm {
+            return Judgement::TooFar;
+        }
+        let here = (path.parameter_rate, state.negative_pivots);
+        let there = (point.heading.parameter, point.solved.negative_pivots as u64);
+        match CriticalPoint::between(here, there) {
+            Some(_) if !self.may_pass => {
+                Judgement::Past(CriticalAhead { within_mm: self.length_mm, rate_beyond: there.0 })
+            }
+            passed => Judgement::Taken(passed),
+        }
+    }
+
+    /// Memory at the point that was taken.
+    pub fn after(
+        &self,
+        limits: &ArcLength,
+        path: &PathMemory,
+        point: &PathPoint,
+        passed: Option<CriticalPoint>,
+    ) -> PathMemory {
+        let rest = path.critical_ahead.filter(|ahead| ahead.within_mm > self.length_mm && !self.may_pass);
+        let next_mm = match path.critical_ahead {
+            Some(_) => path.next_mm,
+            None => {
+                let by_iterations = (AIMED_ITERATIONS / point.solved.effort.iterations.max(1) as f64).sqrt();
+                let by_turn = AIMED_TURN / point.turn.clamp(-1.0, 1.0).acos().max(1e-3);
+                let length = self.length_mm * by_iterations.min(by_turn).clamp(0.5, 2.0);
+                length.clamp(limits.shortest_step * path.first_mm, limits.longest_step * path.first_mm)
+            }
+        };
+        PathMemory {
+            heading: point.heading.motion.clone(),
+            parameter_rate: point.heading.parameter,
+            first_mm: path.first_mm,
+            next_mm,
+            travelled_mm: path.travelled_mm + point.distance,
+            critical_ahead: rest.map(|ahead| CriticalAhead { within_mm: ahead.within_mm - self.length_mm, ..ahead }),
+            at_bifurcation: passed.is_some_and(|critical| critical.is_bifurcation()),
+        }
+    }
+
+    /// Memory after a step that found nothing, or nothing that can be taken; `None` where it would have to be shorter than
+    /// the scene allows.
+    pub fn shortened(&self, limits: &ArcLength, path: &PathMemory) -> Option<PathMemory> {
+        let half = 0.5 * self.length_mm;
+        let critical_ahead = match path.critical_ahead {
+            // What is ahead lies within what was tried, or was an illusion.
+            Some(ahead) if !self.may_pass => Some(CriticalAhead { within_mm: self.length_mm, ..ahead }),
+            _ => None,
+        };
+        let next_mm = if critical_ahead.is_some() { path.next_mm } else { half };
+        (half >= limits.shortest_step * path.first_mm).then(|| PathMemory { critical_ahead, next_mm, ..path.clone() })
+    }
+}
+
+/// Memory after the first step of a path.
+pub fn path_begun(limits: &ArcLength, point: &PathPoint) -> PathMemory {
+    let by_iterations = (AIMED_ITERATIONS / point.solved.effort.iterations.max(1) as f64).sqrt();
+    PathMemory {
+        heading: point.heading.motion.clone(),
+        parameter_rate: point.heading.parameter,
+        first_mm: point.distance,
+        next_mm: point.distance * by_iterations.clamp(limits.shortest_step.max(0.5), limits.longest_step.min(1.0)),
+        travelled_mm: point.distance,
+        critical_ahead: None,
+        at_bifurcation: false,
+    }
+}
