@@ -80,7 +80,8 @@ impl LoadStep {
     pub(super) fn is_eventful(&self) -> bool {
         self.released_n_mm.is_some()
             || self.passed.is_some()
-            || self.elements_before != self.report.elements || self.report.negative_pivots > 0
+            || self.elements_before != self.report.elements
+            || self.report.negative_pivots > 0
     }
 }
 

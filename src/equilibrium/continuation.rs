@@ -58,6 +58,10 @@ pub enum Sense<'s> {
 enum Constraint<'c> {
     /// A value of the parameter.
     Parameter(f64),
+    /// The point of the path that is nearest: each iteration moves at right angles to the tangent of the level curve R(q, λ) =
+    /// const. that it starts from (the Moore–Penrose inverse of Allgower & Georg, Introduction to Numerical Continuation
+    /// Methods, chapter 3). A fixed plane may miss a path that turns away on a finer mesh.
+    Nearest,
     /// The plane t·(u − u₀) = s.
     Plane { normal: &'c [[f64; 3]], from: &'c [[f64; 3]], distance: f64 },
 }
@@ -134,7 +138,7 @@ impl<'a> Continuation<'a> {
         self.solve(from, &tangent.direction, (free, parameter), &Constraint::Parameter(parameter), observer)
     }
 
-    /// Equilibrium in the plane across `heading` through a displacement that may be out of balance.
+    /// The point of the path near a displacement that may be out of balance, and near its parameter.
     ///
     /// # Errors
     /// Where none is found in a few iterations.
@@ -146,8 +150,7 @@ impl<'a> Continuation<'a> {
     ) -> Result<PathPoint, SolveError> {
         let unknowns = &self.work.discretization.unknowns;
         let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        let plane = Constraint::Plane { normal: &heading.motion, from: from.displacement, distance: 0.0 };
-        self.solve(from, heading, (free, from.parameter), &plane, observer)
+        self.solve(from, heading, (free, from.parameter), &Constraint::Nearest, observer)
     }
 
     /// Unit tangent of the path at an equilibrium.
@@ -200,8 +203,8 @@ impl<'a> Continuation<'a> {
         };
         let chord: Vec<[f64; 3]> = point.displacement.iter().zip(from.displacement).map(|(u, v)| sub(*u, *v)).collect();
         let sense = match constraint {
-            Constraint::Plane { distance: 0.0, .. } => &heading.motion,
-            _ => &chord,
+            Constraint::Nearest => &heading.motion,
+            Constraint::Parameter(_) | Constraint::Plane { .. } => &chord,
         };
         let end = tangent(&mut equations, &point, metric, Sense::Along(sense))?.direction;
         let (last, ended) = (point.iterate, point.ended(&equations, effort));
@@ -220,9 +223,10 @@ impl Constraint<'_> {
     fn distance(&self, point: &Point, metric: &Metric) -> (f64, f64) {
         match self {
             Constraint::Parameter(parameter) => (parameter - point.parameter, parameter.abs()),
+            Constraint::Nearest => (0.0, 0.0),
             Constraint::Plane { normal, from, distance } => {
                 let moved: Vec<[f64; 3]> = point.displacement.iter().zip(*from).map(|(u, v)| sub(*u, *v)).collect();
-                (distance - metric.product(normal, &moved), distance.abs().max(metric.length(&moved)))
+                (distance - metric.product(normal, &moved), distance.abs())
             }
         }
     }
@@ -231,6 +235,10 @@ impl Constraint<'_> {
     fn change(&self, point: &Point, metric: &Metric, off: f64, step: &[f64], rates: &[f64]) -> f64 {
         match self {
             Constraint::Parameter(_) => off,
+            Constraint::Nearest => {
+                let tangent = point.placement.velocity(rates, &point.given_rates);
+                -metric.product(&tangent, &point.placement.velocity(step, &[])) / metric.product(&tangent, &tangent)
+            }
             Constraint::Plane { normal, .. } => {
                 let ahead = metric.product(normal, &point.placement.velocity(step, &[]));
                 (off - ahead) / metric.product(normal, &point.placement.velocity(rates, &point.given_rates))

@@ -105,7 +105,9 @@ pub enum SolveError {
         effort: Effort,
     },
     /// Nothing moves as the parameter changes: there is no path to follow.
-    #[error("nothing moves as the parameter changes at {parameter}: give the loads or motions a history that goes on there")]
+    #[error(
+        "nothing moves as the parameter changes at {parameter}: give the loads or motions a history that goes on there"
+    )]
     NothingMoves {
         /// The parameter.
         parameter: f64,

@@ -86,7 +86,6 @@ impl Stages {
         }
     }
 
-
     /// Finds equilibrium on a refined mesh at the same load.
     pub(super) fn relax(
         &mut self,
@@ -115,7 +114,6 @@ impl Stages {
         }
         Ok((next, report))
     }
-
 
     pub(super) fn not_re_equilibrated(&self, state: &State, cause: SolveError) -> StageError {
         StageError::NotReEquilibrated {

@@ -12,11 +12,11 @@ mod stage_error;
 mod stages;
 mod step_control;
 
+pub use path_control::CriticalPoint;
 pub use record::{Commit, Record};
 pub use report::{Outcome, Parameter, Reading, Report, WrittenReport};
 pub use run::{Ending, Run, RunError};
 pub use sink::{MemorySink, Sink, SinkError};
-pub use path_control::CriticalPoint;
 pub use stage_error::StageError;
 pub use stages::Stages;
 pub use step_control::next_stage;

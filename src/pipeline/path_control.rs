@@ -48,7 +48,11 @@ impl CriticalPoint {
 
     /// For a table: what it is, and how the pivots changed.
     pub fn in_words(&self) -> String {
-        let change = format!("{:+} negative pivot{}", self.pivots_changed, if self.pivots_changed.abs() == 1 { "" } else { "s" });
+        let change = format!(
+            "{:+} negative pivot{}",
+            self.pivots_changed,
+            if self.pivots_changed.abs() == 1 { "" } else { "s" }
+        );
         match (self.limit_point, self.is_bifurcation()) {
             (true, false) => format!("limit point ({change})"),
             (true, true) => format!("limit point and bifurcation ({change})"),

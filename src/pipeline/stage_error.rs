@@ -93,7 +93,9 @@ pub enum StageError {
         most: usize,
     },
     /// The unstable equilibrium could not be left.
-    #[error("step {step}, switch-branch at {reached}: {cause}; raise solver.max_iterations, or take smaller increments")]
+    #[error(
+        "step {step}, switch-branch at {reached}: {cause}; raise solver.max_iterations, or take smaller increments"
+    )]
     NotSwitched {
         /// Load step.
         step: u64,

@@ -164,7 +164,8 @@ impl Stages {
             ..path.clone()
         };
         let path = state.path.as_ref().map(carried);
-        let next = State { mesh: finer.clone(), refined: None, displacement, strain_energy_n_mm, path, ..state.clone() };
+        let next =
+            State { mesh: finer.clone(), refined: None, displacement, strain_energy_n_mm, path, ..state.clone() };
         let report = self.report(&next, next.step);
         Ok((next, report))
     }

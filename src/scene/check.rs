@@ -1,8 +1,8 @@
 //! Entries to a scene, and what must hold between keys.
 
 use super::data::{
-    Action, Adapt, ArcLength, ArcLengthWord, EndRotation, Geometry, Hold, LengthLimit, Load, Material, MeshSpec, Motion, Output, Probe, Scene,
-    Solver, Stage, Support, Symmetry,
+    Action, Adapt, ArcLength, ArcLengthWord, EndRotation, Geometry, Hold, LengthLimit, Load, Material, MeshSpec,
+    Motion, Output, Probe, Scene, Solver, Stage, Support, Symmetry,
 };
 use super::document::Document;
 use super::error::{Checked, Direction, Fault, Place, Problem, SceneError, Source};

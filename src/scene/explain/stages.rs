@@ -61,7 +61,9 @@ fn leaves(stage: Stage) -> &'static str {
     match stage {
         Stage::RefineKnots => "leaves displacements that belong to the mesh before",
         Stage::ProjectDisplacements => "leaves a mesh on which equilibrium is not found yet",
-        Stage::Solve | Stage::SwitchBranch | Stage::EvaluateIndicators | Stage::ReEquilibrate => "leaves an equilibrium",
+        Stage::Solve | Stage::SwitchBranch | Stage::EvaluateIndicators | Stage::ReEquilibrate => {
+            "leaves an equilibrium"
+        }
     }
 }
 
