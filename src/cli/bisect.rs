@@ -9,7 +9,11 @@ use super::log_file::{ReadLog, read_log, scene_at};
 use super::output::print;
 use super::replay::place;
 use super::stage_table::stage_table;
-use crate::history::{Comparison, Condition, SnapReport, find_parting, find_snap, shown_value};
+use crate::history::{
+    Comparison, Condition, SnapReport, find_parting, find_snap, first_loss_of_stability, shown_value,
+};
+use crate::pipeline::Parameter;
+use crate::units::count;
 
 /// Find where two logs part, where a log jumps (--snap), or where a condition first holds (--when)
 #[derive(Args, Debug)]
@@ -19,7 +23,8 @@ pub(super) struct Arguments {
     log: PathBuf,
     /// A second log: find the first stage at which the two differ; exit code 1 if they do
     other: Option<PathBuf>,
-    /// Locate the first jump: go back to the last stable state before it and halve the load
+    /// Locate the first jump or loss of stability: go back to the last stable state before it and halve the load; says also
+    /// what kind of critical point it is, and which mode is soft there
     #[arg(long)]
     snap: bool,
     /// How well the jump is to be located, in degrees
@@ -98,11 +103,11 @@ impl Arguments {
     }
 
     fn jump(&self, read: &ReadLog) -> Result<u8, Failure> {
-        let jump = read.log.entries().iter().position(|entry| entry.record.report.jumped);
+        let jump = first_loss_of_stability(&read.log);
         // The scene of the stretch that jumped; without a jump no scene is needed.
         let scene = jump.map_or(Ok(read.scene.clone()), |jump| scene_at(&read.log, &self.log, jump, &[]))?;
         let report = find_snap(&read.log, &scene, self.tolerance).map_err(Box::new)?;
-        print(&told(&report)).map(|()| 0)
+        print(&told(&report, Parameter::of(&scene))).map(|()| 0)
     }
 }
 
@@ -133,19 +138,36 @@ fn compared(comparison: &Comparison) -> String {
     }
 }
 
-fn told(report: &SnapReport) -> String {
+fn told(report: &SnapReport, parameter: Parameter) -> String {
     let [below, beyond] = report.bracket_deg;
     let [before, after] = report.moment_n_mm;
     let [stable, most, end] = report.negative_pivots;
     let [x, y, z] = report.mode_at;
     let [u, v, w] = report.mode.shape[report.mode.largest_at];
     let [n1, n2] = report.stable.mesh.element_counts();
+    let (name, degree) = match parameter {
+        Parameter::Rotation => ("critical rotation", "°"),
+        Parameter::LoadFactor => ("critical load", ""),
+    };
+    let moment = match parameter {
+        Parameter::Rotation => format!("moment               {before:.3} N·mm before, {after:.3} N·mm after\n"),
+        Parameter::LoadFactor => String::new(),
+    };
+    let kind = match report.critical {
+        None => "not passed by the path that was followed".to_string(),
+        Some(critical) => format!(
+            "{}: {} of the stiffness changed sign",
+            if critical.is_bifurcation() { "bifurcation" } else { "limit point" },
+            count(critical.pivots_changed.unsigned_abs() as usize, "pivot")
+        ),
+    };
     format!(
-        "critical rotation    {below:.9}° to {beyond:.9}°, on {n1} × {n2} elements, {} solves\n\
-         moment               {before:.3} N·mm before, {after:.3} N·mm after\n\
+        "{name:<20} {below:.9}{degree} to {beyond:.9}{degree}, on {n1} × {n2} elements, {} solves\n\
+         {moment}\
          energy released      {:.4} N·mm of {:.4} N·mm\n\
+         kind                 {kind}\n\
          negative pivots      {stable} before, up to {most} on the way, {end} after\n\
-         soft mode            eigenvalue {:.4e} N/mm at {below:.6}°; moves most at ({x:.1}, {y:.1}, {z:.1}) mm, towards ({u:.2}, {v:.2}, {w:.2})\n",
+         soft mode            eigenvalue {:.4e} N/mm at {below:.6}{degree}; moves most at ({x:.1}, {y:.1}, {z:.1}) mm, towards ({u:.2}, {v:.2}, {w:.2})\n",
         report.solves, report.energy_released_n_mm, report.stable.strain_energy_n_mm, report.mode.eigenvalue
     )
 }

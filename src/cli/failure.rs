@@ -3,11 +3,11 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::history::{ConditionError, NothingStands, ReplayError, SnapError};
+use crate::history::{ConditionError, NothingStands, ReplayError, SnapError, StabilityError};
 use crate::model::ModelError;
 use crate::pipeline::Parameter;
 use crate::scene::{Scene, Stage};
-use crate::study::BenchError;
+use crate::study::{BenchError, ConvergenceError};
 use crate::view::{PlotError, SamplesError};
 
 /// Stopped by a signal; nothing is wrong.
@@ -86,6 +86,10 @@ pub(super) enum Failure {
     CannotStart { source: Box<dyn std::error::Error + Send + Sync> },
     #[error("nothing can be timed")]
     Bench { source: Box<BenchError> },
+    #[error("degree {}, {} × {} elements gave nothing", degree[0], elements[0], elements[1])]
+    Convergence { degree: [usize; 2], elements: [usize; 2], source: Box<ConvergenceError> },
+    #[error("the stability of stage {index} of {} cannot be found", log.display())]
+    Stability { log: PathBuf, index: usize, source: Box<StabilityError> },
     #[error("no stage of {} meets the condition `{condition}`", log.display())]
     NeverHolds { log: PathBuf, condition: String },
 }

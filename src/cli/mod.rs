@@ -5,6 +5,7 @@
 
 mod bench;
 mod bisect;
+mod converge;
 mod failure;
 mod help;
 mod inspect;
@@ -20,6 +21,7 @@ mod resume;
 mod run;
 mod scene_file;
 mod session;
+mod stability;
 mod stage_table;
 mod trace;
 mod verify;
@@ -50,9 +52,11 @@ enum Command {
     Plot(plot::Arguments),
     Replay(replay::Arguments),
     Bisect(bisect::Arguments),
+    Stability(stability::Arguments),
     Verify(verify::Arguments),
     Recover(recover::Arguments),
     Bench(bench::Arguments),
+    Converge(converge::Arguments),
     Help(help::Arguments),
 }
 
@@ -66,8 +70,10 @@ impl Command {
             Command::Plot(arguments) => arguments.run().map(|()| 0),
             Command::Replay(arguments) => arguments.run(),
             Command::Bisect(arguments) => arguments.run(),
+            Command::Stability(arguments) => arguments.run().map(|()| 0),
             Command::Verify(arguments) => arguments.run(),
             Command::Recover(arguments) => arguments.run(),
+            Command::Converge(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
             Command::Help(arguments) => arguments.run().map(|()| 0),
         }

@@ -74,7 +74,7 @@ impl Arguments {
 }
 
 /// Cells that make a coarse mesh look smooth and a fine one no larger than need be.
-fn cells_per_element(mesh: &Mesh) -> usize {
+pub(super) fn cells_per_element(mesh: &Mesh) -> usize {
     let [n1, n2] = mesh.element_counts();
     SMOOTH.div_ceil(n1.max(n2)).clamp(2, 12)
 }

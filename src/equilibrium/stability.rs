@@ -12,15 +12,17 @@ use crate::equilibrium::metric::Metric;
 use crate::equilibrium::newton::{Effort, SolveError, Standing, Workspace};
 use crate::shell::dot;
 
-/// Inverse iterations at most; with the shift as close as [`CLOSE`] a handful suffice, but for eigenvalues that are
-/// nearly equal, of which any mixture of modes will do.
+/// Inverse iterations at most. Near a critical point the lowest eigenvalue stands far from the next, and a handful
+/// suffice; of eigenvalues that are nearly equal any mixture of modes will do.
 const MAX_ITERATIONS: usize = 200;
 /// The eigenvalue has settled when it changes by less than this, relatively to its distance from the shift.
 const SETTLED: f64 = 1e-10;
-/// How close below the lowest eigenvalue the shift is put, relative to it.
-const CLOSE: f64 = 0.25;
+/// The same where only its magnitude is asked for.
+const ROUGH: f64 = 0.1;
+/// The shift is at most this much below the lowest eigenvalue.
+const FARTHEST: f64 = 4.0;
 /// Trials of shifts at most: from the smallest magnitude of a number to the largest.
-const MAX_SHIFTS: usize = 200;
+const MAX_SHIFTS: usize = 600;
 
 /// The lowest eigenvalue of the stiffness on the free unknowns, with its mode.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,9 +52,9 @@ pub fn soft_mode(work: &mut Workspace, at: Standing) -> Result<SoftMode, SolveEr
     let free = work.discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
     let mut slicing = Slicing { mass: mass(work, &free, at.parameter), stiffness: work.values.clone(), work, tried: 0 };
     // A start that no symmetry is orthogonal to, the same in every run.
-    let start: Vec<f64> = (0..free.len()).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
-    slicing.shift_below(&start)?;
-    let (vector, eigenvalue, iterations) = slicing.iterate(start);
+    let mut start: Vec<f64> = (0..free.len()).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
+    slicing.shift_below(&mut start)?;
+    let (vector, eigenvalue, iterations) = slicing.iterate(start, SETTLED);
     let factorizations = slicing.tried;
     let placement = work.discretization.unknowns.place(&free, at.parameter);
     let mut shape = placement.velocity(&vector, &[]);
@@ -99,36 +101,26 @@ impl Slicing<'_> {
         solver.factorize(values).map(|negative| negative.count).map_err(|cause| SolveError::Factor { cause, effort })
     }
 
-    /// Puts the shift below the lowest eigenvalue and close to it, and leaves its factor in the solver.
-    fn shift_below(&mut self, start: &[f64]) -> Result<f64, SolveError> {
-        // A Rayleigh quotient is no less than the lowest eigenvalue, and has its units.
-        let quotient = self.form(start, &self.stiffness) / self.form(start, &self.mass);
-        let scale = quotient.abs().max(f64::MIN_POSITIVE);
-        let mut above = quotient.max(0.0);
-        let mut below = match self.count_below(0.0)? {
-            0 => 0.0,
-            _ => {
-                above = 0.0;
-                let mut shift = -1e-12 * scale;
-                while self.count_below(shift)? > 0 && self.tried < MAX_SHIFTS {
-                    (above, shift) = (shift, 4.0 * shift);
-                }
-                shift
-            }
-        };
-        while above - below > CLOSE * above.abs().max(below.abs()) && self.tried < MAX_SHIFTS {
-            // Between numbers of one sign in the geometric mean: they may be many orders of magnitude apart.
-            let middle = match below.abs().min(above.abs()) {
-                0.0 => 0.1 * (below + above),
-                _ => below.signum() * (below * above).sqrt(),
-            };
+    /// Puts the shift below the lowest eigenvalue and not far from it, and leaves its factor in the solver. `start` becomes
+    /// the mode whose eigenvalue is smallest in magnitude, roughly.
+    fn shift_below(&mut self, start: &mut Vec<f64>) -> Result<(), SolveError> {
+        if self.count_below(0.0)? == 0 {
+            return Ok(());
+        }
+        let (vector, nearest, _) = self.iterate(std::mem::take(start), ROUGH);
+        *start = vector;
+        let (mut above, mut below) = (0.0, -2.0 * nearest.abs());
+        while self.count_below(below)? > 0 && self.tried < MAX_SHIFTS {
+            (above, below) = (below, 4.0 * below);
+        }
+        while below < FARTHEST * above && self.tried < MAX_SHIFTS {
+            let middle = -(below * above).sqrt();
             match self.count_below(middle)? {
                 0 => below = middle,
                 _ => above = middle,
             }
         }
-        self.count_below(below)?;
-        Ok(below)
+        self.count_below(below).map(|_| ())
     }
 
     /// vᵀ A v.
@@ -137,7 +129,7 @@ impl Slicing<'_> {
     }
 
     /// Inverse iteration with the factor at hand: mode, eigenvalue and iterations.
-    fn iterate(&mut self, mut vector: Vec<f64>) -> (Vec<f64>, f64, usize) {
+    fn iterate(&mut self, mut vector: Vec<f64>, settled: f64) -> (Vec<f64>, f64, usize) {
         let mut last = f64::INFINITY;
         for iteration in 1..=MAX_ITERATIONS {
             let mut next = self.work.pattern.multiply(&self.mass, &vector);
@@ -146,7 +138,7 @@ impl Slicing<'_> {
             vector = next.into_iter().map(|value| value / length).collect();
             let eigenvalue = self.form(&vector, &self.stiffness);
             // 1/length is the distance of the eigenvalue from the shift.
-            if (eigenvalue - last).abs() <= SETTLED / length || iteration == MAX_ITERATIONS {
+            if (eigenvalue - last).abs() <= settled / length || iteration == MAX_ITERATIONS {
                 return (vector, eigenvalue, iteration);
             }
             last = eigenvalue;

@@ -7,6 +7,7 @@ mod part;
 mod replay;
 mod resume;
 mod snap;
+mod stability;
 
 pub use bisection::{IndexBisection, LoadBisection};
 pub use compare::{Comparison, Difference, compare};
@@ -14,4 +15,5 @@ pub use condition::{Condition, ConditionError};
 pub use part::{Parting, find_parting};
 pub use replay::{ReplayError, Replayed, Verdict, replay_stage, verdict};
 pub use resume::{Basis, BasisError, NothingStands, ResumePlan, basis, plan, restored_scene, shown_value};
-pub use snap::{SnapError, SnapReport, find_snap};
+pub use snap::{SnapError, SnapReport, find_snap, first_loss_of_stability};
+pub use stability::{StabilityError, StabilityReport, stability_at};

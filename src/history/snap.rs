@@ -1,11 +1,13 @@
-//! Where exactly a run jumped: from the last stable state before the jump, the load is halved until it is known.
+//! Where exactly a run jumped or lost its stability: from the last stable state before, the load is halved until it is
+//! known. What kind of critical point it is says the path beyond it, followed by arc length.
 
 use crate::equilibrium::{
-    Equilibrium, Iterate, Observer, SoftMode, SolveError, Standing, Workspace, WorkspaceError, soft_mode,
+    Continuation, Equilibrium, Iterate, Observer, Sense, SoftMode, SolveError, Standing, Workspace, WorkspaceError,
+    soft_mode,
 };
 use crate::history::bisection::LoadBisection;
 use crate::journal::{Log, StateError};
-use crate::pipeline::{Parameter, is_jump};
+use crate::pipeline::{CriticalPoint, Outcome, Parameter, is_jump};
 use crate::scene::Scene;
 use crate::state::State;
 
@@ -20,6 +22,9 @@ pub struct SnapReport {
     pub energy_released_n_mm: f64,
     /// Negative pivots: in the last stable state, the most on the way through the jump, and after it.
     pub negative_pivots: [usize; 3],
+    /// What the path passes there: limit point or bifurcation, and how many pivots change sign. `None` where the path was
+    /// lost before it passed anything.
+    pub critical: Option<CriticalPoint>,
     /// The mode that is softest in the last stable state.
     pub mode: SoftMode,
     /// Undeformed place of the control point that moves most in it, mm.
@@ -33,8 +38,8 @@ pub struct SnapReport {
 /// Why a jump could not be located.
 #[derive(Debug, thiserror::Error)]
 pub enum SnapError {
-    /// The log holds no jump.
-    #[error("no stage of this log jumped; the farthest state in it stands at {farthest}")]
+    /// The log holds no jump, and no equilibrium in it is unstable.
+    #[error("no stage of this log jumped or lost its stability; the farthest state in it stands at {farthest}")]
     NoJump {
         /// Where the farthest state stands.
         farthest: String,
@@ -44,13 +49,13 @@ pub enum SnapError {
     State(#[from] StateError),
     /// The jump is in the first step: there is no stable state before it.
     #[error(
-        "the run jumps in its first step: there is no stable state in the log to go back to; run it with a smaller increment"
+        "the run jumps or loses its stability in its first step: there is no stable state in the log to go back to; run it with a smaller increment"
     )]
     NothingBefore,
     /// The jump does not happen on the mesh before it.
     #[error(
-        "the shell goes from {from} to {to} without a jump on the mesh that it had: the jump came from refining that mesh; \
-         run the scene from a finer mesh to bisect it"
+        "the shell goes from {from} to {to} without a jump and stays stable on the mesh that it had: that came from refining \
+         the mesh; run the scene from a finer mesh to bisect it"
     )]
     OnRefinedMesh {
         /// Where the last stable state stands.
@@ -73,26 +78,49 @@ pub enum SnapError {
     Workspace(#[from] WorkspaceError),
 }
 
-/// Locates the first jump of a log to `tolerance_deg`, on the mesh of the last stable state before it.
+/// The first stage of a log that jumped, or at which the shell stands on an unstable equilibrium.
+pub fn first_loss_of_stability(log: &Log) -> Option<usize> {
+    log.entries().iter().position(|entry| {
+        let report = &entry.record.report;
+        let found = report.outcome == Outcome::Done && report.stage.finds_equilibrium();
+        report.jumped || (found && report.negative_pivots > 0)
+    })
+}
+
+/// Locates the first jump or loss of stability of a log to `tolerance_deg`, on the mesh of the last stable state before it.
 ///
 /// # Errors
-/// Where the log holds no jump or a solve fails.
+/// Where the log holds no such thing or a solve fails.
 pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapReport, SnapError> {
     let entries = log.entries();
     let shown = |value: f64| Parameter::of(scene).shown(value);
-    let Some(jump) = entries.iter().position(|entry| entry.record.report.jumped) else {
+    let Some(jump) = first_loss_of_stability(log) else {
         let farthest = entries.iter().fold(0.0, |most: f64, entry| most.max(entry.record.report.parameter));
         return Err(SnapError::NoJump { farthest: shown(farthest) });
     };
-    let beyond = entries[jump].record.report.parameter;
-    let before = (0..jump).rev().find(|index| entries[*index].record.report.parameter < beyond);
+    let reached = entries[jump].record.report.parameter;
+    // By arc length the last stable point may lie at a higher load than the first one behind the limit point.
+    let before = (0..jump).rev().find(|index| {
+        let report = &entries[*index].record.report;
+        report.parameter < reached || (report.path_length_mm.is_some() && report.negative_pivots == 0)
+    });
     let start = log.state(before.ok_or(SnapError::NothingBefore)?)?;
     let mut work = Workspace::new(scene, &start.mesh)?;
     let mut tries = Tries { scene, work: &mut work, count: 0 };
 
     let mut stable = start;
-    if tries.gently(&stable, beyond)?.is_some() {
-        return Err(SnapError::OnRefinedMesh { from: shown(stable.parameter), to: shown(beyond) });
+    let mut beyond = reached.max(stable.parameter);
+    let along_path = stable.path.is_some();
+    loop {
+        let gently = if beyond > stable.parameter { tries.gently(&stable, beyond)? } else { Some(stable.clone()) };
+        match gently {
+            None => break,
+            Some(next) if along_path && tries.count < MOST_TRIES => {
+                stable = next;
+                beyond = stable.parameter + scene.load.increment();
+            }
+            Some(_) => return Err(SnapError::OnRefinedMesh { from: shown(stable.parameter), to: shown(beyond) }),
+        }
     }
     let mut search = LoadBisection::new(stable.parameter, beyond, tolerance_deg);
     while let Some(parameter) = search.next() {
@@ -104,6 +132,7 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
     }
     let bracket_deg = search.bracket();
     let (after, work_done, most_negative) = tries.through(&stable, bracket_deg[1])?;
+    let critical = tries.what_is_passed(&stable, bracket_deg);
     let solves = tries.count;
     let mode = soft_mode(&mut work, Standing::of(&stable)).map_err(|source| SnapError::Solve {
         from: shown(stable.parameter),
@@ -116,12 +145,16 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
         moment_n_mm: [stable.moment_n_mm, after.moment_n_mm],
         energy_released_n_mm: stable.strain_energy_n_mm + work_done - after.strain_energy_n_mm,
         negative_pivots: [stable.negative_pivots as usize, most_negative, after.negative_pivots as usize],
+        critical,
         mode,
         mode_at: [x / w, y / w, z / w],
         stable,
         solves,
     })
 }
+
+/// Solves before a search gives up.
+const MOST_TRIES: usize = 100;
 
 struct Tries<'a> {
     scene: &'a Scene,
@@ -146,6 +179,38 @@ impl Tries<'_> {
         let released = from.strain_energy_n_mm + work - reached.strain_energy_n_mm;
         let jumped = is_jump(released, from.strain_energy_n_mm, reached.strain_energy_n_mm);
         Ok((!jumped).then_some(reached))
+    }
+
+    /// Follows the path from the last stable state until something changes. Steps grow from what the bracket is wide, since
+    /// the length of the path to a limit point goes with the square root of that.
+    fn what_is_passed(&mut self, from: &State, bracket: [f64; 2]) -> Option<CriticalPoint> {
+        let mut continuation = Continuation::new(self.scene, self.work);
+        let start = continuation.heading_at(Standing::of(from), Sense::Parameter { grows: true }).ok()?;
+        let mut length = (bracket[1] - bracket[0]).abs().max(f64::EPSILON * bracket[1].abs()) / start.parameter;
+        let mut heading = start;
+        let mut at = from.clone();
+        for _ in 0..MOST_TRIES {
+            self.count += 1;
+            let Ok(point) = continuation.step(Standing::of(&at), &heading.motion, length, &mut |_| false) else {
+                length *= 0.5;
+                continue;
+            };
+            let here = (heading.parameter, at.negative_pivots);
+            let passed = CriticalPoint::between(here, (point.heading.parameter, point.solved.negative_pivots as u64));
+            if passed.is_some() {
+                return passed;
+            }
+            at = State {
+                displacement: point.solved.displacement,
+                turns: point.solved.turns,
+                parameter: point.parameter,
+                negative_pivots: point.solved.negative_pivots as u64,
+                ..at
+            };
+            heading = point.heading;
+            length *= 2.0;
+        }
+        None
     }
 
     fn failed(&self, from: &State, parameter: f64, source: SolveError) -> SnapError {

@@ -1,6 +1,7 @@
 //! What a run says when it is held against theory: the closed-form laws of tape springs, and the summary of a run.
 
 mod bench;
+mod convergence;
 mod path;
 mod section_shape;
 mod summary;
@@ -8,6 +9,7 @@ mod summary_text;
 mod wuest;
 
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
+pub use convergence::{ConvergenceError, ConvergenceRow, converge};
 pub use path::{PathPoint, Snap, equilibrium_path, snaps};
 pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, StageWork, Summary};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

@@ -1,0 +1,43 @@
+//! How stable the states of a log are.
+
+use crate::equilibrium::{SoftMode, SolveError, Standing, Workspace, WorkspaceError, soft_mode};
+use crate::journal::{Log, StateError};
+use crate::scene::Scene;
+use crate::state::State;
+
+/// A state with its softest mode.
+#[derive(Clone, Debug)]
+pub struct StabilityReport {
+    /// The state.
+    pub state: State,
+    /// The lowest eigenvalue of its tangent stiffness, and the mode.
+    pub mode: SoftMode,
+    /// Undeformed place of the control point that moves most in it, mm.
+    pub mode_at: [f64; 3],
+}
+
+/// Why there is no report.
+#[derive(Debug, thiserror::Error)]
+pub enum StabilityError {
+    /// The state cannot be had.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// The equations do not fit in memory, or the scene not the mesh.
+    #[error(transparent)]
+    Workspace(#[from] WorkspaceError),
+    /// The stiffness has no factor.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+}
+
+/// The softest mode of the state that stage `index` made.
+///
+/// # Errors
+/// Where the state cannot be had, or its stiffness has no factor.
+pub fn stability_at(log: &Log, index: usize, scene: &Scene) -> Result<StabilityReport, StabilityError> {
+    let state = log.state(index)?;
+    let mut work = Workspace::new(scene, &state.mesh)?;
+    let mode = soft_mode(&mut work, Standing::of(&state))?;
+    let [x, y, z, w] = state.mesh.control_points[mode.largest_at];
+    Ok(StabilityReport { mode_at: [x / w, y / w, z / w], mode, state })
+}
