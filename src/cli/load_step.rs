@@ -68,7 +68,7 @@ impl LoadStep {
             events.push(format!("after {} too far past the jump", count(jump, "solve")));
         }
         if critical > 0 {
-            events.push(format!("after {} too far past it", count(critical, "solve")));
+            events.push(format!("after {} past a critical point ahead", count(critical, "solve")));
         }
         if turn > 0 {
             events.push(format!("after {} round too sharp a turn", count(turn, "solve")));

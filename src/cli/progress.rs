@@ -218,6 +218,8 @@ mod tests {
             driven_by: Parameter::Rotation,
             work_n_mm: 0.0,
             probes: vec![],
+            path_length_mm: None,
+            critical_point: None,
             parameter: 9.6,
             attempted_parameter: 9.615,
             moment_n_mm: 289.1247,

@@ -30,7 +30,7 @@ pub struct ConvergenceRow {
     pub peak: Option<[f64; 2]>,
     /// First limit point: rotation, degrees, and moment, N·mm.
     pub limit: Option<[f64; 2]>,
-    /// Second limit point, where the unstable path ends in the fold: rotation and moment.
+    /// Lowest limit point, where the unstable path ends in the fold: rotation and moment.
     pub fold_begins: Option<[f64; 2]>,
     /// Moment on the unstable path at the rotation that was asked for, N·mm.
     pub unstable_n_mm: Option<f64>,
@@ -108,7 +108,9 @@ fn read_off(scene: &Scene, records: &[Record], unstable_at_deg: f64, wall_s: f64
         })
         .collect();
     let limits: Vec<usize> = (0..path.len()).filter(|index| path[*index].passed_limit).collect();
-    let (first, second) = (limits.first().copied(), limits.get(1).copied());
+    let first = limits.first().copied();
+    // On the way the rotation may turn back and forth: the fold begins at the lowest of its limit points.
+    let second = limits.iter().skip(1).copied().min_by(|i, j| path[*i].rotation.total_cmp(&path[*j].rotation));
     let at_limit = |index: usize, sign: f64| {
         let (_, rotation) = top(&path, index, |point| sign * point.rotation)?;
         Some([sign * rotation, path[index].moment])

@@ -46,6 +46,7 @@ pub fn scene() -> Scene {
             least_increment_deg: Some(1e-3),
             snap_tolerance_deg: Some(0.02),
         },
+        continuation: None,
         pipeline: Stage::REFINING.to_vec(),
         output: Output { sync: SyncPolicy::EachSecond, mesh_history: false },
     }
@@ -65,6 +66,8 @@ impl Script {
             driven_by: Parameter::Rotation,
             work_n_mm: 0.0,
             probes: vec![],
+            path_length_mm: None,
+            critical_point: None,
             stage: Stage::Solve,
             outcome: Outcome::Done,
             parameter: 0.0,
@@ -229,5 +232,6 @@ pub fn state(record: &Record) -> State {
         strain_energy_n_mm: record.report.strain_energy_n_mm,
         negative_pivots: record.report.negative_pivots,
         control: StepControl::default(),
+        path: None,
     }
 }

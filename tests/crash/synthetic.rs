@@ -42,6 +42,7 @@ pub fn start(elements: usize) -> State {
         strain_energy_n_mm: 0.0,
         negative_pivots: 0,
         control: StepControl::default(),
+        path: None,
     }
 }
 
@@ -55,8 +56,10 @@ pub fn next(state: &State) -> (State, Report) {
     let (stage, step) = match state.stage {
         None | Some(Stage::ReEquilibrate) => (Stage::Solve, state.step + 1),
         Some(Stage::Solve) => (Stage::EvaluateIndicators, state.step),
-        Some(Stage::EvaluateIndicators) if state.marked[0].is_empty() => (Stage::Solve, state.step + 1),
-        Some(Stage::EvaluateIndicators) => (Stage::RefineKnots, state.step),
+        Some(Stage::EvaluateIndicators | Stage::SwitchBranch) if state.marked[0].is_empty() => {
+            (Stage::Solve, state.step + 1)
+        }
+        Some(Stage::EvaluateIndicators | Stage::SwitchBranch) => (Stage::RefineKnots, state.step),
         Some(Stage::RefineKnots) => (Stage::ProjectDisplacements, state.step),
         Some(Stage::ProjectDisplacements) => (Stage::ReEquilibrate, state.step),
     };
@@ -87,7 +90,7 @@ pub fn next(state: &State) -> (State, Report) {
             new.mesh = new.refined.take().unwrap_or_else(|| state.mesh.clone());
             new.displacement = vec![[0.125 * state.parameter; 3]; new.mesh.control_points.len()];
         }
-        Stage::ReEquilibrate => new.displacement = moved(state, 1.0e-3),
+        Stage::ReEquilibrate | Stage::SwitchBranch => new.displacement = moved(state, 1.0e-3),
     }
     let report = Report {
         step,
@@ -96,6 +99,8 @@ pub fn next(state: &State) -> (State, Report) {
         driven_by: Parameter::Rotation,
         work_n_mm: 0.0,
         probes: vec![],
+        path_length_mm: None,
+        critical_point: None,
         parameter: new.parameter,
         attempted_parameter: new.parameter + 0.1,
         moment_n_mm: new.moment_n_mm,

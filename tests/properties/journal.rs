@@ -8,7 +8,7 @@ use foldline::journal::{
     JournalWriter, Log, check_state, decode_mesh, decode_state, encode_mesh, encode_state, message, verify_log,
 };
 use foldline::scene::{Stage, SyncPolicy};
-use foldline::state::{Hash, Mesh, Rejection, State, StepControl};
+use foldline::state::{CriticalAhead, Hash, Mesh, PathMemory, Rejection, State, StepControl};
 use proptest::prelude::*;
 
 use crate::synthetic;
@@ -51,8 +51,14 @@ fn stage() -> impl Strategy<Value = Option<Stage>> {
 }
 
 fn state() -> impl Strategy<Value = State> {
-    let control = (any::<u32>(), prop::option::of(number()), 0..3_u8).prop_map(|(halvings, jump_seen_at_deg, why)| {
-        let rejection = [None, Some(Rejection::Jump), Some(Rejection::NoEquilibrium)][usize::from(why)];
+    let control = (any::<u32>(), prop::option::of(number()), 0..5_u8).prop_map(|(halvings, jump_seen_at_deg, why)| {
+        let rejection = [
+            None,
+            Some(Rejection::Jump),
+            Some(Rejection::NoEquilibrium),
+            Some(Rejection::CriticalPoint),
+            Some(Rejection::SharpTurn),
+        ][usize::from(why)];
         StepControl { halvings, jump_seen_at_deg, rejection }
     });
     let refined = any::<bool>();
@@ -75,6 +81,16 @@ fn state() -> impl Strategy<Value = State> {
                     strain_energy_n_mm: energy,
                     negative_pivots: pivots,
                     control,
+                    path: (pivots % 2 == 0).then(|| PathMemory {
+                        heading: vec![[energy, moment, 0.25]; mesh.control_points.len()],
+                        parameter_rate: energy,
+                        first_mm: moment,
+                        next_mm: rotation,
+                        travelled_mm: 3.5,
+                        critical_ahead: (pivots % 4 == 0)
+                            .then_some(CriticalAhead { within_mm: moment, rate_beyond: rotation }),
+                        at_bifurcation: step % 3 == 0,
+                    }),
                 },
             )
         },
