@@ -11,18 +11,19 @@ use crate::pipeline::{Parameter, Report};
 use crate::spline::Mesh;
 use crate::study::TapeSpring;
 use crate::units::rounded;
-use crate::view::{Picture, ViewDirection, deformed_surface, mesh_picture, moment_rotation_plot, vtu};
+use crate::view::{Picture, ViewDirection, deformed_surface, load_probe_plot, mesh_picture, moment_rotation_plot, vtu};
 
 /// Cells along a picture that look smooth.
 const SMOOTH: usize = 120;
 
-/// Draw the moment–rotation curve and the deformed mesh of a log
+/// Draw the moment–rotation curve, or the load factor over the first probe, and the deformed mesh of a log
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
     /// Log to read (MCAP)
     log: PathBuf,
-    /// Folder for moment-rotation.svg, mesh.svg and mesh.vtu [default: the log's name without .mcap]
+    /// Folder for moment-rotation.svg (other shells: load-probe.svg, the load factor over the first probe), mesh.svg and
+    /// mesh.vtu [default: the log's name without .mcap]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Show the mesh at the end of this load step [default: the last one]
@@ -51,7 +52,7 @@ impl Arguments {
         // Everything is drawn before anything is written.
         let curve = match TapeSpring::of_scene(scene) {
             Some(_) => Some(("moment-rotation.svg", moment_rotation_plot(scene, &records, &name)?)),
-            None => None,
+            None => load_probe_plot(scene, &records, &name)?.map(|text| ("load-probe.svg", text)),
         };
         let record = &records[last];
         let unusable = |source| Failure::WrongLog { log: log.clone(), source: Box::new(source) };

@@ -32,7 +32,7 @@ pub struct Direction {
 
 /// A point of the path, reached from another.
 #[derive(Clone, Debug)]
-pub struct PathPoint {
+pub struct ContinuedPoint {
     /// The equilibrium.
     pub solved: Solved,
     /// Its parameter.
@@ -92,7 +92,7 @@ impl<'a> Continuation<'a> {
     ///
     /// # Errors
     /// Where no equilibrium is found in a few iterations, or nothing moves.
-    pub fn begin(&mut self, from: Standing, to: f64, observer: Observer) -> Result<PathPoint, SolveError> {
+    pub fn begin(&mut self, from: Standing, to: f64, observer: Observer) -> Result<ContinuedPoint, SolveError> {
         let (tangent, free) = self.tangent_at(from, Sense::Parameter { grows: to > from.parameter })?;
         let distance = (to - from.parameter) / tangent.direction.parameter;
         let start = (along(&free, &tangent.free, distance), to);
@@ -109,7 +109,7 @@ impl<'a> Continuation<'a> {
         heading: &[[f64; 3]],
         distance: f64,
         observer: Observer,
-    ) -> Result<PathPoint, SolveError> {
+    ) -> Result<ContinuedPoint, SolveError> {
         let (Tangent { direction, free: rates }, free) = self.tangent_at(from, Sense::Along(heading))?;
         let start = (along(&free, &rates, distance), from.parameter + distance * direction.parameter);
         let plane = Constraint::Plane { normal: &direction.motion, from: from.displacement, distance };
@@ -123,10 +123,10 @@ impl<'a> Continuation<'a> {
     pub fn step_to(
         &mut self,
         from: Standing,
-        beyond: &PathPoint,
+        beyond: &ContinuedPoint,
         parameter: f64,
         observer: Observer,
-    ) -> Result<PathPoint, SolveError> {
+    ) -> Result<ContinuedPoint, SolveError> {
         let (tangent, _) = self.tangent_at(from, Sense::Along(&beyond.heading.motion))?;
         let share = (parameter - from.parameter) / (beyond.parameter - from.parameter);
         let between = |a: &[[f64; 3]], b: &[[f64; 3]]| -> Vec<[f64; 3]> {
@@ -147,7 +147,7 @@ impl<'a> Continuation<'a> {
         from: Standing,
         heading: &Direction,
         observer: Observer,
-    ) -> Result<PathPoint, SolveError> {
+    ) -> Result<ContinuedPoint, SolveError> {
         let unknowns = &self.work.discretization.unknowns;
         let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
         self.solve(from, heading, (free, from.parameter), &Constraint::Nearest, observer)
@@ -176,7 +176,7 @@ impl<'a> Continuation<'a> {
         (mut free, mut parameter): (Vec<f64>, f64),
         constraint: &Constraint,
         observer: Observer,
-    ) -> Result<PathPoint, SolveError> {
+    ) -> Result<ContinuedPoint, SolveError> {
         let before = Before::at(self.work, from);
         let Self { scene, work, metric } = self;
         let mut effort = Effort::default();
@@ -208,7 +208,7 @@ impl<'a> Continuation<'a> {
         };
         let end = tangent(&mut equations, &point, metric, Sense::Along(sense))?.direction;
         let (last, ended) = (point.iterate, point.ended(&equations, effort));
-        Ok(PathPoint {
+        Ok(ContinuedPoint {
             distance: metric.length(&chord),
             turn: metric.product(&heading.motion, &end.motion),
             heading: end,

@@ -15,7 +15,7 @@ mod stability;
 mod timing;
 
 pub use assembly::{Assembled, Want, strain_energy};
-pub use continuation::{Continuation, Direction, PathPoint, Sense};
+pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};
 pub use newton::{Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Standing, Workspace, WorkspaceError};
 pub use sparse::DenseProduct;
 pub use sparse::FactorError;

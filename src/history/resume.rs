@@ -9,6 +9,9 @@ use crate::state::State;
 /// The key of the rotation at which a run stops.
 const TARGETS: [&str; 2] = ["load.rotation_deg", "load.factor"];
 
+/// Targets that differ by less than this, relatively, are one.
+const TARGET_ROUNDING: f64 = 1e-12;
+
 /// What a run goes on from.
 #[derive(Clone, Debug)]
 pub struct Basis {
@@ -113,14 +116,21 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
     let nearer = old.load.target().min(new.load.target());
     for (index, entry) in log.entries().iter().enumerate().skip(1) {
         let report = &entry.record.report;
-        if report.stage == Stage::Solve && report.attempted_parameter >= nearer {
+        if report.stage == Stage::Solve && is_beyond(old, report.attempted_parameter, nearer) {
             let parent = log.state(index - 1)?;
-            if next_attempt(old, &parent) != next_attempt(new, &parent) {
+            // A step along the path is as long as its memory says, but where it ends on the target.
+            if parent.path.is_some() || next_attempt(old, &parent) != next_attempt(new, &parent) {
                 return Ok(index);
             }
         }
     }
     Ok(log.entries().len())
+}
+
+/// Whether a parameter is at a target or beyond: along a path on either side of 0.
+fn is_beyond(scene: &Scene, parameter: f64, target: f64) -> bool {
+    let here = if scene.continuation.is_some() { parameter.abs() } else { parameter };
+    here >= target * (1.0 - TARGET_ROUNDING)
 }
 
 /// Number of stages, of the first `keep`, up to the last one that ends a load step.
@@ -142,6 +152,6 @@ pub fn restored_scene(log: &Log, scene: &Scene) -> Option<Scene> {
     let last = log.last_commit()?;
     let attempts = log.entries().iter().map(|entry| entry.record.report.attempted_parameter);
     let mut restored = scene.clone();
-    restored.load.set_target(attempts.fold(f64::MIN, f64::max));
+    restored.load.set_target(attempts.fold(f64::MIN, |most, attempt| most.max(attempt.abs())));
     (last.scene_hash == scene.hash()).then_some(restored)
 }

@@ -15,7 +15,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::equilibrium::PathPoint;
+use crate::equilibrium::ContinuedPoint;
 use crate::scene::{ArcLength, Scene};
 use crate::state::{CriticalAhead, PathMemory, State};
 
@@ -99,7 +99,7 @@ pub enum Judgement {
 
 impl PathAttempt {
     /// Judges the point that the step found.
-    pub fn judge(&self, state: &State, path: &PathMemory, point: &PathPoint) -> Judgement {
+    pub fn judge(&self, state: &State, path: &PathMemory, point: &ContinuedPoint) -> Judgement {
         if point.turn < SHARPEST_TURN || point.distance > FARTHEST * self.length_mm {
             return Judgement::TooFar;
         }
@@ -118,7 +118,7 @@ impl PathAttempt {
         &self,
         limits: &ArcLength,
         path: &PathMemory,
-        point: &PathPoint,
+        point: &ContinuedPoint,
         passed: Option<CriticalPoint>,
     ) -> PathMemory {
         let rest = path.critical_ahead.filter(|ahead| ahead.within_mm > self.length_mm && !self.may_pass);
@@ -157,7 +157,7 @@ impl PathAttempt {
 }
 
 /// Memory after the first step of a path.
-pub fn path_begun(limits: &ArcLength, point: &PathPoint) -> PathMemory {
+pub fn path_begun(limits: &ArcLength, point: &ContinuedPoint) -> PathMemory {
     let by_iterations = (AIMED_ITERATIONS / point.solved.effort.iterations.max(1) as f64).sqrt();
     PathMemory {
         heading: point.heading.motion.clone(),

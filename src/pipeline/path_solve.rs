@@ -1,6 +1,6 @@
 //! Solve and re-equilibrate where the path of equilibria is followed by arc length.
 
-use crate::equilibrium::{Continuation, Direction, Iterate, PathPoint, Sense, SolveError, Standing};
+use crate::equilibrium::{Continuation, ContinuedPoint, Direction, Iterate, Sense, SolveError, Standing};
 use crate::pipeline::path_control::{CriticalPoint, Judgement, PathAttempt, next_path_attempt, path_begun};
 use crate::pipeline::stages::settle;
 use crate::pipeline::step_control::next_attempt;
@@ -161,7 +161,7 @@ impl Stages {
     fn taken(
         &mut self,
         state: &State,
-        point: &PathPoint,
+        point: &ContinuedPoint,
         path: PathMemory,
         passed: Option<CriticalPoint>,
     ) -> Result<(State, Report), StageError> {

@@ -449,10 +449,10 @@ pub(super) static LONGEST_STEP: Key = Key {
         low: Limit::included(1.0, "the first step has length 1"),
         high: Limit::included(1e6, "no path is that long"),
     }),
-    presence: Default("4.0"),
+    presence: Default("2.0"),
     reach: Steps,
     meaning: "Steps are not longer than this many first steps.",
-    example: "4.0",
+    example: "2.0",
     aliases: &["max_step", "longest", "maximum_step", "max_length"],
 };
 

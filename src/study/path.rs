@@ -1,6 +1,6 @@
 //! The equilibrium path of a run: which of its stages are points of the moment–rotation curve, and where it jumped.
 
-use crate::pipeline::{Outcome, Record};
+use crate::pipeline::{CriticalPoint, Outcome, Record};
 
 /// A point of the moment–rotation curve: the last equilibrium of a load step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +19,10 @@ pub struct PathPoint {
     pub negative_pivots: u64,
     /// Whether the shell jumped to get here.
     pub jumped: bool,
+    /// Value of the scene's first probe.
+    pub probe: Option<f64>,
+    /// What the path passed in this load step.
+    pub passed: Option<CriticalPoint>,
 }
 
 /// A jump from one equilibrium to another, with all that followed in the same load step: on the finer meshes that the
@@ -44,6 +48,7 @@ pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
     for report in equilibria(records).map(|record| &record.report) {
         let same_step = path.last().is_some_and(|last| last.step == report.step);
         let jumped_before = same_step && path.last().is_some_and(|last| last.jumped);
+        let passed_before = path.last().filter(|_| same_step).and_then(|last| last.passed);
         if same_step && (jumped_before || !report.jumped) {
             path.pop();
         }
@@ -55,6 +60,8 @@ pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
             elements: report.elements,
             negative_pivots: report.negative_pivots,
             jumped: report.jumped || jumped_before,
+            probe: report.probes.first().map(|reading| reading.value),
+            passed: report.critical_point.or(passed_before),
         });
     }
     path

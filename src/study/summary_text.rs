@@ -97,6 +97,7 @@ impl Summary {
                 snap.energy_released_n_mm
             )?;
         }
+        self.write_passed(f)?;
         let Some(balance) = self.balance else { return Ok(()) };
         let stored = balance.strain_energy_n_mm + balance.taken_out_by_refinement_n_mm;
         let off = signed(100.0 * (balance.work_n_mm / stored - 1.0), 2);
@@ -123,7 +124,8 @@ impl Summary {
             .write(f)?;
         }
         self.write_peak(f, spring)?;
-        if self.snaps.is_empty() {
+        self.write_passed(f)?;
+        if self.snaps.is_empty() && self.passed.is_empty() {
             Line { name: "snap", measured: "   none".into(), law: None, off: None, note: "" }.write(f)?;
         }
         for snap in &self.snaps {
@@ -147,6 +149,23 @@ impl Summary {
         }
         self.fold.map_or(Ok(()), |fold| self.write_fold(f, spring, fold))?;
         self.write_balance(f)
+    }
+
+    /// Limit points and bifurcations.
+    fn write_passed(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for (critical, point) in &self.passed {
+            let value = match (self.driven_by, point.probe, self.probes.first()) {
+                (Parameter::Rotation, ..) => format!("{:8.3}°  {:.3} N·mm", point.parameter, point.moment_n_mm),
+                (_, Some(value), Some(first)) => {
+                    format!("{:14.6}  {} {value:.6} {}", point.parameter, first.name, first.unit)
+                }
+                _ => format!("{:14.6}", point.parameter),
+            };
+            let name = if critical.is_bifurcation() { "bifurcation" } else { "limit point" };
+            let change = format!("{:+} negative pivot(s)", critical.pivots_changed);
+            writeln!(f, "  {name:<17}  {value}  ({change})")?;
+        }
+        Ok(())
     }
 
     /// Up to the first jump, or the end: work of both ends against strain energy.

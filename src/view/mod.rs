@@ -14,6 +14,6 @@ pub use camera::ViewDirection;
 pub use deformed_surface::deformed_surface;
 pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};
-pub use plot::{PlotError, moment_rotation_plot};
+pub use plot::{PlotError, load_probe_plot, moment_rotation_plot};
 pub use samples::{SamplesError, SurfaceSamples};
 pub use vtu::vtu;

@@ -1,8 +1,10 @@
 //! The moment–rotation curve of a run beside Wuest's law, with the size of the mesh below it.
 
-use plotters::chart::{ChartBuilder, SeriesLabelPosition};
+use plotters::chart::{ChartBuilder, ChartContext, SeriesLabelPosition};
 use plotters::coord::Shift;
+use plotters::coord::cartesian::Cartesian2d;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
+use plotters::coord::types::RangedCoordf64;
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
 use plotters::element::{Circle, DashedPathElement, PathElement, Text};
 use plotters::prelude::SVGBackend;
@@ -118,17 +120,7 @@ fn draw_moment(
             .label(format!("equal-energy plateau, {level:.2} N·mm"))
             .legend(|(x, y)| PathElement::new(vec![(x, y), (x + 22, y)], line(PLATEAU, 2)));
     }
-    // A jump is not a path: the curve is broken there.
-    let jumps: Vec<usize> = (0..path.len()).filter(|&i| path[i].jumped).map(|i| i + 1).collect();
-    let starts = std::iter::once(0).chain(jumps.iter().copied());
-    let ends = jumps.iter().copied().chain([measured.len()]);
-    for (i, (from, to)) in starts.zip(ends).enumerate() {
-        let series = chart.draw_series(LineSeries::new(measured[from..to].to_vec(), line(MEASURED, 2)))?;
-        if i == 0 {
-            series.label("this run").legend(|(x, y)| PathElement::new(vec![(x, y), (x + 22, y)], line(MEASURED, 2)));
-        }
-    }
-    chart.draw_series(measured[1..].iter().map(|point| Circle::new(*point, 2, MEASURED.filled())))?;
+    draw_path(&mut chart, path, &measured)?;
     for snap in snaps(records) {
         let (from, to) = ((snap.before_deg, snap.moment_before_n_mm), (snap.after_deg, snap.moment_after_n_mm));
         chart.draw_series(DashedLineSeries::new([from, to], 3, 4, line(SNAP, 1)))?;
@@ -152,6 +144,110 @@ fn draw_moment(
         .border_style(GRID)
         .draw()?;
     Ok(())
+}
+
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Draws points of a path, the first of which is the unloaded shell: stable stretches solid, unstable ones dashed, and
+/// broken where the shell jumped, since a jump is not a path.
+fn draw_path(chart: &mut Chart, path: &[PathPoint], points: &[(f64, f64)]) -> Result<(), PlotError> {
+    let stable = |index: usize| index.checked_sub(1).is_none_or(|index| path[index].negative_pivots == 0);
+    let joined = |index: usize| !path[index - 1].jumped;
+    let mut told = [false; 2];
+    let mut from = 0;
+    while from + 1 < points.len() {
+        if !joined(from + 1) {
+            from += 1;
+            continue;
+        }
+        // A stretch is unstable where either of its ends is.
+        let kind = |index: usize| stable(index) && stable(index + 1);
+        let mut to = from + 1;
+        while to + 1 < points.len() && joined(to + 1) && kind(to) == kind(from) {
+            to += 1;
+        }
+        let stretch = points[from..=to].to_vec();
+        if kind(from) {
+            let series = chart.draw_series(LineSeries::new(stretch, line(MEASURED, 2)))?;
+            if !std::mem::replace(&mut told[0], true) {
+                series.label("this run").legend(|(x, y)| PathElement::new([(x, y), (x + 22, y)], line(MEASURED, 2)));
+            }
+        } else {
+            let series = chart.draw_series(DashedLineSeries::new(stretch, 5, 4, line(SNAP, 2)))?;
+            if !std::mem::replace(&mut told[1], true) {
+                series
+                    .label("unstable equilibria")
+                    .legend(|(x, y)| DashedPathElement::new([(x, y), (x + 22, y)], 5, 4, line(SNAP, 2)));
+            }
+        }
+        from = to;
+    }
+    let dot = |(index, point): (usize, &(f64, f64))| {
+        let colour = if stable(index) { MEASURED } else { SNAP };
+        Circle::new(*point, 2, colour.filled())
+    };
+    chart.draw_series(points.iter().enumerate().skip(1).map(dot))?;
+    Ok(())
+}
+
+/// Load factor over the first probe of `records`, a run of `scene`, as SVG text: unstable equilibria dashed. `None` where
+/// the scene has no probe. `title` stands on top.
+///
+/// # Errors
+/// Where there is no equilibrium yet.
+pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result<Option<String>, PlotError> {
+    let Some(probe) = scene.probes.first() else { return Ok(None) };
+    let path = equilibrium_path(records);
+    let reading = records.iter().rev().find_map(|record| record.report.probes.first());
+    let reading = reading.ok_or(PlotError::NoEquilibrium)?;
+    let zero = (0.0, 0.0);
+    let points: Vec<(f64, f64)> =
+        std::iter::once(zero).chain(path.iter().filter_map(|point| Some((point.probe?, point.parameter)))).collect();
+    if points.len() != path.len() + 1 {
+        return Ok(None);
+    }
+    let span = |value: fn(&(f64, f64)) -> f64| {
+        let [low, high] =
+            points.iter().map(value).fold([0.0, 0.0], |[low, high]: [f64; 2], v| [low.min(v), high.max(v)]);
+        let margin = 0.06 * (high - low).max(f64::MIN_POSITIVE);
+        low - margin..high + margin
+    };
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, (SIZE.0, UPPER_HEIGHT + 40)).into_drawing_area();
+        root.fill(&WHITE)?;
+        let mut chart = ChartBuilder::on(&root)
+            .caption(title, text(19))
+            .margin(16)
+            .margin_right(28)
+            .x_label_area_size(48)
+            .y_label_area_size(LEFT)
+            .build_cartesian_2d(span(|point| point.0), span(|point| point.1))?;
+        chart
+            .configure_mesh()
+            .x_desc(format!("{} ({})", probe.name, reading.unit))
+            .y_desc("load factor")
+            .x_label_formatter(&|value| short(*value))
+            .y_label_formatter(&|value| short(*value))
+            .label_style(text(14))
+            .axis_desc_style(text(15))
+            .axis_style(INK)
+            .bold_line_style(GRID)
+            .light_line_style(WHITE)
+            .draw()?;
+        draw_path(&mut chart, &path, &points)?;
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperMiddle)
+            .margin(12)
+            .legend_area_size(34)
+            .label_font(text(14))
+            .background_style(WHITE.mix(0.9))
+            .border_style(GRID)
+            .draw()?;
+        root.present()?;
+    }
+    Ok(Some(svg))
 }
 
 fn draw_elements(area: &Area, path: &[PathPoint], end_deg: f64) -> Result<(), PlotError> {
