@@ -162,8 +162,9 @@ impl Summary {
                 _ => format!("{:14.6}", point.parameter),
             };
             let name = if critical.is_bifurcation() { "bifurcation" } else { "limit point" };
-            let change = format!("{:+} negative pivot(s)", critical.pivots_changed);
-            writeln!(f, "  {name:<17}  {value}  ({change})")?;
+            let change = count(critical.pivots_changed.unsigned_abs() as usize, "pivot");
+            let sign = if critical.pivots_changed < 0 { "positive" } else { "negative" };
+            writeln!(f, "  {name:<17}  {value}  ({change} turned {sign})")?;
         }
         Ok(())
     }
