@@ -10,14 +10,14 @@
 use rayon::prelude::*;
 
 pub use crate::equilibrium::kernel::Want;
-use crate::equilibrium::kernel::{ElementBuffers, has_fma_kernel, integrate_element};
+use crate::equilibrium::kernel::{Build, ElementBuffers, integrate_element};
 use crate::model::{Discretization, Tables};
 use crate::spline::Mesh;
 
 /// Strain energy of the model at a displacement on `mesh`, N·mm; `tables` may have other elements than `mesh`
 /// ([`Tables::on_elements_of`]). Summed in the order of [`Assembled::assemble`].
 pub fn strain_energy(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]]) -> f64 {
-    let fma = has_fma_kernel();
+    let build = Build::detect();
     let columns: Vec<f64> = (0..tables.elements[0])
         .into_par_iter()
         .map_init(
@@ -26,7 +26,7 @@ pub fn strain_energy(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]]) ->
                 let mut energy = 0.0;
                 for across in 0..tables.elements[1] {
                     gather(mesh, tables, displacement, [column, across], buffers);
-                    integrate_element(tables, column * tables.elements[1] + across, Want::Energy, fma, buffers);
+                    integrate_element(tables, column * tables.elements[1] + across, Want::Energy, build, buffers);
                     energy += buffers.energy;
                 }
                 energy
@@ -75,7 +75,7 @@ impl Assembled {
         let n2 = mesh.control_counts()[1];
         let colours = degree[0] + 1;
         let row_stiffness = n2 * stencil_len(degree) * 9;
-        let fma = has_fma_kernel();
+        let build = Build::detect();
         self.residual.fill([0.0; 3]);
         if want == Want::Stiffness {
             self.stiffness.par_chunks_mut(row_stiffness).for_each(|row| row.fill(0.0));
@@ -94,7 +94,7 @@ impl Assembled {
                     || ElementBuffers::new(tables.padded),
                     |buffers, ((column, residual), stiffness)| {
                         let mut rows = Rows { residual, stiffness };
-                        assemble_column(discretization, displacement, *column, want, fma, buffers, &mut rows)
+                        assemble_column(discretization, displacement, *column, want, build, buffers, &mut rows)
                     },
                 )
                 .collect();
@@ -170,7 +170,7 @@ fn assemble_column(
     displacement: &[[f64; 3]],
     column: usize,
     want: Want,
-    fma: bool,
+    build: Build,
     buffers: &mut ElementBuffers,
     rows: &mut Rows,
 ) -> f64 {
@@ -183,7 +183,7 @@ fn assemble_column(
     for across in 0..tables.elements[1] {
         let first = tables.first[1][across];
         gather(&discretization.mesh, tables, displacement, [column, across], buffers);
-        integrate_element(tables, column * tables.elements[1] + across, want, fma, buffers);
+        integrate_element(tables, column * tables.elements[1] + across, want, build, buffers);
         energy += buffers.energy;
         for a in 0..functions {
             let row = &mut rows.residual[(a / (p2 + 1)) * n2 + first + a % (p2 + 1)];
@@ -225,7 +225,7 @@ fn scatter_stiffness(degree: [usize; 2], n2: usize, first: usize, padded: usize,
                     let b = b1 * (p2 + 1) + b2;
                     let slot = if b1 == a1 { b2 - a2 } else { p2 + 1 + (b1 - a1 - 1) * (2 * p2 + 1) + p2 + b2 - a2 };
                     for cd in 0..9 {
-                        point[slot * 9 + cd] += local[(a * 9 + cd) * padded + b];
+                        point[slot * 9 + cd] += local[(b * 9 + cd % 3 * 3 + cd / 3) * padded + a];
                     }
                 }
             }

@@ -2,28 +2,47 @@
 //!
 //! With F_k(a) the k-th derivative of basis function a at a quadrature point, g the gradient (5 × 3) and H the Hessian
 //! (15 × 15) of the point's energy: r(a, c) = Σ_k F_k(a) g(k, c) and K(a c, b d) = Σ_kl F_k(a) H(k c, l d) F_l(b),
-//! formed as P(l, d) = Σ_k F_k(a) H(k c, l d) and then Σ_l P(l, d) F_l(b) with the basis function index b contiguous.
-//! Only blocks b ≥ a (rounded down to a whole vector) are formed.
+//! formed as P(l, d) = Σ_k F_k(a) H(k c, l d) with a lane for each a, and then Σ_l P(l, d) F_l(b). Only blocks a ≤ b
+//! (a rounded down to a whole vector) are formed.
+//!
+//! Energies and Hessians are formed for four points at a time, with a lane for each. A tile of K (one vector of a, three
+//! d, four b: twelve registers) takes the terms of all points of a block, 80 for each number, before it is stored; with
+//! a store after every point the whole took twice as long. Every number is summed over the points and over l in one
+//! order, whatever the width of the vectors: builds that round alike agree bit for bit.
+//!
+//! The structure of H (rank one in the second derivatives) saves nothing: 66 products for 75 in P, and as many in K.
 
-use crate::model::{LANES, Tables};
-use crate::shell::{Hessian, PointReference};
+mod build;
+mod contraction;
 
-type Lane = [f64; LANES];
-/// Columns of the Hessian with its padding.
-const HALF_ROW: usize = 16;
+pub(crate) use build::Build;
+use contraction::{Block, add_residual, contract};
 
-/// Local arrays of one element. `M` vectors of [`LANES`] basis functions.
-pub struct ElementBuffers {
+use crate::model::{BATCH, LANES, Tables};
+use crate::shell::lanes::{FourLanes, Lanes, Portable};
+#[cfg(target_arch = "x86_64")]
+use crate::shell::lanes_x86::{Avx512, Fma, HasAvx512, HasFma};
+use crate::shell::{BatchGradient, BatchHessian, PointBatch};
+
+/// Batches of points that the stiffness takes before it is stored: 16 points, all of a cubic element.
+const BLOCK: usize = 4;
+/// Numbers of P(l, d) for one (a, c): `3 l + d`.
+const HALF_LEN: usize = 15;
+
+/// Local arrays of one element.
+pub(super) struct ElementBuffers {
     /// `displacement[c · padded + a]`.
     pub displacement: Vec<f64>,
     /// `residual[c · padded + a]`.
     pub residual: Vec<f64>,
-    /// `stiffness[((a · 3 + c) · 3 + d) · padded + b]`, valid for b ≥ a.
+    /// K(a c, b d) at `stiffness[((b · 3 + d) · 3 + c) · padded + a]`, for a ≤ b.
     pub stiffness: Vec<f64>,
     /// Strain energy.
     pub energy: f64,
-    /// Fᵀ H at a point: row `a · 3 + c`.
-    half: Vec<[f64; HALF_ROW]>,
+    /// P of a vector of functions at each point of a block.
+    half: Vec<f64>,
+    gradients: [BatchGradient; BLOCK],
+    hessians: Vec<BatchHessian>,
 }
 
 impl ElementBuffers {
@@ -34,7 +53,9 @@ impl ElementBuffers {
             residual: vec![0.0; 3 * padded],
             stiffness: vec![0.0; 9 * padded * padded],
             energy: 0.0,
-            half: vec![[0.0; HALF_ROW]; 3 * padded],
+            half: vec![0.0; BLOCK * BATCH * HALF_LEN * LANES],
+            gradients: [[[[0.0; BATCH]; 3]; 5]; BLOCK],
+            hessians: vec![[[[0.0; BATCH]; 15]; 15]; BLOCK],
         }
     }
 }
@@ -50,238 +71,149 @@ pub enum Want {
     Stiffness,
 }
 
-/// Whether this machine runs the AVX2 + FMA build of the kernel; the other build gives results that differ in rounding.
-pub fn has_fma_kernel() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    {
-        std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma")
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    {
-        false
-    }
-}
-
-/// Integrates an element into its buffers. `fma` must come from [`has_fma_kernel`].
-pub fn integrate_element(tables: &Tables, element: usize, want: Want, fma: bool, buffers: &mut ElementBuffers) {
-    let functions = tables.element_functions(element);
-    let points = tables.element_points(element);
-    macro_rules! dispatch {
-        ($($vectors:literal),*) => {
-            match tables.padded / LANES {
-                $($vectors => run::<$vectors>(functions, points, want, fma, buffers),)*
-                other => unreachable!("degrees 2 to 5 have 3 to 9 vectors of basis functions, not {other}"),
-            }
-        };
-    }
-    dispatch!(3, 4, 5, 6, 7, 8, 9);
-}
-
-fn run<const M: usize>(
-    functions: &[f64],
-    points: &[PointReference],
+/// Integrates an element into its buffers.
+pub(super) fn integrate_element(
+    tables: &Tables,
+    element: usize,
     want: Want,
-    fma: bool,
+    build: Build,
     buffers: &mut ElementBuffers,
 ) {
-    #[cfg(target_arch = "x86_64")]
-    if fma {
-        // SAFETY: `fma` says that the processor has AVX2 and FMA.
-        unsafe { integrate_fma::<M>(functions, points, want, buffers) };
-        return;
+    let points = Points::of(tables, element);
+    match build {
+        Build::Portable => integrate::<Portable, Portable>((), (), &points, want, buffers),
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: `proof` says that the processor has the instructions.
+        Build::Fma(proof) => unsafe { integrate_fma(proof, &points, want, buffers) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: `proof` says that the processor has the instructions.
+        Build::Avx512(proof) => unsafe { integrate_avx512(proof, &points, want, buffers) },
     }
-    let _ = fma;
-    integrate::<M, false>(functions, points, want, buffers);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn integrate_fma<const M: usize>(
-    functions: &[f64],
-    points: &[PointReference],
-    want: Want,
-    buffers: &mut ElementBuffers,
-) {
-    integrate::<M, true>(functions, points, want, buffers);
+fn integrate_fma(proof: HasFma, points: &Points, want: Want, buffers: &mut ElementBuffers) {
+    integrate::<Fma, Fma>(proof, proof, points, want, buffers);
 }
 
-/// a b + c, rounded once or twice.
-#[inline(always)]
-fn multiply_add<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FMA { a.mul_add(b, c) } else { a * b + c }
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
+fn integrate_avx512(proof: HasAvx512, points: &Points, want: Want, buffers: &mut ElementBuffers) {
+    integrate::<Fma, Avx512>(proof.fma(), proof, points, want, buffers);
 }
 
-#[inline(always)]
-fn integrate<const M: usize, const FMA: bool>(
-    functions: &[f64],
-    points: &[PointReference],
-    want: Want,
-    buffers: &mut ElementBuffers,
-) {
-    buffers.energy = 0.0;
-    buffers.residual.fill(0.0);
-    if want == Want::Stiffness {
-        buffers.stiffness.fill(0.0);
-    }
-    let mut hessian: Hessian = [[0.0; 16]; 15];
-    for (point, functions) in points.iter().zip(functions.chunks_exact(5 * LANES * M)) {
-        let lanes = functions.as_chunks::<LANES>().0;
-        let u = displacement_derivatives::<M, FMA>(lanes, &buffers.displacement);
-        let gradient = match want {
-            Want::Energy => {
-                buffers.energy += point.energy(&u);
-                continue;
-            }
-            Want::Residual => {
-                let (energy, gradient) = point.gradient(&u);
-                buffers.energy += energy;
-                gradient
-            }
-            Want::Stiffness => {
-                let (energy, gradient) = point.hessian(&u, &mut hessian);
-                buffers.energy += energy;
-                contract::<M, FMA>(lanes, &hessian, &mut buffers.half, &mut buffers.stiffness);
-                gradient
-            }
-        };
-        let residual = buffers.residual.as_chunks_mut::<LANES>().0;
-        for c in 0..3 {
-            for m in 0..M {
-                let sum = &mut residual[c * M + m];
-                for k in 0..5 {
-                    for i in 0..LANES {
-                        sum[i] = multiply_add::<FMA>(gradient[k][c], lanes[k * M + m][i], sum[i]);
-                    }
-                }
-            }
+/// What an element is integrated over.
+struct Points<'a> {
+    /// As in [`Tables::functions`].
+    functions: &'a [f64],
+    batches: &'a [PointBatch],
+    /// Basis functions without the padding.
+    used: usize,
+    padded: usize,
+}
+
+impl<'a> Points<'a> {
+    fn of(tables: &'a Tables, element: usize) -> Self {
+        Self {
+            functions: tables.element_functions(element),
+            batches: tables.element_batches(element),
+            used: tables.functions_per_element,
+            padded: tables.padded,
         }
     }
 }
 
-/// u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂ at a point.
+/// `V` has a lane for each point, `W` one for each basis function.
 #[inline(always)]
-fn displacement_derivatives<const M: usize, const FMA: bool>(lanes: &[Lane], displacement: &[f64]) -> [[f64; 3]; 5] {
-    let displacement = displacement.as_chunks::<LANES>().0;
-    let mut u = [[0.0; 3]; 5];
+fn integrate<V: FourLanes, W: Lanes>(
+    points_proof: V::Proof,
+    rows_proof: W::Proof,
+    points: &Points,
+    want: Want,
+    buffers: &mut ElementBuffers,
+) {
+    let ElementBuffers { displacement, residual, stiffness, energy, half, gradients, hessians } = buffers;
+    let Points { used, padded, .. } = *points;
+    let mut sum = V::splat(points_proof, 0.0);
+    let blocks = points.batches.chunks(BLOCK).zip(points.functions.chunks(BLOCK * BATCH * 5 * padded));
+    for (block, (batches, functions)) in blocks.enumerate() {
+        let of_batch = functions.chunks(BATCH * 5 * padded);
+        for (i, (points, functions)) in batches.iter().zip(of_batch).enumerate() {
+            let u = displacement_derivatives::<V>(points_proof, functions, padded, used, displacement);
+            let energies = match want {
+                Want::Energy => points.energy(points_proof, &u),
+                Want::Residual => points.gradient(points_proof, &u, &mut gradients[i]),
+                Want::Stiffness => points.hessian(points_proof, &u, &mut gradients[i], &mut hessians[i]),
+            };
+            sum = sum + energies;
+        }
+        if want == Want::Energy {
+            continue;
+        }
+        let block = Block::<W> { proof: rows_proof, functions, used, padded, first: block == 0 };
+        add_residual(&block, gradients, residual);
+        if want == Want::Stiffness {
+            contract(&block, hessians, W::chunks_mut(half).as_chunks_mut().0, stiffness);
+        }
+    }
+    let mut energies = [0.0; BATCH];
+    sum.store(&mut energies);
+    *energy = (energies[0] + energies[1]) + (energies[2] + energies[3]);
+}
+
+/// u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂ at the points of a batch; zero where a batch has fewer than four.
+#[inline(always)]
+fn displacement_derivatives<V: FourLanes>(
+    proof: V::Proof,
+    functions: &[f64],
+    padded: usize,
+    used: usize,
+    displacement: &[f64],
+) -> [[V; 3]; 5] {
+    match functions.len() / (5 * padded) {
+        1 => derivatives_of::<V, 1>(proof, functions, padded, used, displacement),
+        2 => derivatives_of::<V, 2>(proof, functions, padded, used, displacement),
+        3 => derivatives_of::<V, 3>(proof, functions, padded, used, displacement),
+        _ => derivatives_of::<V, 4>(proof, functions, padded, used, displacement),
+    }
+}
+
+#[inline(always)]
+fn derivatives_of<V: FourLanes, const COUNT: usize>(
+    proof: V::Proof,
+    functions: &[f64],
+    padded: usize,
+    used: usize,
+    displacement: &[f64],
+) -> [[V; 3]; 5] {
+    let zero = V::splat(proof, 0.0);
+    let vectors = used.div_ceil(V::WIDTH);
+    let mut u = [[zero; 3]; 5];
+    let x = &V::chunks(displacement)[..vectors];
+    let y = &V::chunks(&displacement[padded..])[..vectors];
+    let z = &V::chunks(&displacement[2 * padded..])[..vectors];
     for k in 0..5 {
-        for c in 0..3 {
-            let mut sum = [0.0; LANES];
-            for m in 0..M {
-                for i in 0..LANES {
-                    sum[i] = multiply_add::<FMA>(lanes[k * M + m][i], displacement[c * M + m][i], sum[i]);
-                }
+        let mut rows = [V::chunks(&[]); COUNT];
+        for (q, row) in rows.iter_mut().enumerate() {
+            *row = &V::chunks(&functions[(q * 5 + k) * padded..])[..vectors];
+        }
+        let mut sums = [[zero; 4]; 3];
+        for m in 0..vectors {
+            let [x, y, z] = [V::load(proof, &x[m]), V::load(proof, &y[m]), V::load(proof, &z[m])];
+            for q in 0..COUNT {
+                let f = V::load(proof, &rows[q][m]);
+                sums[0][q] = f.mul_add(x, sums[0][q]);
+                sums[1][q] = f.mul_add(y, sums[1][q]);
+                sums[2][q] = f.mul_add(z, sums[2][q]);
             }
-            u[k][c] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+        }
+        for c in 0..3 {
+            u[k][c] = V::sums(sums[c]);
         }
     }
     u
 }
 
-/// Adds Fᵀ H F to the stiffness. `half` takes Fᵀ H of all functions first: formed one by one in registers it was
-/// compiled to scalar code, which took as long as all the rest.
-#[inline(always)]
-fn contract<const M: usize, const FMA: bool>(
-    lanes: &[Lane],
-    hessian: &Hessian,
-    half: &mut [[f64; HALF_ROW]],
-    stiffness: &mut [f64],
-) {
-    for (a, rows) in half.chunks_exact_mut(3).enumerate() {
-        let f = [0, 1, 2, 3, 4].map(|k| lanes[k * M + a / LANES][a % LANES]);
-        for (c, row) in rows.iter_mut().enumerate() {
-            for q in 0..HALF_ROW {
-                let mut sum = f[0] * hessian[c][q];
-                sum = multiply_add::<FMA>(f[1], hessian[3 + c][q], sum);
-                sum = multiply_add::<FMA>(f[2], hessian[6 + c][q], sum);
-                sum = multiply_add::<FMA>(f[3], hessian[9 + c][q], sum);
-                row[q] = multiply_add::<FMA>(f[4], hessian[12 + c][q], sum);
-            }
-        }
-    }
-    let lanes = &lanes[..5 * M];
-    let stiffness = stiffness.as_chunks_mut::<LANES>().0;
-    for (ac, p) in half.iter().enumerate() {
-        let vector = ac / (3 * LANES);
-        for d in 0..3 {
-            let w = [p[d], p[3 + d], p[6 + d], p[9 + d], p[12 + d]];
-            let row = &mut stiffness[(ac * 3 + d) * M..][..M];
-            for m in vector..M {
-                let mut sum = row[m];
-                for i in 0..LANES {
-                    sum[i] = multiply_add::<FMA>(w[0], lanes[m][i], sum[i]);
-                    sum[i] = multiply_add::<FMA>(w[1], lanes[M + m][i], sum[i]);
-                    sum[i] = multiply_add::<FMA>(w[2], lanes[2 * M + m][i], sum[i]);
-                    sum[i] = multiply_add::<FMA>(w[3], lanes[3 * M + m][i], sum[i]);
-                    sum[i] = multiply_add::<FMA>(w[4], lanes[4 * M + m][i], sum[i]);
-                }
-                row[m] = sum;
-            }
-        }
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::starting_mesh;
-    use crate::scene::parse;
-
-    /// The build for AVX2 and FMA against the portable one, and the upper half against a plain double sum.
-    #[test]
-    fn fast_paths_agree_with_slow_ones() {
-        for degree in [[2, 2], [3, 3], [2, 4], [5, 5]] {
-            let mut scene = parse(include_str!("../../pipelines/baseline.toml"), "baseline.toml").unwrap();
-            scene.mesh.degree = degree;
-            let tables = Tables::new(&scene, &starting_mesh(&scene).unwrap());
-            let padded = tables.padded;
-            let functions = (degree[0] + 1) * (degree[1] + 1);
-            let integrate = |fma: bool| {
-                let mut buffers = ElementBuffers::new(padded);
-                for c in 0..3 {
-                    for a in 0..functions {
-                        buffers.displacement[c * padded + a] = 0.1 * ((a * 31 + c * 17) % 13) as f64 - 0.6;
-                    }
-                }
-                integrate_element(&tables, 5, Want::Stiffness, fma, &mut buffers);
-                buffers
-            };
-            let plain = integrate(false);
-            if has_fma_kernel() {
-                let fast = integrate(true);
-                let scale = plain.stiffness.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-                assert!((fast.energy / plain.energy - 1.0).abs() < 1e-12);
-                for (a, b) in fast.stiffness.iter().zip(&plain.stiffness) {
-                    assert!((a - b).abs() < 1e-12 * scale, "{degree:?}: {a} {b}");
-                }
-            }
-            check_against_double_sum(&tables, &plain, functions);
-        }
-    }
-
-    fn check_against_double_sum(tables: &Tables, buffers: &ElementBuffers, functions: usize) {
-        let padded = tables.padded;
-        let scale = buffers.stiffness.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        for (a, c, b, d) in [(0, 0, functions - 1, 2), (1, 1, 1, 1), (2, 0, 4, 1), (functions - 2, 2, functions - 1, 0)]
-        {
-            let mut expected = 0.0;
-            for (q, point) in tables.element_points(5).iter().enumerate() {
-                let f = |k: usize, a: usize| tables.element_functions(5)[(q * 5 + k) * padded + a];
-                let mut u = [[0.0; 3]; 5];
-                for k in 0..5 {
-                    for e in 0..3 {
-                        u[k][e] = (0..functions).map(|i| f(k, i) * buffers.displacement[e * padded + i]).sum();
-                    }
-                }
-                let mut hessian: Hessian = [[0.0; 16]; 15];
-                point.hessian(&u, &mut hessian);
-                for k in 0..5 {
-                    for l in 0..5 {
-                        expected += f(k, a) * hessian[3 * k + c][3 * l + d] * f(l, b);
-                    }
-                }
-            }
-            let found = buffers.stiffness[((a * 3 + c) * 3 + d) * padded + b];
-            assert!((found - expected).abs() < 1e-12 * scale, "({a}, {c}) ({b}, {d}): {found} {expected}");
-        }
-    }
-}
+mod tests;

@@ -21,3 +21,8 @@ pub use sparse::DenseProduct;
 pub use sparse::FactorError;
 pub use stability::{SoftMode, soft_mode};
 pub use timing::{KernelCost, KernelRun};
+
+/// Build of the element kernel that this machine runs.
+pub fn kernel_name() -> &'static str {
+    kernel::Build::detect().name()
+}

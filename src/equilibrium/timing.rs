@@ -8,6 +8,8 @@ use crate::equilibrium::newton::{SolveError, Standing, Workspace};
 pub struct KernelCost {
     /// Floating-point operations of Σ Fᵀ H F, upper half.
     pub assembly_flops: f64,
+    /// Bytes of the tables that an assembly reads: functions and undeformed points.
+    pub table_bytes: f64,
     /// Floating-point operations of L D Lᵀ.
     pub factor_flops: f64,
     /// Bytes of the factor.
@@ -40,6 +42,7 @@ impl<'a> KernelRun<'a> {
         let per_point: f64 = (0..functions).map(|a| 2.0 * (225.0 + 45.0 * (functions - a) as f64)).sum();
         KernelCost {
             assembly_flops: points * per_point,
+            table_bytes: (size_of_val(&tables.functions[..]) + size_of_val(&tables.batches[..])) as f64,
             factor_flops: self.work.solver.flops(),
             factor_bytes: 8.0 * self.work.solver.factor_len() as f64,
         }

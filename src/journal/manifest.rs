@@ -25,6 +25,9 @@ pub struct Manifest {
     pub cpu: String,
     /// Vector instructions that the processor has.
     pub cpu_features: Vec<String>,
+    /// Build of the element kernel that ran; empty in logs that do not say. Those for AVX2 and AVX-512 give the same
+    /// bits.
+    pub kernel: String,
     /// Threads that the run used.
     pub threads: usize,
     /// Name of the machine; empty where it is not known.
@@ -67,6 +70,7 @@ impl Manifest {
             scene_text: scene_text.to_owned(),
             cpu: std::env::consts::ARCH.to_owned(),
             cpu_features: cpu_features().iter().map(|&name| name.to_owned()).collect(),
+            kernel: crate::equilibrium::kernel_name().to_owned(),
             threads,
             host: host(),
             started_unix_s: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
@@ -89,6 +93,7 @@ impl Manifest {
                 ("scene", self.scene_text.clone()),
                 ("cpu", self.cpu.clone()),
                 ("cpu_features", self.cpu_features.join(" ")),
+                ("kernel", self.kernel.clone()),
                 ("threads", self.threads.to_string()),
                 ("host", self.host.clone()),
                 ("started_unix_s", self.started_unix_s.to_string()),
@@ -116,6 +121,7 @@ impl Manifest {
             scene_text: text("scene")?,
             cpu: text("cpu")?,
             cpu_features: text("cpu_features")?.split_whitespace().map(str::to_owned).collect(),
+            kernel: record.metadata.get("kernel").cloned().unwrap_or_default(),
             threads: number("threads", text("threads")?)?,
             host: text("host")?,
             started_unix_s: number("started_unix_s", text("started_unix_s")?)?,

@@ -21,8 +21,8 @@ pub use placement::Placement;
 pub(crate) use rigid_motion::free_motion;
 pub use supports::Supports;
 pub(crate) use supports::control_expressions;
-pub(crate) use tables::LANES;
 pub use tables::Tables;
+pub(crate) use tables::{BATCH, LANES};
 pub use unknowns::{Entry, Unknowns};
 
 use std::sync::Arc;

@@ -3,13 +3,16 @@
 use rayon::prelude::*;
 
 use crate::scene::{Quadrature, Scene};
-use crate::shell::{PointReference, gauss_legendre};
+use crate::shell::{PointBatch, PointReference, gauss_legendre};
 use crate::spline::{
     Mesh, Spans, basis_derivatives, basis_derivatives_len, find_span, quotient_derivatives, tensor_derivatives,
 };
 
-/// Basis functions are padded to a multiple of this, so that kernels work on whole vectors.
-pub const LANES: usize = 4;
+/// Basis functions are padded to a multiple of this, so that kernels work on whole vectors of any width.
+pub(crate) const LANES: usize = 8;
+
+/// Points that kernels work on at once.
+pub(crate) const BATCH: usize = 4;
 
 /// Tables of a mesh. Elements are ordered with the second direction fastest, points within an element likewise.
 #[derive(Debug)]
@@ -20,13 +23,17 @@ pub struct Tables {
     pub first: [Vec<usize>; 2],
     /// Quadrature points of an element.
     pub points_per_element: usize,
-    /// (p₁ + 1)(p₂ + 1), padded to a multiple of 4; the padding holds zeros.
+    /// (p₁ + 1)(p₂ + 1).
+    pub functions_per_element: usize,
+    /// The same, padded to a multiple of 8; the padding holds zeros.
     pub padded: usize,
     /// `functions[((element · points + point) · 5 + k) · padded + a]`: derivative k (,1 ,2 ,11 ,22 ,12) of function
     /// a = a₁ (p₂ + 1) + a₂.
     pub functions: Vec<f64>,
     /// `points[element · points_per_element + point]`.
     pub points: Vec<PointReference>,
+    /// The same points by fours, the last of an element's with what is left.
+    pub batches: Vec<PointBatch>,
     /// Reference length of each element each way through its middle, mm.
     pub lengths: Vec<[f64; 2]>,
 }
@@ -56,7 +63,8 @@ impl Tables {
         let directions = [0, 1].map(|k| Direction::new(mesh, k, &spans[k], &rules[k]));
         let elements = [spans[0].count(), spans[1].count()];
         let points_per_element = rules[0].len() * rules[1].len();
-        let padded = ((mesh.degree[0] + 1) * (mesh.degree[1] + 1)).next_multiple_of(LANES);
+        let functions_per_element = (mesh.degree[0] + 1) * (mesh.degree[1] + 1);
+        let padded = functions_per_element.next_multiple_of(LANES);
         let count = elements[0] * elements[1];
         let mut functions = vec![0.0; count * points_per_element * 5 * padded];
         let built: Vec<(Vec<PointReference>, [f64; 2])> = functions
@@ -68,9 +76,11 @@ impl Tables {
             })
             .collect();
         let lengths = built.iter().map(|(_, length)| *length).collect();
-        let points = built.into_iter().flat_map(|(points, _)| points).collect();
+        let points: Vec<PointReference> = built.into_iter().flat_map(|(points, _)| points).collect();
+        let of_element = points.par_chunks(points_per_element);
+        let batches = of_element.flat_map_iter(|points| points.chunks(BATCH).map(PointBatch::new)).collect();
         let first = [0, 1].map(|k| spans[k].index.iter().map(|s| s - mesh.degree[k]).collect());
-        Self { elements, first, points_per_element, padded, functions, points, lengths }
+        Self { elements, first, points_per_element, functions_per_element, padded, functions, points, batches, lengths }
     }
 
     /// Functions of all points of an element: `points_per_element · 5 · padded` numbers.
@@ -82,6 +92,12 @@ impl Tables {
     /// Reference points of an element.
     pub fn element_points(&self, element: usize) -> &[PointReference] {
         &self.points[element * self.points_per_element..][..self.points_per_element]
+    }
+
+    /// The same points by fours.
+    pub fn element_batches(&self, element: usize) -> &[PointBatch] {
+        let count = self.points_per_element.div_ceil(BATCH);
+        &self.batches[element * count..][..count]
     }
 }
 

@@ -1,11 +1,18 @@
 //! The Kirchhoff–Love shell at a point: strains, energy and its derivatives, material, quadrature.
 
+mod lane_vector;
+pub(crate) mod lanes;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod lanes_x86;
 mod material;
 mod point;
+mod point_batch;
 mod quadrature;
 mod vector;
 
 pub use material::{ShellStiffness, shell_stiffness};
 pub use point::{Hessian, PointReference, Strains};
+pub use point_batch::PointBatch;
+pub(crate) use point_batch::{BatchGradient, BatchHessian};
 pub use quadrature::gauss_legendre;
 pub(crate) use vector::{add, cross, dot, norm, scaled, sub};

@@ -26,19 +26,19 @@ pub type Hessian = [[f64; 16]; 15];
 #[derive(Clone, Copy, Debug)]
 pub struct PointReference {
     /// A₁, A₂, A₁₁, A₂₂, A₁₂.
-    derivatives: [[f64; 3]; 5],
+    pub(super) derivatives: [[f64; 3]; 5],
     /// A₁ × A₂.
-    cross: [f64; 3],
+    pub(super) cross: [f64; 3],
     /// |A₁ × A₂|: area per parameter area.
-    area: f64,
+    pub(super) area: f64,
     /// Membrane stiffness times the area that the point stands for.
-    membrane: [[f64; 3]; 3],
+    pub(super) membrane: [[f64; 3]; 3],
     /// Bending stiffness times the area that the point stands for.
-    bending: [[f64; 3]; 3],
+    pub(super) bending: [[f64; 3]; 3],
     /// Coupling stiffness times that area; zero unless `coupled`.
-    coupling: [[f64; 3]; 3],
+    pub(super) coupling: [[f64; 3]; 3],
     /// Whether the layers are not symmetric, so that membrane and bending strains act on each other.
-    coupled: bool,
+    pub(super) coupled: bool,
 }
 
 /// Strains at a point in the parameter basis, order (11, 22, 12), engineering shear.
@@ -302,14 +302,14 @@ fn geometric_part(d: &Deformed, forces: [f64; 3], moments: [f64; 3], hessian: &m
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn sample() -> (PointReference, [[f64; 3]; 5]) {
+    pub(in crate::shell) fn sample() -> (PointReference, [[f64; 3]; 5]) {
         sample_of(&Material::Isotropic { youngs_modulus_mpa: 100.0, poissons_ratio: 0.3, thickness_mm: 0.5 })
     }
 
-    fn laminate() -> Material {
+    pub(in crate::shell) fn laminate() -> Material {
         let law = |youngs_modulus_1_mpa: f64| crate::scene::OrthotropicLaw {
             youngs_modulus_1_mpa,
             youngs_modulus_2_mpa: 20.0,
@@ -320,7 +320,7 @@ mod tests {
         Material::Laminate { plies: vec![ply(10.0, 100.0), ply(-60.0, 40.0)] }
     }
 
-    fn sample_of(material: &Material) -> (PointReference, [[f64; 3]; 5]) {
+    pub(in crate::shell) fn sample_of(material: &Material) -> (PointReference, [[f64; 3]; 5]) {
         let reference = [[1.0, 0.1, 0.0], [0.2, 1.3, -0.1], [0.1, 0.0, 0.4], [0.0, 0.2, -0.7], [0.05, -0.1, 0.3]];
         let u = [[0.1, -0.2, 0.3], [-0.15, 0.05, 0.2], [0.3, 0.1, -0.2], [0.2, 0.4, 0.1], [-0.3, 0.2, 0.25]];
         (PointReference::new(reference, material, 0.8), u)

@@ -2,9 +2,10 @@
 //! same run.
 //!
 //! Limits: the floating-point rate of a dense product (faer), for the assembly and the factorization; the rate of a
-//! memory copy, for the solve, which reads the factor twice. Floating-point operations are those that the method needs
-//! (the upper half of Fᵀ H F with the Hessian's own cost left out, the squares of the column counts of the factor),
-//! not those that padding adds.
+//! memory copy, for the solve, which reads the factor twice, and for the residual, which reads the tables of functions
+//! and points. An iteration stands as the time that assembly, factorization and solve would take at their limits.
+//! Floating-point operations are those that the method needs (the upper half of Fᵀ H F with the Hessian's own cost left
+//! out, the squares of the column counts of the factor), not those that padding adds.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -102,14 +103,16 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     let solve = median(repeats, || kernels.solve());
     let iteration = median(repeats, || kernels.newton_iteration());
     let of_flops = |flops: f64, seconds: f64, cores: f64| Some(flops / seconds / (flops_per_s * cores));
+    let at_limits =
+        (cost.assembly_flops / threads + cost.factor_flops) / flops_per_s + 2.0 * cost.factor_bytes / bytes_per_s;
     let figures = vec![
         figure("dense-product", product, Some(1.0)),
         figure("copy", copy, Some(1.0)),
         figure("assemble", assemble, of_flops(cost.assembly_flops, assemble, threads)),
-        figure("residual", residual, None),
+        figure("residual", residual, Some(cost.table_bytes / residual / bytes_per_s)),
         figure("factor", factor, of_flops(cost.factor_flops, factor, 1.0)),
         figure("solve", solve, Some(2.0 * cost.factor_bytes / solve / bytes_per_s)),
-        figure("newton-iteration", iteration, None),
+        figure("newton-iteration", iteration, Some(at_limits / iteration)),
     ];
     Ok(figures.into_iter().map(|figure| Figure { scene: name.to_string(), ..figure }).collect())
 }

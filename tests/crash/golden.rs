@@ -102,6 +102,7 @@ fn write_golden_logs() {
         scene_text: text,
         cpu: "x86_64".to_owned(),
         cpu_features: Vec::new(),
+        kernel: String::new(),
         threads: 1,
         host: "golden".to_owned(),
         started_unix_s: 0,

@@ -152,6 +152,7 @@ pub fn manifest() -> Manifest {
         scene_text: "# a made-up scene\n[geometry]\nkind = \"tape-spring\"\n".to_owned(),
         cpu: "x86_64".to_owned(),
         cpu_features: vec!["avx2".to_owned(), "fma".to_owned()],
+        kernel: "avx2+fma".to_owned(),
         threads: 2,
         host: "somewhere".to_owned(),
         started_unix_s: 1_700_000_000,

@@ -1,0 +1,43 @@
+//! The builds of the kernel, and which of them this machine runs.
+
+#[cfg(target_arch = "x86_64")]
+use crate::shell::lanes_x86::{HasAvx512, HasFma};
+
+/// The builds of the kernel. Those for AVX2 and AVX-512 give the same bits; the portable one rounds differently.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Build {
+    /// For any processor.
+    Portable,
+    /// Four lanes, fused multiply-add.
+    #[cfg(target_arch = "x86_64")]
+    Fma(HasFma),
+    /// Rows of the stiffness in eight lanes, the rest as for AVX2.
+    #[cfg(target_arch = "x86_64")]
+    Avx512(HasAvx512),
+}
+
+impl Build {
+    /// The fastest that this machine runs.
+    pub(crate) fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let fma = || HasFma::detect().map(Self::Fma);
+            HasAvx512::detect().map(Self::Avx512).or_else(fma).unwrap_or(Self::Portable)
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            Self::Portable
+        }
+    }
+
+    /// Its name in manifests.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Portable => "portable",
+            #[cfg(target_arch = "x86_64")]
+            Self::Fma(_) => "avx2+fma",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => "avx512",
+        }
+    }
+}
