@@ -21,6 +21,7 @@ mod run;
 mod scene_file;
 mod session;
 mod stage_table;
+mod stress;
 mod trace;
 mod verify;
 
@@ -33,6 +34,7 @@ use failure::{EXIT_CODES, Failure};
 pub use json_line::json_line;
 pub use progress::{Manner, Shown};
 pub use stage_table::{stage_table, step_in_full};
+pub use stress::StressTable;
 
 /// Thin shells that fold, simulated as a pipeline of restartable stages
 #[derive(Parser, Debug)]
@@ -53,6 +55,7 @@ enum Command {
     Verify(verify::Arguments),
     Recover(recover::Arguments),
     Bench(bench::Arguments),
+    Stress(stress::Arguments),
     Help(help::Arguments),
 }
 
@@ -69,6 +72,7 @@ impl Command {
             Command::Verify(arguments) => arguments.run(),
             Command::Recover(arguments) => arguments.run(),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
+            Command::Stress(arguments) => arguments.run(),
             Command::Help(arguments) => arguments.run().map(|()| 0),
         }
     }

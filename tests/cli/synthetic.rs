@@ -48,6 +48,7 @@ pub fn scene() -> Scene {
         },
         pipeline: Stage::ALL.to_vec(),
         output: Output { sync: SyncPolicy::EachSecond, mesh_history: false },
+        expect: None,
     }
 }
 
