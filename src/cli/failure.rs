@@ -90,6 +90,8 @@ pub(super) enum Failure {
     Convergence { degree: [usize; 2], elements: [usize; 2], source: Box<ConvergenceError> },
     #[error("the stability of stage {index} of {} cannot be found", log.display())]
     Stability { log: PathBuf, index: usize, source: Box<StabilityError> },
+    #[error("{}; there is {}", none_chosen(filter.as_deref(), folder), if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
+    NoSuchScene { filter: Option<String>, folder: PathBuf, known: Vec<String> },
     #[error("no stage of {} meets the condition `{condition}`", log.display())]
     NeverHolds { log: PathBuf, condition: String },
 }
@@ -107,7 +109,8 @@ impl Failure {
             | Failure::CannotStart { .. }
             | Failure::Model(_)
             | Failure::Condition(_)
-            | Failure::NoSuchTopic { .. } => 2,
+            | Failure::NoSuchTopic { .. }
+            | Failure::NoSuchScene { .. } => 2,
             Failure::Interrupted { .. } => INTERRUPTED,
             _ => 1,
         }
@@ -126,6 +129,13 @@ impl Failure {
             cause = error.source();
         }
         text
+    }
+}
+
+fn none_chosen(filter: Option<&str>, folder: &std::path::Path) -> String {
+    match filter {
+        Some(filter) => format!("no scene in {} has `{filter}` in its name", folder.display()),
+        None => format!("no scene in {}", folder.display()),
     }
 }
 

@@ -23,6 +23,7 @@ mod scene_file;
 mod session;
 mod stability;
 mod stage_table;
+mod stress;
 mod trace;
 mod verify;
 
@@ -35,6 +36,7 @@ use failure::{EXIT_CODES, Failure};
 pub use json_line::json_line;
 pub use progress::{Manner, Shown};
 pub use stage_table::{stage_table, step_in_full};
+pub use stress::StressTable;
 
 /// Thin shells that fold, simulated as a pipeline of restartable stages
 #[derive(Parser, Debug)]
@@ -57,6 +59,7 @@ enum Command {
     Recover(recover::Arguments),
     Bench(bench::Arguments),
     Converge(converge::Arguments),
+    Stress(stress::Arguments),
     Help(help::Arguments),
 }
 
@@ -75,6 +78,7 @@ impl Command {
             Command::Recover(arguments) => arguments.run(),
             Command::Converge(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
+            Command::Stress(arguments) => arguments.run(),
             Command::Help(arguments) => arguments.run().map(|()| 0),
         }
     }

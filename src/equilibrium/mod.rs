@@ -1,6 +1,7 @@
 //! Equilibrium: assembly, the sparse solver, Newton's method as a descent on the energy.
 
 mod assembly;
+mod condition;
 mod continuation;
 mod descent;
 mod equations;
@@ -12,14 +13,17 @@ mod newton;
 mod pattern;
 mod sparse;
 mod stability;
+mod symmetry;
 mod timing;
 
 pub use assembly::{Assembled, Want, strain_energy};
+pub use condition::Condition;
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};
 pub use newton::{Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Standing, Workspace, WorkspaceError};
 pub use sparse::DenseProduct;
 pub use sparse::FactorError;
 pub use stability::{SoftMode, soft_mode};
+pub use symmetry::SymmetryError;
 pub use timing::{KernelCost, KernelRun};
 
 /// Build of the element kernel that this machine runs.

@@ -16,6 +16,9 @@ pub struct Placement<'a> {
     directions: Vec<[f64; 3]>,
     /// For control points of sections: X − c + v.
     arms: Vec<[f64; 3]>,
+    /// For control points of sections: v. Apart from the arms, whose rounding is a share of the shell's size: at a
+    /// millionth of a degree v has few digits left in them.
+    locals: Vec<[f64; 3]>,
 }
 
 /// Where a section stands.
@@ -81,17 +84,21 @@ impl<'a> Placement<'a> {
             Rotation::new([3, 4, 5].map(|motion| coordinates[motions[motion]] / section.size))
         };
         let rotations = unknowns.supports.sections.iter().zip(&unknowns.motions).map(turn).collect();
-        let mut placement = Self { unknowns, coordinates, rotations, directions: Vec::new(), arms: Vec::new() };
+        let mut placement =
+            Self { unknowns, coordinates, rotations, directions: Vec::new(), arms: Vec::new(), locals: Vec::new() };
         placement.arms = vec![[0.0; 3]; unknowns.points.len()];
+        placement.locals = vec![[0.0; 3]; unknowns.points.len()];
         placement.directions.reserve(unknowns.entries.len());
         for point in 0..unknowns.points.len() {
             let entries = placement.all_entries(point);
             if let Some(section) = unknowns.supports.section_of[point] {
                 let start = sub(unknowns.points[point], unknowns.supports.sections[section].centre);
-                placement.arms[point] = entries.iter().fold(start, |sum, entry| match entry.share {
+                let local = entries.iter().fold([0.0; 3], |sum, entry| match entry.share {
                     Share::Turning(v) => add(sum, scaled(placement.coordinates[entry.coordinate], v)),
                     _ => sum,
                 });
+                placement.locals[point] = local;
+                placement.arms[point] = add(start, local);
             }
             for entry in entries {
                 let direction = placement.direction(point, entry);
@@ -141,8 +148,7 @@ impl<'a> Placement<'a> {
                         add(sum, scaled(self.coordinates[entry.coordinate], *direction))
                     });
                 };
-                let arm = self.arms[point];
-                let local = sub(arm, sub(unknowns.points[point], unknowns.supports.sections[section].centre));
+                let (arm, local) = (self.arms[point], self.locals[point]);
                 let shift = [0, 1, 2].map(|axis| self.coordinates[unknowns.motions[section][axis]]);
                 add(add(shift, apply(&rotation.change, arm)), local)
             })

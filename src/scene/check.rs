@@ -1,8 +1,8 @@
 //! Entries to a scene, and what must hold between keys.
 
 use super::data::{
-    Action, Adapt, ArcLength, ArcLengthWord, EndRotation, Geometry, Hold, LengthLimit, Load, Material, MeshSpec,
-    Motion, Output, Probe, Scene, Solver, Stage, Support, Symmetry,
+    Action, Adapt, ArcLength, ArcLengthWord, EndRotation, Expectation, Geometry, Hold, LengthLimit, Load, Material,
+    MeshSpec, Motion, Output, Probe, Scene, Solver, Stage, Support, Symmetry,
 };
 use super::document::Document;
 use super::error::{Checked, Direction, Fault, Place, Problem, SceneError, Source};
@@ -52,8 +52,12 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
     let continuation = continuation(reader)?;
     let output =
         Output { sync: reader.word(&keys::SYNC)?.value, mesh_history: reader.switch(&keys::MESH_HISTORY)?.value };
+    let expect =
+        Expectation { outcome: reader.word(&keys::OUTCOME)?.value, same_as: reader.maybe_text(&keys::SAME_AS)? };
+    let expect = reader.document.header(keys::OUTCOME.section).map(|_| expect);
     let pipeline = pipeline.value;
     Ok(Scene {
+        expect,
         geometry,
         material,
         mesh,

@@ -53,8 +53,9 @@ const RENAMED: [(&str, &str); 3] = [
 const DOMAIN: &str = "foldline scene 1";
 
 impl Scene {
-    /// Hash over everything that decides states: all keys but `output.*` and `load.rotation_deg`. Those two are free,
-    /// so that a run can be extended, or written with more beside it, and every stage done so far is found again.
+    /// Hash over everything that decides states: all keys but `output.*`, `expect.*` and `load.rotation_deg`. Those
+    /// are free, so that a run can be extended, or written with more beside it, and every stage done so far is found
+    /// again.
     ///
     /// Fed are the domain string and then, in the order of their paths, each key and its value as JSON, each with its
     /// length in front: independent of the order of fields, of formatting and of comments in the scene file.

@@ -6,7 +6,7 @@ use super::keys::Unit::{Degree, Megapascal, Millimetre, None};
 use super::keys::{Choice, Key, Kind, Limit, Limits, Section};
 
 /// The tables of a scene file, in the order in which one would write them.
-pub static SECTIONS: [Section; 10] = [
+pub static SECTIONS: [Section; 11] = [
     section("geometry", true, "The undeformed mid-surface."),
     section("material", true, "Constitutive law and thickness."),
     section("mesh", true, "Spline space and quadrature that the run starts with."),
@@ -17,10 +17,11 @@ pub static SECTIONS: [Section; 10] = [
     section("continuation", false, "How the path of equilibria is followed."),
     section("pipeline", false, "The stages of one load step."),
     section("output", false, "What is written beside the states; never changes a state."),
+    section("expect", false, "How the run is to end; `foldline stress` alone looks at it."),
 ];
 
 /// The keys of a scene file, table by table.
-pub static KEYS: [&Key; 30] = [
+pub static KEYS: [&Key; 32] = [
     &GEOMETRY_KIND,
     &LENGTH,
     &RADIUS,
@@ -51,6 +52,8 @@ pub static KEYS: [&Key; 30] = [
     &STAGES,
     &SYNC,
     &MESH_HISTORY,
+    &OUTCOME,
+    &SAME_AS,
 ];
 
 const fn section(name: &'static str, required: bool, meaning: &'static str) -> Section {
@@ -526,4 +529,36 @@ pub(super) static MESH_HISTORY: Key = Key {
     meaning: "Whether the deformed mesh is written for viewers after every stage that changes it.",
     example: "true",
     aliases: &["history", "meshes"],
+};
+
+pub(super) static OUTCOME: Key = Key {
+    section: "expect",
+    name: "outcome",
+    unit: None,
+    kind: Kind::Word(&[
+        choice("finished", "at its target"),
+        choice("refused", "before its first step: mesh, supports and loads do not go together"),
+        choice("no-equilibrium", "where no increment, however small, leads to an equilibrium"),
+        choice("jump-not-followed", "at a jump beyond which no equilibrium is found"),
+        choice("not-re-equilibrated", "on a refined mesh that has no equilibrium"),
+        choice("refined-too-far", "where refinement asks for more than memory holds"),
+    ]),
+    presence: Default("\"finished\""),
+    reach: Free,
+    meaning: "How the run ends.",
+    example: "\"finished\"",
+    aliases: &["end", "ending", "result"],
+};
+
+pub(super) static SAME_AS: Key = Key {
+    section: "expect",
+    name: "same_as",
+    unit: None,
+    kind: Kind::Text,
+    presence: Follows("no other scene"),
+    reach: Free,
+    meaning: "A scene in the same folder that has the same curve but for units: M/(E t^3) over the rotation (of other \
+              scenes the strain energy over E t^3) agrees at every equilibrium to 1e-9 of the largest.",
+    example: "\"millimetres.toml\"",
+    aliases: &["equals", "same"],
 };

@@ -54,6 +54,7 @@ impl Key {
             Kind::Pair(limits) => format!("a whole number {limits}, or a pair of them"),
             Kind::Switch => "true or false".into(),
             Kind::Stages => "a list of stages".into(),
+            Kind::Text => "text in quotes".into(),
         }
     }
 }
@@ -119,6 +120,8 @@ pub enum Kind {
     Switch,
     /// The list of stages.
     Stages,
+    /// Any text, in quotes.
+    Text,
 }
 
 /// One of the words that a key takes.

@@ -39,10 +39,10 @@ mod write_general;
 
 pub use check::{parse, parse_with_settings};
 pub use data::{
-    Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Component, Edge, EndRotation, FreeWord, Geometry,
-    History, Hold, LengthLimit, Load, LoadSteps, Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output,
-    ParametricDirection, Place, Ply, Probe, ProbeKind, Quadrature, Reaction, Scene, Seam, Sense, Solver, Stage,
-    Support, Symmetry, SyncPolicy,
+    Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Component, Edge, EndRotation, Expectation,
+    ExpectedOutcome, FreeWord, Geometry, History, Hold, LengthLimit, Load, LoadSteps, Material, MeshSpec, Motion,
+    NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe, ProbeKind, Quadrature, Reaction, Scene,
+    Seam, Sense, Solver, Stage, Support, Symmetry, SyncPolicy,
 };
 pub use error::{Direction, Problem, SceneError, StageOrderProblem, SyntaxSlip, ValueType};
 pub use help::help_text;

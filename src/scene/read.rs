@@ -107,6 +107,14 @@ impl<'d, 't> Reader<'d, 't> {
         self.read(key, |entry| entry.value.get_ref().as_bool().ok_or_else(|| wrong_type(key, entry)))
     }
 
+    /// Text that may be left out.
+    pub fn maybe_text(&self, key: &'static Key) -> Checked<Option<String>> {
+        let read = |entry: &'d Entry<'t>| {
+            entry.value.get_ref().as_str().map(str::to_owned).ok_or_else(|| wrong_type(key, entry))
+        };
+        self.entry(key).map(read).transpose()
+    }
+
     /// The value of an entry, or else the default through the same checks.
     fn read<T>(&self, key: &'static Key, convert: impl Fn(&Entry<'_>) -> Checked<T>) -> Checked<Found<T>> {
         if let Some(entry) = self.entry(key) {

@@ -1,9 +1,13 @@
-//! What a run says when it is held against theory: the closed-form laws of tape springs, and the summary of a run.
+//! What a run says when it is held against theory: the closed-form laws of tape springs, the summary of a run, and suites
+//! of scenes that state how they end.
 
 mod bench;
 mod convergence;
 mod path;
 mod section_shape;
+mod stress;
+mod stress_curve;
+mod stress_fault;
 mod summary;
 mod summary_text;
 mod wuest;
@@ -11,5 +15,7 @@ mod wuest;
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use convergence::{ConvergenceError, ConvergenceRow, converge};
 pub use path::{PathPoint, Snap, equilibrium_path, snaps};
+pub use stress::{StressEnd, StressRow, StressSuite};
+pub use stress_fault::StressFault;
 pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, StageWork, Summary};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

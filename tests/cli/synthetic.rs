@@ -49,6 +49,7 @@ pub fn scene() -> Scene {
         continuation: None,
         pipeline: Stage::REFINING.to_vec(),
         output: Output { sync: SyncPolicy::EachSecond, mesh_history: false },
+        expect: None,
     }
 }
 

@@ -1,11 +1,13 @@
 //! What a scene holds: plain data, every default filled in.
 
 mod boundary;
+mod expectation;
 mod geometry;
 mod material;
 mod probe;
 
 pub use boundary::{Action, ActionKind, Edge, FreeWord, History, Hold, Motion, ParametricDirection, Place, Support};
+pub use expectation::{Expectation, ExpectedOutcome};
 pub use geometry::{Geometry, NurbsPatch, Seam};
 pub use material::{Material, OrthotropicLaw, Ply};
 pub use probe::{Axis, Component, Probe, ProbeKind, Reaction};
@@ -45,6 +47,9 @@ pub struct Scene {
     pub pipeline: Vec<Stage>,
     /// What is written beside the states; never changes a state.
     pub output: Output,
+    /// How the run is to end; nothing but a test of the scene looks at it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expect: Option<Expectation>,
 }
 
 /// Spline space and quadrature that the run starts with. Pairs are (along the length, along the arc).

@@ -1,0 +1,168 @@
+//! `foldline stress`: scenes at and beyond the edge, and whether each ends as it states.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::output::{print, say};
+use super::scene_file::read_scene;
+use crate::scene::Scene;
+use crate::study::{StressRow, StressSuite};
+use crate::units::{count, duration};
+
+/// Run scenes at and beyond the edge, and say whether each ends as it states
+///
+/// A scene states its end in a table [expect]; see `foldline help scene`. A line is printed as soon as its scene has
+/// ended; what is wrong with it stands below.
+#[derive(Args, Debug)]
+#[command(after_help = COLUMNS)]
+pub(super) struct Arguments {
+    /// Run only scenes whose names contain this
+    filter: Option<String>,
+    /// Folder of the scenes
+    #[arg(long, value_name = "FOLDER", default_value = "pipelines/extreme")]
+    scenes: PathBuf,
+    /// Seconds that one run of a scene may take
+    #[arg(long, value_name = "SECONDS", default_value_t = 120, value_parser = clap::value_parser!(u64).range(1..))]
+    limit: u64,
+    /// Threads; the results are the same on any number of them [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print a JSON object for each scene
+    #[arg(long)]
+    json: bool,
+}
+
+/// Below the options in `--help`.
+const COLUMNS: &str = "\
+Columns:
+  outcome    finished, or the kind of stop; an error stands below
+  as stated  whether it ended as its [expect] says, and all numbers are sound
+  steps      load steps with an equilibrium
+  iter       Newton iterations, those of solves that were turned down included
+  residual   largest |residual| / |reactions| of all equilibria
+  W - E      work less strain energy over the load steps that did not jump, relative to the largest
+             strain energy; what jumps release and refinement changes is not counted
+  cond       largest over smallest magnitude of the eigenvalues of the last stiffness (estimate)
+  asym       |x.(K y) - y.(K x)| of the last stiffness, and of its stored half against it,
+             relative to |x| |K y|
+  bits       bits of the last moment (first probe, strain energy) that survive a change of one unit
+             in the last place of a length of the geometry
+  wall       time of the run; each scene is run twice
+
+Exit codes: 0 all ended as stated, 1 some did not, 2 wrong arguments or a wrong scene";
+
+impl Arguments {
+    /// Runs and prints; the exit code.
+    pub(super) fn run(self) -> Result<u8, Failure> {
+        let scenes = read_folder(&self.scenes)?;
+        let names = self.chosen(scenes.keys())?;
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
+        let table = StressTable::new(names.iter().map(|name| stem(name)));
+        if !self.json {
+            print(&table.head())?;
+        }
+        let begin = Instant::now();
+        let mut suite = StressSuite::new(scenes, Duration::from_secs(self.limit));
+        let mut failed = 0;
+        for row in names.iter().filter_map(|name| suite.run(name)) {
+            failed += usize::from(!row.as_stated);
+            if self.json {
+                print(&(serde_json::to_string(&row).unwrap_or_default() + "\n"))?;
+            } else {
+                print(&table.row(&row))?;
+            }
+        }
+        let verdict = match failed {
+            0 => "all as stated".to_owned(),
+            some => format!("{some} not as stated"),
+        };
+        say(&format!("{}, {verdict}, {}", count(names.len(), "scene"), duration(begin.elapsed().as_secs_f64())));
+        Ok(u8::from(failed > 0))
+    }
+
+    /// Names that the filter leaves.
+    fn chosen<'n>(&self, names: impl Iterator<Item = &'n String> + Clone) -> Result<Vec<String>, Failure> {
+        let matches = |name: &&String| self.filter.as_ref().is_none_or(|filter| stem(name).contains(filter.as_str()));
+        let chosen: Vec<String> = names.clone().filter(matches).cloned().collect();
+        if chosen.is_empty() {
+            let known = names.map(|name| stem(name).to_owned()).collect();
+            return Err(Failure::NoSuchScene { filter: self.filter.clone(), folder: self.scenes.clone(), known });
+        }
+        Ok(chosen)
+    }
+}
+
+/// Every scene of a folder by its file name.
+fn read_folder(folder: &Path) -> Result<BTreeMap<String, Scene>, Failure> {
+    let failed = |source| Failure::Read { path: folder.to_path_buf(), source };
+    let mut scenes = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            scenes.insert(name, read_scene(&path)?.scene);
+        }
+    }
+    Ok(scenes)
+}
+
+/// A file name without its ending.
+fn stem(name: &str) -> &str {
+    name.strip_suffix(".toml").unwrap_or(name)
+}
+
+/// The table of a suite, line by line as its scenes end.
+pub struct StressTable {
+    name_width: usize,
+}
+
+impl StressTable {
+    /// Columns that are wide enough for these names.
+    pub fn new<'n>(names: impl Iterator<Item = &'n str>) -> Self {
+        Self { name_width: names.map(|name| name.chars().count()).chain([5]).max().unwrap_or(5) }
+    }
+
+    /// The heads of the columns.
+    pub fn head(&self) -> String {
+        let cells = ["outcome", "as stated", "steps", "iter", "residual", "W - E", "cond", "asym", "bits", "wall"];
+        self.line("scene", cells.map(str::to_owned))
+    }
+
+    /// A scene; below it the error that ended it, and what is wrong.
+    pub fn row(&self, row: &StressRow) -> String {
+        let small = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0e}"));
+        let balance = row.energy_balance.map_or_else(|| "-".to_owned(), |value| format!("{value:+.0e}"));
+        let mut text = self.line(
+            stem(&row.scene),
+            [
+                row.outcome.name().to_owned(),
+                if row.as_stated { "yes" } else { "NO" }.to_owned(),
+                row.load_steps.to_string(),
+                row.iterations.to_string(),
+                small(row.worst_residual),
+                balance,
+                small(row.condition),
+                small(row.symmetry_error),
+                row.significant_bits.map_or_else(|| "-".to_owned(), |bits| format!("{bits:.0}")),
+                format!("{:.1} s", row.wall_s),
+            ],
+        );
+        let message = row.message.iter().map(|message| format!("    {message}\n"));
+        let faults = row.faults.iter().map(|fault| format!("    NO: {fault}\n"));
+        text.extend(message.chain(faults));
+        text
+    }
+
+    fn line(&self, name: &str, cells: [String; 10]) -> String {
+        let width = self.name_width;
+        let [outcome, stated, steps, iterations, residual, balance, condition, asymmetry, bits, wall] = cells;
+        format!(
+            "{name:<width$}  {outcome:<19} {stated:<9} {steps:>5} {iterations:>6} {residual:>8} {balance:>7} {condition:>6} \
+             {asymmetry:>6} {bits:>4} {wall:>8}\n"
+        )
+    }
+}

@@ -1,0 +1,154 @@
+//! Symmetry of the stiffness, as the kernels make it.
+//!
+//! The assembled matrix keeps one half and is symmetric whatever the kernels do. So the bilinear form is summed here
+//! from the full 15 × 15 Hessians of the quadrature points, for two fields x and y on the control points:
+//! |x·(K y) − y·(K x)| shows a Hessian that is not symmetric, and |x·(K y) − x·(K_half y)| an assembled matrix that is not
+//! the sum of the Hessians. Loads that turn with the shell have a tangent of their own and are left out.
+
+use crate::equilibrium::assembly::{Assembled, Want};
+use crate::equilibrium::newton::{Standing, Workspace};
+use crate::model::Discretization;
+use crate::shell::{Hessian, PointReference, dot};
+
+/// Errors of the stiffness of the shell at a state, relative to |x| |K y|.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SymmetryError {
+    /// Of the Hessians: |x·(K y) − y·(K x)|.
+    pub hessians: f64,
+    /// Of the assembled half against them: |x·(K y) − x·(K_half y)|.
+    pub assembled: f64,
+}
+
+impl SymmetryError {
+    /// At a state.
+    pub fn at(work: &mut Workspace, at: Standing) -> Self {
+        let mut half = Assembled::new(&work.discretization);
+        half.assemble(&work.discretization, at.displacement, Want::Stiffness);
+        measure(&work.discretization, at.displacement, &half, |point, u, hessian| {
+            point.hessian(u, hessian);
+        })
+    }
+
+    /// The larger of the two.
+    pub fn largest(&self) -> f64 {
+        // `max` would drop what is not a number.
+        if self.hessians >= self.assembled || self.hessians.is_nan() { self.hessians } else { self.assembled }
+    }
+}
+
+/// Derivatives of a field at a quadrature point, in the order of the Hessian's rows.
+type Derivatives = [[f64; 3]; 5];
+
+fn measure(
+    discretization: &Discretization,
+    displacement: &[[f64; 3]],
+    half: &Assembled,
+    hessian_of: impl Fn(&PointReference, &Derivatives, &mut Hessian),
+) -> SymmetryError {
+    let count = displacement.len();
+    let (x, y) = (field(count, 0.618_033_988_75), field(count, 0.414_213_562_37));
+    let mut hessian: Hessian = [[0.0; 16]; 15];
+    let (mut forward, mut backward) = (0.0, 0.0);
+    let tables = &discretization.tables;
+    for element in 0..tables.elements[0] * tables.elements[1] {
+        let points = element_control_points(discretization, element);
+        for (q, point) in tables.element_points(element).iter().enumerate() {
+            let functions = &tables.element_functions(element)[q * 5 * tables.padded..][..5 * tables.padded];
+            let derivatives = |field: &[[f64; 3]]| -> Derivatives {
+                [0, 1, 2, 3, 4].map(|k| {
+                    let shares = points.iter().zip(&functions[k * tables.padded..]);
+                    shares.fold([0.0; 3], |sum, (i, share)| [0, 1, 2].map(|c| sum[c] + share * field[*i][c]))
+                })
+            };
+            hessian_of(point, &derivatives(displacement), &mut hessian);
+            let (dx, dy) = (derivatives(&x), derivatives(&y));
+            forward += form(&dx, &hessian, &dy);
+            backward += form(&dy, &hessian, &dx);
+        }
+    }
+    let stiff = half.multiply(discretization, &y);
+    let stored: f64 = x.iter().zip(&stiff).map(|(a, b)| dot(*a, *b)).sum();
+    let size = length(&x) * length(&stiff);
+    SymmetryError { hessians: (forward - backward).abs() / size, assembled: (forward - stored).abs() / size }
+}
+
+/// Control points of an element's functions, in their order.
+fn element_control_points(discretization: &Discretization, element: usize) -> Vec<usize> {
+    let tables = &discretization.tables;
+    let [p1, p2] = discretization.mesh.degree;
+    let n2 = discretization.mesh.control_counts()[1];
+    let first = [tables.first[0][element / tables.elements[1]], tables.first[1][element % tables.elements[1]]];
+    (0..(p1 + 1) * (p2 + 1)).map(|a| (first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1)).collect()
+}
+
+/// A field without any symmetry, the same in every run.
+fn field(count: usize, ratio: f64) -> Vec<[f64; 3]> {
+    (0..count).map(|i| [0, 1, 2].map(|c| ((3 * i + c + 1) as f64 * ratio).fract() - 0.5)).collect()
+}
+
+/// Σ x_p H_pq y_q, every entry of H as it stands.
+fn form(x: &Derivatives, hessian: &Hessian, y: &Derivatives) -> f64 {
+    (0..15).map(|p| x[p / 3][p % 3] * (0..15).map(|q| hessian[p][q] * y[q / 3][q % 3]).sum::<f64>()).sum()
+}
+
+fn length(field: &[[f64; 3]]) -> f64 {
+    field.iter().map(|x| dot(*x, *x)).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::model::starting_mesh;
+    use crate::scene::parse;
+
+    /// What the sums of some 600 points of both signs leave of 2⁻⁵³.
+    const ROUNDING: f64 = 1e-13;
+
+    fn deformed() -> (Discretization, Vec<[f64; 3]>, Assembled) {
+        let scene = parse(include_str!("../../pipelines/baseline.toml"), "baseline.toml").unwrap();
+        let discretization = Discretization::new(&scene, &Arc::new(starting_mesh(&scene).unwrap())).unwrap();
+        let shape = field(discretization.mesh.control_points.len(), 0.732_050_807_57);
+        let mut half = Assembled::new(&discretization);
+        half.assemble(&discretization, &shape, Want::Stiffness);
+        (discretization, shape, half)
+    }
+
+    #[test]
+    fn the_stiffness_is_symmetric_to_rounding() {
+        let (discretization, shape, half) = deformed();
+        let error = measure(&discretization, &shape, &half, |point, u, hessian| {
+            point.hessian(u, hessian);
+        });
+        assert!(error.hessians < ROUNDING && error.assembled < ROUNDING, "{error:?}");
+    }
+
+    /// Every entry off the diagonal, wrong by a millionth of the largest, is seen.
+    #[test]
+    fn a_hessian_that_is_not_symmetric_shows() {
+        let (discretization, shape, half) = deformed();
+        for (p, q) in [(0, 1), (3, 0), (6, 2), (14, 9), (5, 11)] {
+            let error = measure(&discretization, &shape, &half, |point, u, hessian| {
+                point.hessian(u, hessian);
+                let largest = hessian.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
+                hessian[p][q] += 1e-6 * largest;
+            });
+            assert!(error.hessians > 100.0 * ROUNDING, "({p}, {q}): {error:?}");
+        }
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_the_sum_of_the_hessians_shows() {
+        let (discretization, shape, mut half) = deformed();
+        let largest = half.stiffness.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        // The block of a control point in the middle with itself.
+        let points = discretization.mesh.control_points.len();
+        let row = half.stiffness.len() / points;
+        half.stiffness[points / 2 * row] += 1e-6 * largest;
+        let error = measure(&discretization, &shape, &half, |point, u, hessian| {
+            point.hessian(u, hessian);
+        });
+        assert!(error.hessians < ROUNDING && error.assembled > 100.0 * ROUNDING, "{error:?}");
+    }
+}

@@ -1,0 +1,46 @@
+//! What a scene says of its own end, for suites that run scenes to see whether they still end so.
+
+use serde::{Deserialize, Serialize};
+
+/// What is to come of a run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Expectation {
+    /// How it ends.
+    pub outcome: ExpectedOutcome,
+    /// File, in the folder of the scene, of one with the same curve but for units.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub same_as: Option<String>,
+}
+
+/// How a run can end that somebody would expect to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ExpectedOutcome {
+    /// At its target.
+    #[default]
+    Finished,
+    /// Before its first step: mesh, supports and loads do not go together.
+    Refused,
+    /// Where no increment, however small, leads to an equilibrium.
+    NoEquilibrium,
+    /// At a jump beyond which no equilibrium is found.
+    JumpNotFollowed,
+    /// On a refined mesh that has no equilibrium.
+    NotReEquilibrated,
+    /// Where refinement asks for more than memory holds.
+    RefinedTooFar,
+}
+
+impl ExpectedOutcome {
+    /// The word in scenes and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Finished => "finished",
+            Self::Refused => "refused",
+            Self::NoEquilibrium => "no-equilibrium",
+            Self::JumpNotFollowed => "jump-not-followed",
+            Self::NotReEquilibrated => "not-re-equilibrated",
+            Self::RefinedTooFar => "refined-too-far",
+        }
+    }
+}

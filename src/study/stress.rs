@@ -1,0 +1,354 @@
+//! Scenes at and beyond the edge, each run to see whether it ends as its `[expect]` says, with what the numbers are
+//! worth: residuals, balance of work and energy, condition and symmetry of the stiffness, digits that survive.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+
+use serde::{Serialize, Serializer};
+
+use crate::equilibrium::{Condition, Equilibrium, Standing, SymmetryError, Workspace};
+use crate::pipeline::{Commit, Ending, MemorySink, Record, Run, RunError, StageError, Stages};
+use crate::scene::{ExpectedOutcome, Scene};
+use crate::state::State;
+use crate::study::stress_curve::{Curve, energy_balance, is_equilibrium, nudged, significant_bits};
+use crate::study::stress_fault::StressFault;
+
+/// Work that smooth steps may do beyond what goes into strain energy, as a share of the largest strain energy: a step
+/// that is off by 1 % of the energy counts as a jump and is cut, and smooth steps stay far below.
+const MOST_IMBALANCE: f64 = 0.02;
+/// Error of a symmetric stiffness that is rounding.
+const MOST_ASYMMETRY: f64 = 1e-12;
+/// Bits of the result below which it is noise: three digits.
+const LEAST_BITS: f64 = 10.0;
+/// What running an equilibrium again from its state may change of its energy, relatively.
+const STANDS: f64 = 1e-9;
+
+/// How a scene ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StressEnd {
+    /// At its target.
+    Finished,
+    /// Before, in a way that a scene can expect.
+    Stopped {
+        /// The way.
+        outcome: ExpectedOutcome,
+        /// The error.
+        message: String,
+    },
+    /// Before, in a way that no scene can expect.
+    Broken {
+        /// The error.
+        message: String,
+    },
+    /// The time for a scene ran out.
+    OutOfTime,
+    /// In a panic.
+    Panicked {
+        /// What it said.
+        message: String,
+    },
+}
+
+impl StressEnd {
+    /// One word.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Finished => ExpectedOutcome::Finished.name(),
+            Self::Stopped { outcome, .. } => outcome.name(),
+            Self::Broken { .. } => "broken",
+            Self::OutOfTime => "out-of-time",
+            Self::Panicked { .. } => "panicked",
+        }
+    }
+
+    /// The error, where there is one.
+    pub fn message(&self) -> Option<&str> {
+        match self {
+            Self::Finished | Self::OutOfTime => None,
+            Self::Stopped { message, .. } | Self::Broken { message } | Self::Panicked { message } => Some(message),
+        }
+    }
+
+    fn is(&self, expected: ExpectedOutcome) -> bool {
+        match self {
+            Self::Finished => expected == ExpectedOutcome::Finished,
+            Self::Stopped { outcome, .. } => *outcome == expected,
+            _ => false,
+        }
+    }
+}
+
+impl Serialize for StressEnd {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// What came of a scene. Numbers are `None` where the scene did not get so far.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StressRow {
+    /// Name of the scene.
+    pub scene: String,
+    /// How it ended.
+    pub outcome: StressEnd,
+    /// The error that ended it.
+    pub message: Option<String>,
+    /// Whether it ended as it states, and nothing else is wrong with it.
+    pub as_stated: bool,
+    /// What is wrong.
+    pub faults: Vec<StressFault>,
+    /// Load steps with an equilibrium.
+    pub load_steps: usize,
+    /// Newton iterations, those of solves that were turned down included.
+    pub iterations: usize,
+    /// Largest |residual| / |reactions| of all equilibria.
+    pub worst_residual: Option<f64>,
+    /// Work less the change of strain energy over all smooth load steps, relative to the largest strain energy. Jumps
+    /// release energy and refinement changes it at fixed load: neither is counted on either side.
+    pub energy_balance: Option<f64>,
+    /// Largest over smallest magnitude of the eigenvalues of the stiffness at the last equilibrium.
+    pub condition: Option<f64>,
+    /// Error of the symmetry of the stiffness there; see [`SymmetryError`].
+    pub symmetry_error: Option<f64>,
+    /// Bits of the last moment (other scenes: first probe, or strain energy) that survive where a length of the
+    /// geometry changes by one unit in its last place; at most 53.
+    pub significant_bits: Option<f64>,
+    /// Wall time of the run, seconds.
+    pub wall_s: f64,
+}
+
+impl StressRow {
+    fn new(scene: &str, outcome: StressEnd) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            message: outcome.message().map(str::to_owned),
+            outcome,
+            as_stated: false,
+            faults: Vec::new(),
+            load_steps: 0,
+            iterations: 0,
+            worst_residual: None,
+            energy_balance: None,
+            condition: None,
+            symmetry_error: None,
+            significant_bits: None,
+            wall_s: 0.0,
+        }
+    }
+}
+
+/// A set of scenes by name, which may refer to each other.
+#[derive(Debug)]
+pub struct StressSuite {
+    scenes: BTreeMap<String, Scene>,
+    /// Curves of scenes that ran.
+    curves: BTreeMap<String, Curve>,
+    /// Time for one run of a scene.
+    limit: Duration,
+}
+
+impl StressSuite {
+    /// Scenes by their file names; each run may take `limit`.
+    pub fn new(scenes: BTreeMap<String, Scene>, limit: Duration) -> Self {
+        Self { scenes, curves: BTreeMap::new(), limit }
+    }
+
+    /// Runs a scene and looks at what came of it; `None` where the suite has none of this name. Panics end the scene
+    /// alone.
+    pub fn run(&mut self, name: &str) -> Option<StressRow> {
+        let scene = self.scenes.get(name)?.clone();
+        let begin = Instant::now();
+        let row = catch_unwind(AssertUnwindSafe(|| self.examine(name, &scene)));
+        Some(row.unwrap_or_else(|payload| {
+            let said = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+            let message = said.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
+            let mut row = StressRow::new(name, StressEnd::Panicked { message });
+            row.faults.push(StressFault::Panicked);
+            row.wall_s = begin.elapsed().as_secs_f64();
+            row
+        }))
+    }
+
+    fn examine(&mut self, name: &str, scene: &Scene) -> StressRow {
+        let done = Done::of(scene, self.limit);
+        let mut row = StressRow::new(name, done.end.clone());
+        let expectation = scene.expect.clone().unwrap_or_default();
+        if !done.end.is(expectation.outcome) {
+            row.faults
+                .push(StressFault::EndedOtherwise { expected: expectation.outcome, limit_s: self.limit.as_secs_f64() });
+        }
+        row.wall_s = done.wall_s;
+        row.iterations = done.stages.iter().map(|(_, record)| record.report.iterations).sum();
+        let equilibria: Vec<&(State, Record)> = done.stages.iter().filter(|stage| is_equilibrium(&stage.1)).collect();
+        let mut steps: Vec<u64> = equilibria.iter().map(|(_, record)| record.report.step).collect();
+        steps.dedup();
+        row.load_steps = steps.len();
+        row.faults.extend(done.lost());
+        if let Some((state, record)) = equilibria.last() {
+            row.worst_residual = equilibria.iter().map(|(_, record)| record.report.residual).reduce(worse);
+            row.energy_balance = energy_balance(done.records());
+            diagnose(scene, state, &mut row);
+            stands(scene, state, record, &mut row);
+            let again = Done::of(&nudged(scene), self.limit);
+            if again.end.name() != done.end.name() {
+                row.faults.push(StressFault::NudgedEndedOtherwise { ended: again.end.name() });
+            }
+            row.significant_bits = significant_bits(done.records(), again.records());
+        } else if !matches!(expectation.outcome, ExpectedOutcome::Refused) {
+            row.faults.push(StressFault::NoStep);
+        }
+        judge_numbers(scene, &done, &mut row);
+        let curve = Curve::of(scene, done.records());
+        if let Some(other) = &expectation.same_as {
+            row.faults.extend(self.compare(&curve, other));
+        }
+        self.curves.insert(name.to_owned(), curve);
+        row.as_stated = row.faults.is_empty();
+        row
+    }
+
+    /// Holds a curve against that of another scene.
+    fn compare(&mut self, curve: &Curve, other: &str) -> Option<StressFault> {
+        if !self.curves.contains_key(other) {
+            let Some(scene) = self.scenes.get(other) else {
+                return Some(StressFault::NoOtherScene { other: other.to_owned() });
+            };
+            let done = Done::of(scene, self.limit);
+            self.curves.insert(other.to_owned(), Curve::of(scene, done.records()));
+        }
+        curve.differs_from(&self.curves[other], other)
+    }
+}
+
+/// A run that came to an end.
+struct Done {
+    end: StressEnd,
+    start: Option<State>,
+    /// The state that the run was left with.
+    last: Option<State>,
+    stages: Vec<(State, Record)>,
+    wall_s: f64,
+}
+
+impl Done {
+    fn of(scene: &Scene, limit: Duration) -> Self {
+        let begin = Instant::now();
+        let stages = Stages::new(scene.clone());
+        let start = match stages.start() {
+            Ok(start) => start,
+            Err(error) => {
+                let end = StressEnd::Stopped { outcome: ExpectedOutcome::Refused, message: error.to_string() };
+                return Self { end, start: None, last: None, stages: vec![], wall_s: begin.elapsed().as_secs_f64() };
+            }
+        };
+        let mut sink = MemorySink::default();
+        let mut run = Run::new(stages, start.clone(), None);
+        let end = match run.to_end(None, &|| begin.elapsed() > limit, &mut sink) {
+            Ok(Ending::Finished | Ending::Until) => StressEnd::Finished,
+            Ok(Ending::Interrupted) => StressEnd::OutOfTime,
+            Err(error) => stop(&error),
+        };
+        let (last, wall_s) = (Some(run.state().clone()), begin.elapsed().as_secs_f64());
+        Self { end, start: Some(start), last, stages: sink.stages, wall_s }
+    }
+
+    fn records(&self) -> impl Iterator<Item = &Record> {
+        self.stages.iter().map(|(_, record)| record)
+    }
+
+    /// Whether the stages that were kept are the run: each on the one before it, the last the one that the run stands on.
+    fn lost(&self) -> Option<StressFault> {
+        let mut previous: Option<Commit> = None;
+        let mut hash = self.start.as_ref()?.hash();
+        for (state, record) in &self.stages {
+            let commit = record.commit;
+            let next = Commit::next(
+                previous.as_ref(),
+                record.report.stage,
+                record.report.step,
+                commit.scene_hash,
+                hash,
+                state.hash(),
+            );
+            if commit != next {
+                return Some(StressFault::Lost { ordinal: next.ordinal });
+            }
+            (previous, hash) = (Some(commit), commit.state_hash);
+        }
+        let left = self.last.as_ref().map(State::hash);
+        (left != Some(hash)).then_some(StressFault::Lost { ordinal: self.stages.len() as u64 })
+    }
+}
+
+fn stop(error: &RunError) -> StressEnd {
+    let message = error.to_string();
+    let outcome = match error {
+        RunError::Stage(StageError::NoEquilibrium { .. }) => ExpectedOutcome::NoEquilibrium,
+        RunError::Stage(StageError::JumpNotFollowed { .. }) => ExpectedOutcome::JumpNotFollowed,
+        RunError::Stage(StageError::NotReEquilibrated { .. }) => ExpectedOutcome::NotReEquilibrated,
+        RunError::Stage(StageError::RefinedTooFar { .. }) => ExpectedOutcome::RefinedTooFar,
+        RunError::Stage(_) | RunError::Sink(_) => return StressEnd::Broken { message },
+    };
+    StressEnd::Stopped { outcome, message }
+}
+
+/// The larger, and not a number where one of the two is not.
+fn worse(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
+}
+
+/// Condition and symmetry of the stiffness at an equilibrium.
+fn diagnose(scene: &Scene, state: &State, row: &mut StressRow) {
+    let Ok(mut work) = Workspace::new(scene, &state.mesh) else { return };
+    match Condition::at(&mut work, Standing::of(state)) {
+        Ok(condition) => row.condition = Some(condition.number()),
+        Err(cause) => row.faults.push(StressFault::NoFactor { cause: Box::new(cause) }),
+    }
+    let symmetry = SymmetryError::at(&mut work, Standing::of(state)).largest();
+    row.symmetry_error = Some(symmetry);
+    if symmetry > MOST_ASYMMETRY {
+        row.faults.push(StressFault::NotSymmetric { error: symmetry, most: MOST_ASYMMETRY });
+    }
+}
+
+/// An equilibrium stands where its state alone gives it again, within an iteration.
+fn stands(scene: &Scene, state: &State, record: &Record, row: &mut StressRow) {
+    let Ok(mut work) = Workspace::new(scene, &state.mesh) else { return };
+    let again = Equilibrium::new(scene, &mut work).relax(Standing::of(state), &mut |_| false);
+    let energy = record.report.strain_energy_n_mm;
+    let same = again
+        .as_ref()
+        .is_ok_and(|again| again.effort.iterations <= 1 && (again.energy - energy).abs() <= STANDS * energy.abs());
+    if !same {
+        row.faults.push(StressFault::DoesNotStand { step: record.report.step });
+    }
+}
+
+/// Numbers that are none, and those that say that the result is worth nothing.
+fn judge_numbers(scene: &Scene, done: &Done, row: &mut StressRow) {
+    for (state, record) in &done.stages {
+        let report = &record.report;
+        let shape = state.displacement.iter().chain(&state.turns).flatten();
+        let probes = report.probes.iter().map(|probe| &probe.value);
+        let results = [&report.parameter, &report.moment_n_mm, &report.strain_energy_n_mm, &report.work_n_mm];
+        let residual = is_equilibrium(record).then_some(&report.residual);
+        if !shape.chain(probes).chain(results).chain(residual).all(|value| value.is_finite()) {
+            row.faults.push(StressFault::NotANumber { step: report.step, stage: report.stage });
+            break;
+        }
+    }
+    let tolerance = scene.solver.tolerance;
+    if let Some(residual) = row.worst_residual.filter(|residual| *residual > tolerance) {
+        row.faults.push(StressFault::OutOfBalance { residual, tolerance });
+    }
+    if let Some(balance) = row.energy_balance.filter(|balance| !(balance.abs() <= MOST_IMBALANCE)) {
+        row.faults.push(StressFault::EnergyOutOfBalance { balance, most: MOST_IMBALANCE });
+    }
+    if let Some(bits) = row.significant_bits.filter(|bits| !(*bits >= LEAST_BITS)) {
+        row.faults.push(StressFault::Noise { bits, least: LEAST_BITS });
+    }
+    if let Some(condition) = row.condition.filter(|condition| !condition.is_finite()) {
+        row.faults.push(StressFault::Singular { condition });
+    }
+}

@@ -1,0 +1,130 @@
+//! What of a run can be held against another run: its dimensionless curve, and the digits of its last result.
+
+use crate::pipeline::{Outcome, Parameter, Record};
+use crate::scene::{Geometry, Material, Scene, Stage};
+use crate::study::stress_fault::StressFault;
+
+/// Curves that differ by less, relative to the largest value, are one.
+const SAME_CURVE: f64 = 1e-9;
+/// Values of the parameter that differ by less, relatively, are one.
+const SAME_PARAMETER: f64 = 1e-12;
+/// Bits of the significand of a double.
+const ALL_BITS: f64 = 53.0;
+
+/// Every equilibrium of a run: the parameter, and the moment (other scenes: the strain energy) over E t³, which has the
+/// same unit whatever lengths and forces are measured in.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Curve {
+    points: Vec<(f64, f64)>,
+}
+
+impl Curve {
+    pub fn of<'r>(scene: &Scene, records: impl Iterator<Item = &'r Record>) -> Self {
+        let scale = modulus(&scene.material) * scene.material.thickness_mm().powi(3);
+        let point = |Record { report, .. }: &Record| {
+            let value = match report.driven_by {
+                Parameter::Rotation => report.moment_n_mm,
+                Parameter::LoadFactor => report.strain_energy_n_mm,
+            };
+            (report.parameter, value / scale)
+        };
+        Self { points: records.filter(|record| is_equilibrium(record)).map(point).collect() }
+    }
+
+    /// Where the curves part, if they do.
+    pub fn differs_from(&self, theirs: &Self, other: &str) -> Option<StressFault> {
+        let pairs = || self.points.iter().zip(&theirs.points);
+        let same = |((a, _), (b, _)): &(&(f64, f64), &(f64, f64))| (a - b).abs() <= SAME_PARAMETER * a.abs();
+        let common = pairs().take_while(same).count();
+        let (ours, their_count) = (self.points.len(), theirs.points.len());
+        let other = other.to_owned();
+        if common < ours.max(their_count) || ours == 0 {
+            let parameter = common.checked_sub(1).map_or(0.0, |last| self.points[last].0);
+            return Some(StressFault::OtherSteps { other, theirs: their_count, ours, parameter });
+        }
+        let largest = theirs.points.iter().fold(0.0_f64, |most, (_, value)| most.max(value.abs()));
+        let apart = |((parameter, a), (_, b)): (&(f64, f64), &(f64, f64))| (*parameter, (a - b).abs() / largest);
+        let worst = pairs().map(apart).reduce(|a, b| if a.1 >= b.1 || a.1.is_nan() { a } else { b })?;
+        // What is not a number is no agreement.
+        let agrees = worst.1 <= SAME_CURVE;
+        let (parameter, difference) = worst;
+        (!agrees).then_some(StressFault::OtherCurve { other, parameter, difference, most: SAME_CURVE })
+    }
+}
+
+/// A modulus that scales with all others.
+fn modulus(material: &Material) -> f64 {
+    match material {
+        Material::Isotropic { youngs_modulus_mpa, .. } => *youngs_modulus_mpa,
+        Material::Orthotropic { law, .. } => law.youngs_modulus_1_mpa,
+        Material::Laminate { plies } => plies.first().map_or(f64::NAN, |ply| ply.law.youngs_modulus_1_mpa),
+    }
+}
+
+/// Whether a stage ended in an equilibrium.
+pub(super) fn is_equilibrium(record: &Record) -> bool {
+    record.report.outcome == Outcome::Done && matches!(record.report.stage, Stage::Solve | Stage::ReEquilibrate)
+}
+
+/// Work of loads and given motions less the change of strain energy over all load steps that did not jump, relative to
+/// the largest strain energy: what the trapezoidal rule is off by, and any energy that the equations lose. Refinement
+/// changes the energy at fixed load and does no work; what it changes is not counted.
+pub(super) fn energy_balance<'r>(records: impl Iterator<Item = &'r Record>) -> Option<f64> {
+    let (mut surplus, mut largest, mut before) = (0.0, 0.0_f64, 0.0);
+    for Record { report, .. } in records.filter(|record| record.report.outcome == Outcome::Done) {
+        let after = report.strain_energy_n_mm;
+        if report.stage == Stage::Solve && !report.jumped {
+            surplus += report.work_n_mm - (after - before);
+        }
+        largest = largest.max(after.abs());
+        before = after;
+    }
+    (largest > 0.0).then_some(surplus / largest)
+}
+
+/// The scene with one length of its geometry a unit in the last place larger.
+pub(super) fn nudged(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let length = match &mut scene.geometry {
+        Geometry::TapeSpring { radius_mm, .. }
+        | Geometry::CylinderPanel { radius_mm, .. }
+        | Geometry::SphereZone { radius_mm, .. } => Some(radius_mm),
+        Geometry::Plate { length_mm, .. } => Some(length_mm),
+        Geometry::Annulus { outer_radius_mm, .. } => Some(outer_radius_mm),
+        Geometry::Nurbs(patch) => {
+            patch.control_points_mm.iter_mut().flatten().max_by(|a, b| a.abs().total_cmp(&b.abs()))
+        }
+    };
+    if let Some(length) = length {
+        *length = if *length < 0.0 { length.next_down() } else { length.next_up() };
+    }
+    scene
+}
+
+/// Leading bits in which the results of two runs agree, at the last equilibrium that both have: −log₂ of their relative
+/// difference.
+pub(super) fn significant_bits<'r>(
+    records: impl Iterator<Item = &'r Record>,
+    others: impl Iterator<Item = &'r Record>,
+) -> Option<f64> {
+    let ours: Vec<(f64, f64)> = records.filter(|record| is_equilibrium(record)).map(result).collect();
+    let theirs: Vec<(f64, f64)> = others.filter(|record| is_equilibrium(record)).map(result).collect();
+    let (a, b) = ours.iter().rev().find_map(|(parameter, a)| {
+        let same = |(other, _): &&(f64, f64)| (parameter - other).abs() <= SAME_PARAMETER * parameter.abs();
+        theirs.iter().rev().find(same).map(|(_, b)| (*a, *b))
+    })?;
+    if a == b {
+        return Some(ALL_BITS);
+    }
+    Some((-((a - b).abs() / a.abs().max(b.abs())).log2()).clamp(0.0, ALL_BITS))
+}
+
+/// Parameter and result of an equilibrium: the moment, or the first probe, or the strain energy.
+fn result(Record { report, .. }: &Record) -> (f64, f64) {
+    let value = match (report.driven_by, report.probes.first()) {
+        (Parameter::Rotation, _) => report.moment_n_mm,
+        (Parameter::LoadFactor, Some(probe)) => probe.value,
+        (Parameter::LoadFactor, None) => report.strain_energy_n_mm,
+    };
+    (report.parameter, value)
+}

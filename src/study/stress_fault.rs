@@ -1,0 +1,137 @@
+//! What can be wrong with a scene that was run to see whether it ends as it states.
+
+use serde::{Serialize, Serializer};
+
+use crate::equilibrium::SolveError;
+use crate::scene::{ExpectedOutcome, Stage};
+
+/// One thing that is wrong.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StressFault {
+    /// It did not end as it states.
+    #[error("the scene states that it ends `{}` (within {limit_s} s)", expected.name())]
+    EndedOtherwise {
+        /// As stated.
+        expected: ExpectedOutcome,
+        /// Time for a run, seconds.
+        limit_s: f64,
+    },
+    /// It ended in a panic, which is wrong whatever the scene states.
+    #[error("a panic is never right; the line above says where")]
+    Panicked,
+    /// No load step came to an equilibrium.
+    #[error("no load step ended in an equilibrium")]
+    NoStep,
+    /// What was kept of the run is not the run.
+    #[error("stage {ordinal} of the run was not kept as it was made")]
+    Lost {
+        /// The first stage that differs.
+        ordinal: u64,
+    },
+    /// The last equilibrium is none when it is run again from its state.
+    #[error("the equilibrium of step {step} is not found again from its own state")]
+    DoesNotStand {
+        /// Load step.
+        step: u64,
+    },
+    /// A result is not a number.
+    #[error("step {step}, {stage}: a result is not a number")]
+    NotANumber {
+        /// Load step.
+        step: u64,
+        /// The stage.
+        stage: Stage,
+    },
+    /// An equilibrium is none.
+    #[error("an equilibrium has a residual of {residual:.1e} of the reactions; solver.tolerance is {tolerance:e}")]
+    OutOfBalance {
+        /// |residual| / |reactions|.
+        residual: f64,
+        /// The scene's tolerance.
+        tolerance: f64,
+    },
+    /// Work went where it cannot.
+    #[error(
+        "work and strain energy of the smooth steps differ by {balance:.1e} of the strain energy; {most} is the most"
+    )]
+    EnergyOutOfBalance {
+        /// Work less strain energy, relative.
+        balance: f64,
+        /// The most.
+        most: f64,
+    },
+    /// The stiffness at the end has no factor.
+    #[error("no condition at the end: {cause}")]
+    NoFactor {
+        /// What the solver said.
+        cause: Box<SolveError>,
+    },
+    /// The stiffness at the end is singular.
+    #[error("the condition of the stiffness at the end is {condition}")]
+    Singular {
+        /// The estimate.
+        condition: f64,
+    },
+    /// The stiffness at the end is not symmetric.
+    #[error("the stiffness at the end is not symmetric: {error:.1e}, and rounding is below {most:e}")]
+    NotSymmetric {
+        /// Error.
+        error: f64,
+        /// The most.
+        most: f64,
+    },
+    /// Changing an input in its last place changes the result.
+    #[error(
+        "{bits:.0} bits of the result survive a change of one unit in the last place of an input; {least} are the least"
+    )]
+    Noise {
+        /// Bits.
+        bits: f64,
+        /// The least.
+        least: f64,
+    },
+    /// Changing an input in its last place changes how the run ends.
+    #[error("with one unit more in the last place of an input it ends `{ended}`")]
+    NudgedEndedOtherwise {
+        /// How.
+        ended: &'static str,
+    },
+    /// `same_as` names no scene.
+    #[error("expect.same_as = \"{other}\" is no scene of this folder")]
+    NoOtherScene {
+        /// The name.
+        other: String,
+    },
+    /// The other scene took other steps.
+    #[error("the curve of {other} has {theirs} equilibria, and this one {ours}; they part after {parameter}")]
+    OtherSteps {
+        /// The other scene.
+        other: String,
+        /// Its equilibria.
+        theirs: usize,
+        /// Equilibria of this scene.
+        ours: usize,
+        /// The last common value of the parameter.
+        parameter: f64,
+    },
+    /// The curves differ.
+    #[error(
+        "at {parameter} the curve is {difference:.1e} of its largest value off that of {other}; {most:e} is the most"
+    )]
+    OtherCurve {
+        /// The other scene.
+        other: String,
+        /// Where the difference is largest.
+        parameter: f64,
+        /// The difference.
+        difference: f64,
+        /// The most.
+        most: f64,
+    },
+}
+
+impl Serialize for StressFault {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
