@@ -21,16 +21,18 @@ pub struct Tables {
     pub elements: [usize; 2],
     /// First control index of each element, each way.
     pub first: [Vec<usize>; 2],
-    /// Quadrature points of an element.
-    pub points_per_element: usize,
+    /// Quadrature points of element e: `point_start[e]..point_start[e + 1]`.
+    point_start: Vec<usize>,
+    /// The same of batches.
+    batch_start: Vec<usize>,
     /// (p₁ + 1)(p₂ + 1).
     pub functions_per_element: usize,
     /// The same, padded to a multiple of 8; the padding holds zeros.
     pub padded: usize,
-    /// `functions[((element · points + point) · 5 + k) · padded + a]`: derivative k (,1 ,2 ,11 ,22 ,12) of function
+    /// `functions[(point · 5 + k) · padded + a]`: derivative k (,1 ,2 ,11 ,22 ,12) of function
     /// a = a₁ (p₂ + 1) + a₂.
     pub functions: Vec<f64>,
-    /// `points[element · points_per_element + point]`.
+    /// Points, element by element.
     pub points: Vec<PointReference>,
     /// The same points by fours, the last of an element's with what is left.
     pub batches: Vec<PointBatch>,
@@ -54,21 +56,25 @@ impl Tables {
             }
             spans
         });
-        let rules = mesh.degree.map(|degree| {
-            gauss_legendre(match scene.mesh.quadrature {
-                Quadrature::Full => degree + 1,
-                Quadrature::Reduced => degree,
-            })
-        });
-        let directions = [0, 1].map(|k| Direction::new(mesh, k, &spans[k], &rules[k]));
+        let counts = [0, 1].map(|k| point_counts(scene.mesh.quadrature, mesh.degree[k], &finer.knots[k]));
+        let directions = [0, 1].map(|k| Direction::new(mesh, k, &spans[k], &counts[k]));
         let elements = [spans[0].count(), spans[1].count()];
-        let points_per_element = rules[0].len() * rules[1].len();
+        let points_of = |element: usize| counts[0][element / elements[1]] * counts[1][element % elements[1]];
         let functions_per_element = (mesh.degree[0] + 1) * (mesh.degree[1] + 1);
         let padded = functions_per_element.next_multiple_of(LANES);
         let count = elements[0] * elements[1];
-        let mut functions = vec![0.0; count * points_per_element * 5 * padded];
-        let built: Vec<(Vec<PointReference>, [f64; 2])> = functions
-            .par_chunks_mut(points_per_element * 5 * padded)
+        let point_start = starts((0..count).map(points_of));
+        let batch_start = starts((0..count).map(|element| points_of(element).div_ceil(BATCH)));
+        let mut functions = vec![0.0; point_start[count] * 5 * padded];
+        let mut rest = &mut functions[..];
+        let mut of_elements = Vec::with_capacity(count);
+        for element in 0..count {
+            let (of_element, others) = rest.split_at_mut(points_of(element) * 5 * padded);
+            of_elements.push(of_element);
+            rest = others;
+        }
+        let built: Vec<(Vec<PointReference>, [f64; 2])> = of_elements
+            .into_par_iter()
             .enumerate()
             .map(|(element, out)| {
                 let at = [element / elements[1], element % elements[1]];
@@ -76,29 +82,71 @@ impl Tables {
             })
             .collect();
         let lengths = built.iter().map(|(_, length)| *length).collect();
+        let by_fours = |(points, _): &(Vec<PointReference>, _)| {
+            points.chunks(BATCH).map(PointBatch::new).collect::<Vec<PointBatch>>()
+        };
+        let batches = built.par_iter().flat_map_iter(by_fours).collect();
         let points: Vec<PointReference> = built.into_iter().flat_map(|(points, _)| points).collect();
-        let of_element = points.par_chunks(points_per_element);
-        let batches = of_element.flat_map_iter(|points| points.chunks(BATCH).map(PointBatch::new)).collect();
         let first = [0, 1].map(|k| spans[k].index.iter().map(|s| s - mesh.degree[k]).collect());
-        Self { elements, first, points_per_element, functions_per_element, padded, functions, points, batches, lengths }
+        Self {
+            elements,
+            first,
+            point_start,
+            batch_start,
+            functions_per_element,
+            padded,
+            functions,
+            points,
+            batches,
+            lengths,
+        }
     }
 
-    /// Functions of all points of an element: `points_per_element · 5 · padded` numbers.
+    /// Functions of all points of an element: points · 5 · `padded` numbers.
     pub fn element_functions(&self, element: usize) -> &[f64] {
-        let size = self.points_per_element * 5 * self.padded;
-        &self.functions[element * size..][..size]
+        let size = 5 * self.padded;
+        &self.functions[self.point_start[element] * size..self.point_start[element + 1] * size]
     }
 
     /// Reference points of an element.
     pub fn element_points(&self, element: usize) -> &[PointReference] {
-        &self.points[element * self.points_per_element..][..self.points_per_element]
+        &self.points[self.point_start[element]..self.point_start[element + 1]]
     }
 
     /// The same points by fours.
     pub fn element_batches(&self, element: usize) -> &[PointBatch] {
-        let count = self.points_per_element.div_ceil(BATCH);
-        &self.batches[element * count..][..count]
+        &self.batches[self.batch_start[element]..self.batch_start[element + 1]]
     }
+}
+
+/// Sums of all counts before each, and of all.
+fn starts(counts: impl Iterator<Item = usize>) -> Vec<usize> {
+    let sums = counts.scan(0, |sum, count| {
+        *sum += count;
+        Some(*sum)
+    });
+    std::iter::once(0).chain(sums).collect()
+}
+
+/// Gauss points of each element in one direction.
+///
+/// Where a spline is C^(p−1) across both ends of an element, it has one degree of freedom there for each component, and
+/// p − 1 points hold it; next to the ends of the patch, and to knots of higher multiplicity, functions live that fewer
+/// than p + 1 points may miss (Adam, Hughes, Bouabdallah, Zarroug & Maitournam 2015, *Selective and reduced numerical
+/// integrations for NURBS-based isogeometric analysis*).
+fn point_counts(quadrature: Quadrature, degree: usize, knots: &[f64]) -> Vec<usize> {
+    let bounds = Spans::of(knots, degree).bounds;
+    let is_smooth = |knot: f64| {
+        let first = knots.partition_point(|other| *other < knot);
+        knots.get(first + 1).is_some_and(|next| *next > knot)
+    };
+    let count = |[from, to]: &[f64; 2]| match quadrature {
+        Quadrature::Full => degree + 1,
+        Quadrature::Reduced => degree,
+        Quadrature::Patch if is_smooth(*from) && is_smooth(*to) => degree - 1,
+        Quadrature::Patch => degree + 1,
+    };
+    bounds.iter().map(count).collect()
 }
 
 /// One direction: basis functions at the Gauss points of each element.
@@ -106,17 +154,18 @@ struct Direction {
     first: Vec<usize>,
     /// Size in the parameter of each element.
     sizes: Vec<f64>,
-    /// Gauss weights on [−1, 1].
-    weights: Vec<f64>,
+    /// `weights[element][point]`: Gauss weights on [−1, 1].
+    weights: Vec<Vec<f64>>,
     /// `basis[element][point]` as [`basis_derivatives`] fills it.
     basis: Vec<Vec<Vec<f64>>>,
 }
 
 impl Direction {
-    fn new(mesh: &Mesh, direction: usize, spans: &Spans, rule: &[[f64; 2]]) -> Self {
+    fn new(mesh: &Mesh, direction: usize, spans: &Spans, counts: &[usize]) -> Self {
         let degree = mesh.degree[direction];
         let knots = &mesh.knots[direction];
-        let at_points = |span: usize, [from, to]: [f64; 2]| {
+        let rules: Vec<Vec<[f64; 2]>> = counts.iter().map(|count| gauss_legendre(*count)).collect();
+        let at_points = |span: usize, [from, to]: [f64; 2], rule: &[[f64; 2]]| {
             rule.iter()
                 .map(|[node, _]| {
                     let mut basis = vec![0.0; basis_derivatives_len(degree)];
@@ -129,8 +178,8 @@ impl Direction {
         Self {
             first: spans.index.iter().map(|span| span - degree).collect(),
             sizes: spans.bounds.iter().map(|[from, to]| to - from).collect(),
-            weights: rule.iter().map(|[_, weight]| *weight).collect(),
-            basis: spans.index.iter().zip(&spans.bounds).map(|(span, bounds)| at_points(*span, *bounds)).collect(),
+            weights: rules.iter().map(|rule| rule.iter().map(|[_, weight]| *weight).collect()).collect(),
+            basis: (0..spans.count()).map(|e| at_points(spans.index[e], spans.bounds[e], &rules[e])).collect(),
         }
     }
 }
@@ -150,8 +199,8 @@ fn element_tables(
     let (size1, size2) = (d1.sizes[at[0]], d2.sizes[at[1]]);
     let mut points = Vec::new();
     let mut lengths = [0.0; 2];
-    for (q1, weight1) in d1.weights.iter().enumerate() {
-        for (q2, weight2) in d2.weights.iter().enumerate() {
+    for (q1, weight1) in d1.weights[at[0]].iter().enumerate() {
+        for (q2, weight2) in d2.weights[at[1]].iter().enumerate() {
             let (along, across) = (&d1.basis[at[0]][q1], &d2.basis[at[1]][q2]);
             let weighted = |a1: usize, a2: usize| {
                 let control = mesh.control_points[(d1.first[at[0]] + a1) * n2 + d2.first[at[1]] + a2];

@@ -233,6 +233,10 @@ pub(super) static QUADRATURE: Key = Key {
     kind: Kind::Word(&[
         choice("full", "Gauss-Legendre with degree + 1 points each way"),
         choice("reduced", "Gauss-Legendre with degree points each way"),
+        choice(
+            "patch",
+            "degree - 1 points each way inside, where the spline is smooth, and degree + 1 next to edges and repeated knots",
+        ),
     ]),
     presence: Default("\"full\""),
     reach: Everything,

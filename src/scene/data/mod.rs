@@ -72,6 +72,8 @@ pub enum Quadrature {
     Full,
     /// Gauss–Legendre with degree points each way.
     Reduced,
+    /// Gauss–Legendre with degree − 1 points where the spline is smooth, degree + 1 next to edges and repeated knots.
+    Patch,
 }
 
 impl Quadrature {
@@ -80,6 +82,7 @@ impl Quadrature {
         match self {
             Quadrature::Full => "full",
             Quadrature::Reduced => "reduced",
+            Quadrature::Patch => "patch",
         }
     }
 }
