@@ -325,7 +325,10 @@ fn add_coupling<V: FourLanes>(
     let (back1, back2) = (sub(none, a1), sub(none, a2));
     let strain = [[back1, none, back2], [none, back2, back1]];
     for j in 0..3 {
-        let column = [0, 1, 2].map(|i| V::load(proof, &coupling[i][j]));
+        let mut column = none;
+        for i in 0..3 {
+            column[i] = V::load(proof, &coupling[i][j]);
+        }
         for alpha in 0..2 {
             let stress = combination(column, strain[alpha]);
             add_both(proof, hessian, alpha, 2 + j, &outer(stress, d.normal));
