@@ -235,7 +235,7 @@ pub(super) static QUADRATURE: Key = Key {
         choice("reduced", "Gauss-Legendre with degree points each way"),
         choice(
             "patch",
-            "degree - 1 points each way inside, where the spline is smooth, and degree + 1 next to edges and repeated knots",
+            "degree - 1 points each way (at least 2) where the spline is smooth, degree next to edges and repeated knots",
         ),
     ]),
     presence: Default("\"full\""),

@@ -4,5 +4,6 @@ mod assembly;
 mod baseline;
 mod benchmarks;
 mod house;
+mod quadrature;
 mod refinement;
 mod support;

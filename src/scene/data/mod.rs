@@ -70,9 +70,10 @@ pub struct MeshSpec {
 pub enum Quadrature {
     /// Gauss–Legendre with degree + 1 points each way.
     Full,
-    /// Gauss–Legendre with degree points each way.
+    /// Gauss–Legendre with degree points each way; degree + 1 in a direction that has one element.
     Reduced,
-    /// Gauss–Legendre with degree − 1 points where the spline is smooth, degree + 1 next to edges and repeated knots.
+    /// Gauss–Legendre with degree − 1 points (at least 2) where the spline is smooth, degree next to edges and repeated
+    /// knots; degree + 1 in a direction that has one element.
     Patch,
 }
 
