@@ -7,13 +7,15 @@ mod section_shape;
 mod stress;
 mod stress_curve;
 mod stress_fault;
+mod stress_run;
 mod summary;
 mod summary_text;
 mod wuest;
 
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use path::{PathPoint, Snap, equilibrium_path, snaps};
-pub use stress::{StressEnd, StressRow, StressSuite};
+pub use stress::{StressRow, StressSuite};
 pub use stress_fault::StressFault;
+pub use stress_run::StressEnd;
 pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, StageWork, Summary};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};
