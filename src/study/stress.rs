@@ -175,7 +175,7 @@ fn diagnose(scene: &Scene, state: &State, row: &mut StressRow) {
     }
     let symmetry = SymmetryError::at(&mut work, Standing::of(state)).largest();
     row.symmetry_error = Some(symmetry);
-    if symmetry > MOST_ASYMMETRY {
+    if symmetry.is_nan() || symmetry > MOST_ASYMMETRY {
         row.faults.push(StressFault::NotSymmetric { error: symmetry, most: MOST_ASYMMETRY });
     }
 }
@@ -207,13 +207,13 @@ fn judge_numbers(scene: &Scene, done: &Done, row: &mut StressRow) {
         }
     }
     let tolerance = scene.solver.tolerance;
-    if let Some(residual) = row.worst_residual.filter(|residual| *residual > tolerance) {
+    if let Some(residual) = row.worst_residual.filter(|residual| residual.is_nan() || *residual > tolerance) {
         row.faults.push(StressFault::OutOfBalance { residual, tolerance });
     }
-    if let Some(balance) = row.energy_balance.filter(|balance| !(balance.abs() <= MOST_IMBALANCE)) {
+    if let Some(balance) = row.energy_balance.filter(|balance| balance.is_nan() || balance.abs() > MOST_IMBALANCE) {
         row.faults.push(StressFault::EnergyOutOfBalance { balance, most: MOST_IMBALANCE });
     }
-    if let Some(bits) = row.significant_bits.filter(|bits| !(*bits >= LEAST_BITS)) {
+    if let Some(bits) = row.significant_bits.filter(|bits| bits.is_nan() || *bits < LEAST_BITS) {
         row.faults.push(StressFault::Noise { bits, least: LEAST_BITS });
     }
     if let Some(condition) = row.condition.filter(|condition| !condition.is_finite()) {
