@@ -5,14 +5,15 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::equilibrium::{Condition, Equilibrium, Standing, SymmetryError, Workspace};
-use crate::pipeline::{Commit, Ending, MemorySink, Record, Run, RunError, StageError, Stages};
+use crate::pipeline::Record;
 use crate::scene::{ExpectedOutcome, Scene};
 use crate::state::State;
 use crate::study::stress_curve::{Curve, energy_balance, is_equilibrium, nudged, significant_bits};
 use crate::study::stress_fault::StressFault;
+use crate::study::stress_run::{Done, StressEnd};
 
 /// Work that smooth steps may do beyond what goes into strain energy, as a share of the largest strain energy: a step
 /// that is off by 1 % of the energy counts as a jump and is cut, and smooth steps stay far below.
@@ -23,67 +24,6 @@ const MOST_ASYMMETRY: f64 = 1e-12;
 const LEAST_BITS: f64 = 10.0;
 /// What running an equilibrium again from its state may change of its energy, relatively.
 const STANDS: f64 = 1e-9;
-
-/// How a scene ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum StressEnd {
-    /// At its target.
-    Finished,
-    /// Before, in a way that a scene can expect.
-    Stopped {
-        /// The way.
-        outcome: ExpectedOutcome,
-        /// The error.
-        message: String,
-    },
-    /// Before, in a way that no scene can expect.
-    Broken {
-        /// The error.
-        message: String,
-    },
-    /// The time for a scene ran out.
-    OutOfTime,
-    /// In a panic.
-    Panicked {
-        /// What it said.
-        message: String,
-    },
-}
-
-impl StressEnd {
-    /// One word.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Finished => ExpectedOutcome::Finished.name(),
-            Self::Stopped { outcome, .. } => outcome.name(),
-            Self::Broken { .. } => "broken",
-            Self::OutOfTime => "out-of-time",
-            Self::Panicked { .. } => "panicked",
-        }
-    }
-
-    /// The error, where there is one.
-    pub fn message(&self) -> Option<&str> {
-        match self {
-            Self::Finished | Self::OutOfTime => None,
-            Self::Stopped { message, .. } | Self::Broken { message } | Self::Panicked { message } => Some(message),
-        }
-    }
-
-    fn is(&self, expected: ExpectedOutcome) -> bool {
-        match self {
-            Self::Finished => expected == ExpectedOutcome::Finished,
-            Self::Stopped { outcome, .. } => *outcome == expected,
-            _ => false,
-        }
-    }
-}
-
-impl Serialize for StressEnd {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
-    }
-}
 
 /// What came of a scene. Numbers are `None` where the scene did not get so far.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -221,78 +161,6 @@ impl StressSuite {
     }
 }
 
-/// A run that came to an end.
-struct Done {
-    end: StressEnd,
-    start: Option<State>,
-    /// The state that the run was left with.
-    last: Option<State>,
-    stages: Vec<(State, Record)>,
-    wall_s: f64,
-}
-
-impl Done {
-    fn of(scene: &Scene, limit: Duration) -> Self {
-        let begin = Instant::now();
-        let stages = Stages::new(scene.clone());
-        let start = match stages.start() {
-            Ok(start) => start,
-            Err(error) => {
-                let end = StressEnd::Stopped { outcome: ExpectedOutcome::Refused, message: error.to_string() };
-                return Self { end, start: None, last: None, stages: vec![], wall_s: begin.elapsed().as_secs_f64() };
-            }
-        };
-        let mut sink = MemorySink::default();
-        let mut run = Run::new(stages, start.clone(), None);
-        let end = match run.to_end(None, &|| begin.elapsed() > limit, &mut sink) {
-            Ok(Ending::Finished | Ending::Until) => StressEnd::Finished,
-            Ok(Ending::Interrupted) => StressEnd::OutOfTime,
-            Err(error) => stop(&error),
-        };
-        let (last, wall_s) = (Some(run.state().clone()), begin.elapsed().as_secs_f64());
-        Self { end, start: Some(start), last, stages: sink.stages, wall_s }
-    }
-
-    fn records(&self) -> impl Iterator<Item = &Record> {
-        self.stages.iter().map(|(_, record)| record)
-    }
-
-    /// Whether the stages that were kept are the run: each on the one before it, the last the one that the run stands on.
-    fn lost(&self) -> Option<StressFault> {
-        let mut previous: Option<Commit> = None;
-        let mut hash = self.start.as_ref()?.hash();
-        for (state, record) in &self.stages {
-            let commit = record.commit;
-            let next = Commit::next(
-                previous.as_ref(),
-                record.report.stage,
-                record.report.step,
-                commit.scene_hash,
-                hash,
-                state.hash(),
-            );
-            if commit != next {
-                return Some(StressFault::Lost { ordinal: next.ordinal });
-            }
-            (previous, hash) = (Some(commit), commit.state_hash);
-        }
-        let left = self.last.as_ref().map(State::hash);
-        (left != Some(hash)).then_some(StressFault::Lost { ordinal: self.stages.len() as u64 })
-    }
-}
-
-fn stop(error: &RunError) -> StressEnd {
-    let message = error.to_string();
-    let outcome = match error {
-        RunError::Stage(StageError::NoEquilibrium { .. }) => ExpectedOutcome::NoEquilibrium,
-        RunError::Stage(StageError::JumpNotFollowed { .. }) => ExpectedOutcome::JumpNotFollowed,
-        RunError::Stage(StageError::NotReEquilibrated { .. }) => ExpectedOutcome::NotReEquilibrated,
-        RunError::Stage(StageError::RefinedTooFar { .. }) => ExpectedOutcome::RefinedTooFar,
-        RunError::Stage(_) | RunError::Sink(_) => return StressEnd::Broken { message },
-    };
-    StressEnd::Stopped { outcome, message }
-}
-
 /// The larger, and not a number where one of the two is not.
 fn worse(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
@@ -307,7 +175,7 @@ fn diagnose(scene: &Scene, state: &State, row: &mut StressRow) {
     }
     let symmetry = SymmetryError::at(&mut work, Standing::of(state)).largest();
     row.symmetry_error = Some(symmetry);
-    if symmetry > MOST_ASYMMETRY {
+    if symmetry.is_nan() || symmetry > MOST_ASYMMETRY {
         row.faults.push(StressFault::NotSymmetric { error: symmetry, most: MOST_ASYMMETRY });
     }
 }
@@ -339,16 +207,83 @@ fn judge_numbers(scene: &Scene, done: &Done, row: &mut StressRow) {
         }
     }
     let tolerance = scene.solver.tolerance;
-    if let Some(residual) = row.worst_residual.filter(|residual| *residual > tolerance) {
+    if let Some(residual) = row.worst_residual.filter(|residual| residual.is_nan() || *residual > tolerance) {
         row.faults.push(StressFault::OutOfBalance { residual, tolerance });
     }
-    if let Some(balance) = row.energy_balance.filter(|balance| !(balance.abs() <= MOST_IMBALANCE)) {
+    if let Some(balance) = row.energy_balance.filter(|balance| balance.is_nan() || balance.abs() > MOST_IMBALANCE) {
         row.faults.push(StressFault::EnergyOutOfBalance { balance, most: MOST_IMBALANCE });
     }
-    if let Some(bits) = row.significant_bits.filter(|bits| !(*bits >= LEAST_BITS)) {
+    if let Some(bits) = row.significant_bits.filter(|bits| bits.is_nan() || *bits < LEAST_BITS) {
         row.faults.push(StressFault::Noise { bits, least: LEAST_BITS });
     }
     if let Some(condition) = row.condition.filter(|condition| !condition.is_finite()) {
         row.faults.push(StressFault::Singular { condition });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Expectation, parse};
+
+    fn scene() -> Scene {
+        let mut scene = parse(include_str!("../../pipelines/baseline-quarter.toml"), "baseline-quarter.toml").unwrap();
+        scene.load.set_target(0.8);
+        scene
+    }
+
+    fn row(scene: Scene) -> StressRow {
+        let scenes = BTreeMap::from([("a.toml".to_owned(), scene)]);
+        StressSuite::new(scenes, Duration::from_secs(60)).run("a.toml").unwrap()
+    }
+
+    #[test]
+    fn a_panic_ends_its_scene_alone() {
+        let mut beyond = scene();
+        // No kernel is made for it, and no scene file can ask for it.
+        beyond.mesh.degree = [7, 7];
+        let scenes = BTreeMap::from([("a.toml".to_owned(), beyond), ("b.toml".to_owned(), scene())]);
+        let mut suite = StressSuite::new(scenes, Duration::from_secs(60));
+        let panicked = suite.run("a.toml").unwrap();
+        assert!(matches!(panicked.outcome, StressEnd::Panicked { .. }) && !panicked.as_stated);
+        assert!(panicked.message.is_some_and(|message| !message.is_empty()));
+        assert!(suite.run("b.toml").unwrap().as_stated);
+        assert_eq!(suite.run("c.toml"), None);
+    }
+
+    #[test]
+    fn a_scene_that_ends_otherwise_is_not_as_stated() {
+        assert!(row(scene()).as_stated);
+        let mut wrong = scene();
+        wrong.expect = Some(Expectation { outcome: ExpectedOutcome::NoEquilibrium, same_as: None });
+        let found = row(wrong);
+        assert!(matches!(found.faults[..], [StressFault::EndedOtherwise { .. }]), "{:?}", found.faults);
+    }
+
+    #[test]
+    fn time_that_runs_out_is_no_end() {
+        let scenes = BTreeMap::from([("a.toml".to_owned(), scene())]);
+        let found = StressSuite::new(scenes, Duration::ZERO).run("a.toml").unwrap();
+        assert_eq!(found.outcome, StressEnd::OutOfTime);
+        assert!(!found.as_stated);
+    }
+
+    #[test]
+    fn the_curve_of_another_spring_is_another_curve() {
+        let mut thicker = scene();
+        let crate::scene::Material::Isotropic { poissons_ratio, .. } = &mut thicker.material else { panic!() };
+        *poissons_ratio = 0.31;
+        thicker.expect = Some(Expectation { outcome: ExpectedOutcome::Finished, same_as: Some("b.toml".to_owned()) });
+        let scenes = BTreeMap::from([("a.toml".to_owned(), thicker.clone()), ("b.toml".to_owned(), scene())]);
+        let found = StressSuite::new(scenes, Duration::from_secs(60)).run("a.toml").unwrap();
+        assert!(matches!(found.faults[..], [StressFault::OtherCurve { .. }]), "{:?}", found.faults);
+        let found = row(thicker);
+        assert!(matches!(found.faults[..], [StressFault::NoOtherScene { .. }]), "{:?}", found.faults);
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_the_worse() {
+        assert_eq!([1.0, 3.0, 2.0].into_iter().reduce(worse), Some(3.0));
+        assert!([1.0, f64::NAN, 2.0].into_iter().reduce(worse).unwrap().is_nan());
     }
 }

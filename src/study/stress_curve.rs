@@ -128,3 +128,63 @@ fn result(Record { report, .. }: &Record) -> (f64, f64) {
     };
     (report.parameter, value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::{MemorySink, Run, Stages};
+    use crate::scene::parse;
+
+    fn records() -> Vec<Record> {
+        let mut scene = parse(include_str!("../../pipelines/baseline-quarter.toml"), "baseline-quarter.toml").unwrap();
+        scene.load.set_target(0.8);
+        let stages = Stages::new(scene);
+        let start = stages.start().unwrap();
+        let mut sink = MemorySink::default();
+        Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();
+        sink.stages.into_iter().map(|(_, record)| record).collect()
+    }
+
+    fn curve(points: &[(f64, f64)]) -> Curve {
+        Curve { points: points.to_vec() }
+    }
+
+    #[test]
+    fn curves_part_where_steps_or_values_do() {
+        let one = curve(&[(0.4, 1.0), (0.8, 2.0)]);
+        assert_eq!(one.differs_from(&one, "b"), None);
+        assert_eq!(one.differs_from(&curve(&[(0.4, 1.0 + 1e-9), (0.8, 2.0)]), "b"), None);
+        let differs = |points: &[(f64, f64)]| one.differs_from(&curve(points), "b");
+        assert!(matches!(
+            differs(&[(0.4, 1.0), (0.8, 2.0 + 3e-9)]),
+            Some(StressFault::OtherCurve { parameter: 0.8, .. })
+        ));
+        assert!(matches!(differs(&[(0.4, 1.0), (0.8, f64::NAN)]), Some(StressFault::OtherCurve { .. })));
+        assert!(matches!(differs(&[(0.4, 1.0)]), Some(StressFault::OtherSteps { parameter: 0.4, .. })));
+        assert!(matches!(differs(&[(0.4, 1.0), (0.7, 2.0)]), Some(StressFault::OtherSteps { parameter: 0.4, .. })));
+        assert!(curve(&[]).differs_from(&curve(&[]), "b").is_some(), "nothing agrees with nothing");
+    }
+
+    #[test]
+    fn bits_are_those_that_agree() {
+        let ours = records();
+        assert_eq!(significant_bits(ours.iter(), ours.iter()), Some(53.0));
+        let mut theirs = ours.clone();
+        let last = theirs.iter_mut().rfind(|record| is_equilibrium(record)).unwrap();
+        last.report.moment_n_mm *= 1.0 + 1.0 / 1024.0;
+        let bits = significant_bits(ours.iter(), theirs.iter()).unwrap();
+        assert!((bits - 10.0).abs() < 0.01, "{bits}");
+        assert_eq!(significant_bits(ours.iter(), [].iter()), None);
+    }
+
+    #[test]
+    fn work_that_is_lost_shows_in_the_balance() {
+        let mut records = records();
+        let right = energy_balance(records.iter()).unwrap();
+        assert!(right.abs() < 1e-3, "{right}");
+        let last = records.iter_mut().rfind(|record| record.report.stage == Stage::Solve).unwrap();
+        last.report.work_n_mm += 0.1 * last.report.strain_energy_n_mm;
+        let wrong = energy_balance(records.iter()).unwrap();
+        assert!((wrong - right - 0.1).abs() < 1e-2, "{wrong}");
+    }
+}

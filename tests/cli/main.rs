@@ -5,5 +5,6 @@ mod folded;
 mod pictures;
 mod progress;
 mod stages;
+mod stress;
 mod summary;
 mod synthetic;

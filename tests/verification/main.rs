@@ -3,6 +3,7 @@
 mod assembly;
 mod baseline;
 mod benchmarks;
+mod extreme;
 mod house;
 mod quadrature;
 mod refinement;
