@@ -16,6 +16,11 @@
 //! energy, and the next step returns to it. Backtracking at once follows the valley in many small steps: the snap of
 //! the baseline's quarter model took 64 iterations that way and 31 with one step of patience; two and four steps of
 //! patience took 33 and 37.
+//!
+//! Going on with the factor of the point where the load step began (modified Newton, Shamanskii 1967) does not pay, though
+//! a residual and a solve cost a sixth of an iteration: after the tangent predictor such a step brings the residual of the
+//! baseline from 0.24 to 0.03 of the reactions and the next one back to 0.06, since the shell has turned and what was bending
+//! is stretching. The quarter model took 997 iterations and 879 factorizations that way, and 575 and 753 without.
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::external::{External, work};
