@@ -3,6 +3,11 @@
 mod assembly;
 mod baseline;
 mod benchmarks;
+mod buckling;
 mod house;
+mod path;
 mod refinement;
+mod roofs;
+mod soft_mode;
+mod spring_path;
 mod support;
