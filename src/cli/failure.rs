@@ -108,6 +108,8 @@ impl Failure {
             | Failure::Model(_)
             | Failure::Condition(_)
             | Failure::NoSuchTopic { .. } => 2,
+            // A wrong scene as well.
+            Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,
             Failure::Interrupted { .. } => INTERRUPTED,
             _ => 1,
         }
