@@ -111,6 +111,8 @@ impl Failure {
             | Failure::Condition(_)
             | Failure::NoSuchTopic { .. }
             | Failure::NoSuchScene { .. } => 2,
+            // A wrong scene as well.
+            Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,
             Failure::Interrupted { .. } => INTERRUPTED,
             _ => 1,
         }

@@ -114,7 +114,8 @@ impl Slicing<'_> {
             (above, below) = (below, 4.0 * below);
         }
         while below < FARTHEST * above && self.tried < MAX_SHIFTS {
-            let middle = -(below * above).sqrt();
+            // Nothing is known above yet where the first shift was far enough: between it and 0 there is no geometric mean.
+            let middle = if above == 0.0 { below / FARTHEST } else { -(below * above).sqrt() };
             match self.count_below(middle)? {
                 0 => below = middle,
                 _ => above = middle,

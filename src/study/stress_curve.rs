@@ -63,7 +63,7 @@ fn modulus(material: &Material) -> f64 {
 
 /// Whether a stage ended in an equilibrium.
 pub(super) fn is_equilibrium(record: &Record) -> bool {
-    record.report.outcome == Outcome::Done && matches!(record.report.stage, Stage::Solve | Stage::ReEquilibrate)
+    record.report.outcome == Outcome::Done && record.report.stage.finds_equilibrium()
 }
 
 /// Work of loads and given motions less the change of strain energy over all load steps that did not jump, relative to

@@ -4,7 +4,12 @@ mod binary;
 mod folded;
 mod pictures;
 mod progress;
+mod stability;
 mod stages;
 mod stress;
 mod summary;
 mod synthetic;
+
+#[path = "../restart/program.rs"]
+#[allow(dead_code, reason = "shared with the tests of restarts")]
+mod program;

@@ -280,6 +280,62 @@ fn stages() {
 }
 
 #[test]
+fn stages_with_switch_branch() {
+    pin(
+        "stages_with_switch_branch",
+        &errors(&[
+            (STAGES, "stages = [\"switch-branch\"]"),
+            (STAGES, "stages = [\"switch-branch\", \"solve\"]"),
+            (STAGES, "stages = [\"solve\", \"switch-branch\", \"switch-branch\"]"),
+            (STAGES, "stages = [\"solve\", \"evaluate-indicators\", \"switch-branch\"]"),
+            (STAGES, "stages = [\"solve\", \"switch_branch\"]"),
+            (
+                STAGES,
+                "stages = [\"solve\", \"switch-branch\", \"refine-knots\", \"project-displacements\", \"re-equilibrate\"]",
+            ),
+        ]),
+    );
+}
+
+#[test]
+fn continuation() {
+    let with = |lines: &str| format!("[continuation]\n{lines}\n[output]");
+    let slips = [
+        "control = \"arclength\"",
+        "control = \"displacement\"",
+        "control = true",
+        "longest_step = 2.0",
+        "control = \"load\"\nlongest_step = 2.0",
+        "control = \"load\"\nmost_steps = 20",
+        "shortest_step = 1e-5",
+        "control = \"arc-length\"\nlongest_step = -2.0",
+        "control = \"arc-length\"\nlongest_step = 0.5",
+        "control = \"arc-length\"\nlongest_step = nan",
+        "control = \"arc-length\"\nlongest_step = \"4\"",
+        "control = \"arc-length\"\nshortest_step = -1e-4",
+        "control = \"arc-length\"\nshortest_step = 0",
+        "control = \"arc-length\"\nshortest_step = 2.0",
+        "control = \"arc-length\"\nmost_steps = 0",
+        "control = \"arc-length\"\nmost_steps = -5",
+        "control = \"arc-length\"\nmost_steps = 10.5",
+        "control = \"arc-length\"\nlongest_stpe = 2.0",
+        "control = \"arc-length\"\nlongest_step_mm = 2.0",
+    ];
+    let slips: Vec<(&str, String)> = slips.iter().map(|lines| ("[output]", with(lines))).collect();
+    let slips: Vec<(&str, &str)> = slips.iter().map(|(right, wrong)| (*right, wrong.as_str())).collect();
+    pin("continuation", &errors(&slips));
+}
+
+#[test]
+fn continuation_that_is_right() {
+    for lines in ["", "control = \"load\"", "control = \"arc-length\"\nlongest_step = 1\nshortest_step = 1"] {
+        let text = RIGHT.replace("[output]", &format!("[continuation]\n{lines}\n[output]"));
+        let scene = parse(&text, "scene.toml").unwrap_or_else(|error| panic!("{}", error.plain()));
+        assert_eq!(scene.continuation.is_some(), lines.contains("arc-length"), "{lines}");
+    }
+}
+
+#[test]
 fn exclusive_keys() {
     pin("exclusive_keys", &errors(&[("threshold = 0.019", "threshold = 0.019\nlength_limit_mm = 1.0")]));
 }

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use foldline::journal::format::CHUNK_BYTES_LIMIT;
 use foldline::journal::{Completeness, Log};
 use foldline::pipeline::Record;
 use foldline::state::State;
@@ -11,7 +12,7 @@ use crate::support::{assert_prefix, assert_prefix_by_its_last_state, finished_lo
 use crate::synthetic;
 
 /// What reading may take beyond the file itself.
-const MEMORY_LIMIT: isize = 64 << 20;
+const MEMORY_LIMIT: isize = 2 * CHUNK_BYTES_LIMIT as isize;
 
 /// A small generator of numbers that a seed decides (splitmix64).
 pub struct Random(u64);
@@ -145,17 +146,17 @@ fn flipped_bits_in_a_large_log() {
 /// The largest stage that a chunk holds: half a million control points.
 #[test]
 fn memory_for_the_largest_stage() {
-    let run = synthetic::run(750, 1);
+    let run = synthetic::run(900, 1);
     let bytes = finished_log(&run);
     let mut tally = Tally::default();
-    assert!(bytes.len() > 30 << 20);
+    assert!(bytes.len() > 43 << 20);
     read_damaged(bytes, &run, &mut tally);
     check(&tally);
     let (mut writer, _) = crate::support::writer(foldline::scene::SyncPolicy::AtEnd);
-    let (state, record) = synthetic::run(800, 1).remove(0);
+    let (state, record) = synthetic::run(960, 1).remove(0);
     let error = writer.commit(&state, &record).unwrap_err();
     let cause = std::error::Error::source(&error).unwrap().to_string();
-    assert!(cause.ends_with("bytes, and a chunk of a log holds 33554432: use a coarser mesh"), "{cause}");
+    assert!(cause.ends_with("bytes, and a chunk of a log holds 50331648: use a coarser mesh"), "{cause}");
 }
 
 /// Records swapped, repeated and left out, each whole in itself.

@@ -4,6 +4,7 @@ mod bisect;
 mod changed;
 mod cost;
 mod cuts;
+mod paths;
 mod program;
 mod reading;
 mod replay;

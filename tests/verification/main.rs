@@ -3,8 +3,13 @@
 mod assembly;
 mod baseline;
 mod benchmarks;
+mod buckling;
 mod extreme;
 mod house;
+mod path;
 mod quadrature;
 mod refinement;
+mod roofs;
+mod soft_mode;
+mod spring_path;
 mod support;
