@@ -36,6 +36,17 @@ pub struct State {
     pub control: StepControl,
     /// How the path of equilibria goes on, where it is followed by arc length; from its first step on.
     pub path: Option<PathMemory>,
+    /// The equilibrium that the load was moved on from, for the next predictor; `None` where the shell jumped since.
+    pub previous: Option<Previous>,
+}
+
+/// An equilibrium before the present one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Previous {
+    /// Displacement of every control point, mm, in the order of the present mesh.
+    pub displacement: Vec<[f64; 3]>,
+    /// The scene's parameter there.
+    pub parameter: f64,
 }
 
 /// Memory of continuation by arc length.
@@ -128,6 +139,11 @@ impl State {
         }
         if let Some(path) = &self.path {
             path.feed(&mut feed);
+        }
+        if let Some(previous) = &self.previous {
+            feed.bytes(b"previous");
+            previous.displacement.iter().flatten().for_each(|value| feed.number(*value));
+            feed.number(previous.parameter);
         }
         feed.finish()
     }

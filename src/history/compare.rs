@@ -45,6 +45,10 @@ pub fn compare(a: &State, b: &State) -> Comparison {
     .collect();
     differences.extend(displacement(a, b));
     differences.extend(control_points(&a.mesh, &b.mesh));
+    if let (Some(p), Some(q)) = (&a.previous, &b.previous) {
+        differences.extend(worst("displacement before", &a.mesh, &p.displacement, &q.displacement));
+        differences.extend(number("rotation before", p.parameter, q.parameter));
+    }
     if let (Some(p), Some(q)) = (&a.path, &b.path) {
         differences.extend(worst("direction of the path", &a.mesh, &p.heading, &q.heading));
         differences.extend(number("length of the path", p.travelled_mm, q.travelled_mm));
@@ -88,6 +92,9 @@ fn structure(a: &State, b: &State) -> Option<String> {
     if a.path.is_some() != b.path.is_some() {
         let what = |state: &State| if state.path.is_some() { "by arc length" } else { "by load" };
         return Some(format!("a step {} against one {}", what(a), what(b)));
+    }
+    if a.previous.is_some() != b.previous.is_some() {
+        return Some("only one of them remembers the equilibrium before".to_string());
     }
     if a.control != b.control {
         return Some(format!("step control {:?} against {:?}", a.control, b.control));

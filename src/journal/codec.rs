@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 use super::format::CHUNK_BYTES_LIMIT;
 use super::soundness::{Flaw, check_mesh, check_state};
 use crate::scene::Stage;
-use crate::state::{CriticalAhead, Hash, Mesh, PathMemory, Rejection, State, StepControl};
+use crate::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Rejection, State, StepControl};
 
 /// The newest version that is written, in front of every state and mesh. A state is written in the oldest version that
 /// holds it.
-pub const CODEC_VERSION: u8 = 3;
+pub const CODEC_VERSION: u8 = 4;
 
 /// Why bytes are not a state or a mesh that can be used.
 #[derive(Debug, thiserror::Error)]
@@ -132,6 +132,14 @@ struct StateV3<'a> {
     base: StateV1<'a>,
     turns: Cow<'a, [[f64; 3]]>,
     path: Option<PathV3<'a>>,
+}
+
+/// Version 4: the equilibrium before. Its displacements stand behind the state's own, so that stages that change neither
+/// write neither again.
+#[derive(Serialize, Deserialize)]
+struct StateV4<'a> {
+    after: StateV3<'a>,
+    previous_parameter: f64,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -261,7 +269,11 @@ pub struct EncodedState {
 /// Where the state is unsound or larger than a log can hold.
 pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
     check_state(state)?;
-    let displacement = encode(1, &DisplacementV1(Cow::from(&state.displacement)))?;
+    let displacements = match &state.previous {
+        Some(previous) => Cow::from([&state.displacement[..], &previous.displacement].concat()),
+        None => Cow::from(&state.displacement),
+    };
+    let displacement = encode(1, &DisplacementV1(displacements))?;
     let displacement_hash = blake3::hash(&displacement);
     let base = StateV1 {
         mesh: *state.mesh.hash().as_bytes(),
@@ -291,7 +303,10 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
         }),
     };
     let turns = Cow::from(&state.turns);
-    let state = if state.path.is_some() || state.stage == Some(Stage::SwitchBranch) {
+    let state = if let Some(previous) = &state.previous {
+        let after = StateV3 { base, turns, path: state.path.as_ref().map(PathV3::of) };
+        encode(4, &StateV4 { after, previous_parameter: previous.parameter })?
+    } else if state.path.is_some() || state.stage == Some(Stage::SwitchBranch) {
         encode(3, &StateV3 { base, turns, path: state.path.as_ref().map(PathV3::of) })?
     } else if !turns.is_empty() {
         encode(2, &StateV2 { base, turns })?
@@ -313,16 +328,17 @@ pub fn decode_state<'a>(
     mesh_hash: Hash,
     expected: Hash,
 ) -> Result<State, CodecError> {
-    let (stored, turns, path) = match bytes.first() {
-        Some(3) => {
-            let StateV3 { base, turns, path } = decode(bytes)?;
-            (base, turns.into_owned(), path.map(PathV3::into_memory))
+    let (StateV3 { base: stored, turns, path }, previous_parameter) = match bytes.first() {
+        Some(4) => {
+            let StateV4 { after, previous_parameter } = decode(bytes)?;
+            (after, Some(previous_parameter))
         }
+        Some(3) => (decode::<StateV3>(bytes)?, None),
         Some(2) => {
             let StateV2 { base, turns } = decode(bytes)?;
-            (base, turns.into_owned(), None)
+            (StateV3 { base, turns, path: None }, None)
         }
-        _ => (decode::<StateV1>(bytes)?, Vec::new(), None),
+        _ => (StateV3 { base: decode(bytes)?, turns: Cow::default(), path: None }, None),
     };
     let found = Hash::from_bytes(stored.mesh);
     if found != mesh_hash {
@@ -330,9 +346,14 @@ pub fn decode_state<'a>(
     }
     let hash = Hash::from_bytes(stored.displacement);
     let DisplacementV1(displacement) = decode(displacement(hash).ok_or(CodecError::NoDisplacement { hash })?)?;
+    let mut displacement = displacement.into_owned();
+    let previous = previous_parameter.map(|parameter| {
+        let own = displacement.len() / 2;
+        Previous { displacement: displacement.split_off(own), parameter }
+    });
     let state = State {
         mesh,
-        displacement: displacement.into_owned(),
+        displacement,
         marked: stored.marked.map(Cow::into_owned),
         refined: stored.refined.map(|mesh| Arc::new(mesh.into_mesh())),
         step: stored.step,
@@ -345,7 +366,7 @@ pub fn decode_state<'a>(
             StageV1::SwitchBranch => Stage::SwitchBranch,
         }),
         parameter: stored.parameter,
-        turns,
+        turns: turns.into_owned(),
         moment_n_mm: stored.moment_n_mm,
         strain_energy_n_mm: stored.strain_energy_n_mm,
         negative_pivots: stored.negative_pivots,
@@ -359,7 +380,8 @@ pub fn decode_state<'a>(
                 RejectionV1::SharpTurn => Rejection::SharpTurn,
             }),
         },
-        path,
+        path: path.map(PathV3::into_memory),
+        previous,
     };
     let found = state.hash();
     if found != expected {

@@ -169,6 +169,13 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
     finite("moment", [state.moment_n_mm])?;
     finite("turn", state.turns.iter().flatten().copied())?;
     finite("strain energy", [state.strain_energy_n_mm])?;
+    if let Some(previous) = &state.previous {
+        if previous.displacement.len() != expected {
+            return Err(Flaw::Length { what: "displacements before", expected, found: previous.displacement.len() });
+        }
+        finite("displacement component before", previous.displacement.iter().flatten().copied())?;
+        finite("rotation before", [previous.parameter])?;
+    }
     if let Some(path) = &state.path {
         if path.heading.len() != expected {
             return Err(Flaw::Length { what: "rates along the path", expected, found: path.heading.len() });

@@ -5,7 +5,7 @@ use crate::pipeline::stages::{out_of_order, reject, settle};
 use crate::pipeline::step_control::{Attempt, is_jump, is_jump_on_refinement, next_attempt};
 use crate::pipeline::{Outcome, Parameter, Report, StageError, Stages};
 use crate::scene::Stage;
-use crate::state::State;
+use crate::state::{Previous, State};
 
 /// Largest motion off an unstable equilibrium along its soft mode, in thicknesses: beyond rounding by far, and far less
 /// than what bending makes of it.
@@ -31,7 +31,11 @@ impl Stages {
             observer(iterate);
             !attempt.may_jump && iterate.negative_pivots as u64 > state.negative_pivots
         };
-        let solved = Equilibrium::new(scene, work).advance(Standing::of(state), attempt.target_deg, &mut watch);
+        let solved = Equilibrium::new(scene, work).after(state.previous.as_ref()).advance(
+            Standing::of(state),
+            attempt.target_deg,
+            &mut watch,
+        );
         let mut report = self.report(state, step);
         report.attempted_parameter = attempt.target_deg;
         match solved {
@@ -48,6 +52,10 @@ impl Stages {
                 next.parameter = attempt.target_deg;
                 next.control = attempt.control_after_success(&state.control);
                 next.path = None;
+                // The path bends on from an equilibrium before only where it is one path, and where displacements say all.
+                let onwards = !jumped && state.negative_pivots == 0 && next.turns.is_empty();
+                next.previous =
+                    onwards.then(|| Previous { displacement: state.displacement.clone(), parameter: state.parameter });
                 report.record(&next, &solved);
                 report.probes = self.read_probes(&next)?;
                 report.jumped = jumped;
@@ -103,7 +111,7 @@ impl Stages {
         let solved = Equilibrium::new(scene, work).relax(Standing::of(state), &mut watch);
         let solved = solved.map_err(|cause| self.not_re_equilibrated(state, cause))?;
         let released = state.strain_energy_n_mm + solved.work - solved.energy;
-        let next = settle(state, &solved);
+        let mut next = settle(state, &solved);
         let mut report = self.report(&next, step);
         report.record(&next, &solved);
         report.probes = self.read_probes(&next)?;
@@ -111,6 +119,7 @@ impl Stages {
         report.jumped = unstable_on_the_way && is_jump_on_refinement(released, state.strain_energy_n_mm);
         if report.jumped {
             report.energy_released_n_mm = released;
+            next.previous = None;
         }
         Ok((next, report))
     }
@@ -157,7 +166,7 @@ impl Stages {
             effort.iterations += left.effort.iterations;
             effort.factorizations += left.effort.factorizations;
             work_done += left.work;
-            next = settle(&next, &left);
+            next = State { previous: None, ..settle(&next, &left) };
             if next.negative_pivots == 0 {
                 let released = state.strain_energy_n_mm + work_done - next.strain_energy_n_mm;
                 if let Some(path) = &state.path {

@@ -233,6 +233,7 @@ mod tests {
             strain_energy_n_mm: 0.0,
             negative_pivots,
             control: StepControl::default(),
+            previous: None,
             path: None,
         }
     }

@@ -170,6 +170,7 @@ impl Stages {
         next.parameter = point.parameter;
         next.control = StepControl::default();
         next.path = Some(path);
+        next.previous = None;
         let mut report = self.report(&next, next.step);
         report.attempted_parameter = point.parameter;
         report.record(&next, &point.solved);

@@ -9,7 +9,7 @@ use crate::pipeline::probes::read_probes;
 use crate::pipeline::{Outcome, Parameter, Reading, Report, StageError};
 use crate::scene::{Scene, Stage};
 use crate::spline::Mesh;
-use crate::state::{PathMemory, State, StepControl};
+use crate::state::{PathMemory, Previous, State, StepControl};
 
 /// Runs the stages of one scene; keeps buffers of the mesh in hand, which a new one would fill with the same bits.
 #[derive(Debug)]
@@ -54,6 +54,7 @@ impl Stages {
             negative_pivots: 0,
             control: StepControl::default(),
             path: None,
+            previous: None,
         })
     }
 
@@ -164,8 +165,12 @@ impl Stages {
             ..path.clone()
         };
         let path = state.path.as_ref().map(carried);
-        let next =
-            State { mesh: finer.clone(), refined: None, displacement, strain_energy_n_mm, path, ..state.clone() };
+        let previous = state.previous.as_ref().map(|previous| Previous {
+            displacement: project_displacements(&state.mesh, finer, &previous.displacement),
+            ..*previous
+        });
+        let mesh = finer.clone();
+        let next = State { mesh, refined: None, displacement, strain_energy_n_mm, path, previous, ..state.clone() };
         let report = self.report(&next, next.step);
         Ok((next, report))
     }

@@ -176,6 +176,7 @@ mod tests {
             negative_pivots: 0,
             control,
             path: None,
+            previous: None,
         }
     }
 

@@ -234,5 +234,6 @@ pub fn state(record: &Record) -> State {
         negative_pivots: record.report.negative_pivots,
         control: StepControl::default(),
         path: None,
+        previous: None,
     }
 }

@@ -43,6 +43,7 @@ pub fn start(elements: usize) -> State {
         negative_pivots: 0,
         control: StepControl::default(),
         path: None,
+        previous: None,
     }
 }
 

@@ -8,7 +8,7 @@ use foldline::journal::{
     JournalWriter, Log, check_state, decode_mesh, decode_state, encode_mesh, encode_state, message, verify_log,
 };
 use foldline::scene::{Stage, SyncPolicy};
-use foldline::state::{CriticalAhead, Hash, Mesh, PathMemory, Rejection, State, StepControl};
+use foldline::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Rejection, State, StepControl};
 use proptest::prelude::*;
 
 use crate::synthetic;
@@ -90,6 +90,10 @@ fn state() -> impl Strategy<Value = State> {
                         critical_ahead: (pivots % 4 == 0)
                             .then_some(CriticalAhead { within_mm: moment, rate_beyond: rotation }),
                         at_bifurcation: step % 3 == 0,
+                    }),
+                    previous: (pivots % 3 == 0).then(|| Previous {
+                        displacement: vec![[moment, rotation, -1.5]; mesh.control_points.len()],
+                        parameter: energy,
                     }),
                 },
             )
