@@ -14,6 +14,11 @@ pub(crate) fn rounded(value: f64) -> String {
     }
 }
 
+/// A component with two digits behind the point that does not read "-0.00".
+pub(crate) fn unsigned_zero(value: f64) -> f64 {
+    if value.abs() < 0.005 { 0.0 } else { value }
+}
+
 /// "1 stage", "2 stages".
 pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })

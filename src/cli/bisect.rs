@@ -13,7 +13,7 @@ use crate::history::{
     Comparison, Condition, SnapReport, find_parting, find_snap, first_loss_of_stability, shown_value,
 };
 use crate::pipeline::Parameter;
-use crate::units::count;
+use crate::units::{count, unsigned_zero};
 
 /// Find where two logs part, where a log jumps (--snap), or where a condition first holds (--when)
 #[derive(Args, Debug)]
@@ -143,7 +143,7 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
     let [before, after] = report.moment_n_mm;
     let [stable, most, end] = report.negative_pivots;
     let [x, y, z] = report.mode_at;
-    let [u, v, w] = report.mode.shape[report.mode.largest_at];
+    let [u, v, w] = report.mode.shape[report.mode.largest_at].map(unsigned_zero);
     let [n1, n2] = report.stable.mesh.element_counts();
     let (name, degree) = match parameter {
         Parameter::Rotation => ("critical rotation", "°"),

@@ -161,6 +161,12 @@ impl<'a> Continuation<'a> {
         self.tangent_at(at, sense).map(|(tangent, _)| tangent.direction)
     }
 
+    /// Straight distance between two displacements, mm.
+    pub fn distance(&self, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
+        let moved: Vec<[f64; 3]> = to.iter().zip(from).map(|(u, v)| sub(*u, *v)).collect();
+        self.metric.length(&moved)
+    }
+
     /// Tangent at an equilibrium, and its free unknowns.
     fn tangent_at(&mut self, at: Standing, sense: Sense) -> Result<(Tangent, Vec<f64>), SolveError> {
         let mut equations = Equations::factored_at(self.work, at)?;

@@ -5,14 +5,30 @@ use crate::pipeline::stages::{out_of_order, reject, settle};
 use crate::pipeline::step_control::{Attempt, is_jump, is_jump_on_refinement, next_attempt};
 use crate::pipeline::{Outcome, Parameter, Report, StageError, Stages};
 use crate::scene::Stage;
+use crate::shell::{norm, sub};
 use crate::state::{Previous, State};
 
 /// Largest motion off an unstable equilibrium along its soft mode, in thicknesses: beyond rounding by far, and far less
 /// than what bending makes of it.
 const SWITCHING_AMPLITUDE: f64 = 0.1;
+/// A motion this many times as far as the path's before it is no step along that path. Near a limit point the rate grows
+/// without bound, but a step that ends stable has not come to it; next to bifurcations of tape springs the ratio was 7 and
+/// more.
+const LEFT: f64 = 4.0;
 /// Modes that are left one after the other. Each descent ends in a minimum of the energy but where a symmetry holds it on a
 /// ridge; the tape spring in equal-sense bending has two such modes at once.
 const MOST_MODES: usize = 8;
+
+/// Whether the shell moved much farther than it did before for as much load: it has left its path for another one, though
+/// next to a bifurcation that takes little energy. Known only where a jump was being located, by the equilibrium before.
+fn leaves_path(state: &State, to: f64, solved: &Solved) -> bool {
+    let (Some(_), Some(previous)) = (state.control.jump_seen_at_deg, &state.previous) else { return false };
+    let length = |from: &[[f64; 3]], to: &[[f64; 3]]| {
+        from.iter().zip(to).map(|(u, v)| norm(sub(*v, *u)).powi(2)).sum::<f64>().sqrt()
+    };
+    let rate = length(&previous.displacement, &state.displacement) / (state.parameter - previous.parameter);
+    length(&state.displacement, &solved.displacement) > LEFT * rate * (to - state.parameter)
+}
 
 impl Stages {
     /// Moves the load on by one increment. Where that fails or jumps too coarsely, the state stays and only its step
@@ -27,9 +43,12 @@ impl Stages {
         let (scene, work) = self.workspace(&state.mesh, step, Stage::Solve)?;
         // A run that stands on an unstable branch (and says so) follows it; what ends an attempt is a further loss of
         // stability.
+        let mut unstable_on_the_way = false;
         let mut watch = |iterate: &Iterate| {
             observer(iterate);
-            !attempt.may_jump && iterate.negative_pivots as u64 > state.negative_pivots
+            let unstable = iterate.negative_pivots as u64 > state.negative_pivots;
+            unstable_on_the_way |= unstable;
+            !attempt.may_jump && unstable
         };
         let solved = Equilibrium::new(scene, work).after(state.previous.as_ref()).advance(
             Standing::of(state),
@@ -41,7 +60,8 @@ impl Stages {
         match solved {
             Ok(solved) => {
                 let released = attempt.energy_released(state, &solved);
-                let jumped = is_jump(released, state.strain_energy_n_mm, solved.energy);
+                let left = unstable_on_the_way && leaves_path(state, attempt.target_deg, &solved);
+                let jumped = left || is_jump(released, state.strain_energy_n_mm, solved.energy);
                 if jumped && !attempt.may_jump {
                     report.record_effort(solved.effort);
                     let control = attempt.control_after_jump(&state.control);
@@ -170,7 +190,7 @@ impl Stages {
             if next.negative_pivots == 0 {
                 let released = state.strain_energy_n_mm + work_done - next.strain_energy_n_mm;
                 if let Some(path) = &state.path {
-                    next.path = Some(self.path_on_branch(&next, path).map_err(|cause| failed(self, cause))?);
+                    next.path = Some(self.path_on_branch(state, &next, path).map_err(|cause| failed(self, cause))?);
                 }
                 let mut report = self.report(&next, next.step);
                 report.record(&next, &Solved { effort, work: work_done, ..left });

@@ -207,15 +207,26 @@ impl Stages {
         Ok((next, report))
     }
 
-    /// Memory on the branch that was switched to: onwards with the parameter as before.
-    pub(super) fn path_on_branch(&mut self, state: &State, path: &PathMemory) -> Result<PathMemory, SolveError> {
+    /// Memory on the branch that was switched to from `before`: onwards with the parameter as before. What was a long step
+    /// before may be nothing here (a column that bends moves much farther than one that is compressed), so that the way from
+    /// one branch to the other becomes the unit where it is longer.
+    pub(super) fn path_on_branch(
+        &mut self,
+        before: &State,
+        state: &State,
+        path: &PathMemory,
+    ) -> Result<PathMemory, SolveError> {
         let (scene, work) = match self.work.as_mut() {
             Some(work) => (&self.scene, work),
             None => return Ok(path.clone()),
         };
         let sense = Sense::Parameter { grows: path.parameter_rate > 0.0 };
-        let heading = Continuation::new(scene, work).heading_at(Standing::of(state), sense)?;
+        let mut continuation = Continuation::new(scene, work);
+        let heading = continuation.heading_at(Standing::of(state), sense)?;
+        let moved = continuation.distance(&before.displacement, &state.displacement);
         Ok(PathMemory {
+            first_mm: path.first_mm.max(moved),
+            next_mm: path.next_mm.max(moved),
             heading: heading.motion,
             parameter_rate: heading.parameter,
             critical_ahead: None,

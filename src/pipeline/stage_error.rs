@@ -80,7 +80,7 @@ pub enum StageError {
     /// The path is longer than the scene allows.
     #[error(
         "step {step}: the path has not reached {target} after continuation.most_steps = {most} load steps; it stands at \
-         {reached}; raise most_steps and go on with `foldline run SCENE --resume`"
+         {reached}; raise most_steps, or longest_step for longer steps, and go on with `foldline run SCENE --resume`"
     )]
     PathTooLong {
         /// Load step.

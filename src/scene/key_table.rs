@@ -432,10 +432,10 @@ pub(super) static CONTROL: Key = Key {
     name: "control",
     unit: None,
     kind: Kind::Word(&[
-        choice("load", "each step moves the rotation or the load factor on by an increment"),
+        choice("load", "the usual way: each step moves the rotation or the load factor on by an increment"),
         choice(
             "arc-length",
-            "each step goes a length along the path, on which the rotation or the load factor may go back: past limit points, \
+            "for paths that turn: each step goes a length along the path, on which the rotation or the load factor may go back, past limit points, \
              through snap-through and snap-back, along unstable branches",
         ),
     ]),

@@ -15,7 +15,7 @@ mod wuest;
 
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use convergence::{ConvergenceError, ConvergenceRow, converge};
-pub use path::{PathPoint, Snap, equilibrium_path, snaps};
+pub use path::{Passed, PathPoint, Snap, equilibrium_path, snaps};
 pub use stress::{StressRow, StressSuite};
 pub use stress_fault::StressFault;
 pub use stress_run::StressEnd;

@@ -22,7 +22,20 @@ pub struct PathPoint {
     /// Value of the scene's first probe.
     pub probe: Option<f64>,
     /// What the path passed in this load step.
-    pub passed: Option<CriticalPoint>,
+    pub passed: Option<Passed>,
+}
+
+/// A critical point, with the first equilibrium behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passed {
+    /// What it is.
+    pub critical: CriticalPoint,
+    /// Parameter.
+    pub parameter: f64,
+    /// End moment of the whole section, N·mm.
+    pub moment_n_mm: f64,
+    /// Value of the scene's first probe.
+    pub probe: Option<f64>,
 }
 
 /// A jump from one equilibrium to another, with all that followed in the same load step: on the finer meshes that the
@@ -52,6 +65,13 @@ pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
         if same_step && (jumped_before || !report.jumped) {
             path.pop();
         }
+        let probe = report.probes.first().map(|reading| reading.value);
+        let passed = report.critical_point.map(|critical| Passed {
+            critical,
+            parameter: report.parameter,
+            moment_n_mm: report.moment_n_mm,
+            probe,
+        });
         path.push(PathPoint {
             step: report.step,
             parameter: report.parameter,
@@ -60,8 +80,8 @@ pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
             elements: report.elements,
             negative_pivots: report.negative_pivots,
             jumped: report.jumped || jumped_before,
-            probe: report.probes.first().map(|reading| reading.value),
-            passed: report.critical_point.or(passed_before),
+            probe,
+            passed: passed.or(passed_before),
         });
     }
     path

@@ -1,8 +1,8 @@
 //! The summary of a run: what it found, beside what theory says, and what it cost.
 
-use crate::pipeline::{CriticalPoint, Outcome, Parameter, Reading, Record};
+use crate::pipeline::{Outcome, Parameter, Reading, Record};
 use crate::scene::{Geometry, Scene, Stage};
-use crate::study::{PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
+use crate::study::{Passed, PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
 use crate::units::rounded;
 
 /// From this rotation on a fold is far from the ends, and its moment is compared as it stands (theory: the plateau is
@@ -32,8 +32,8 @@ pub struct Summary {
     pub balance: Option<EnergyBalance>,
     /// The jumps, in order.
     pub snaps: Vec<Snap>,
-    /// Limit points and bifurcations that the path passed, each with the point behind it, in order.
-    pub passed: Vec<(CriticalPoint, PathPoint)>,
+    /// Limit points and bifurcations that the path passed, in order.
+    pub passed: Vec<Passed>,
     /// Moment of the fold; `None` where the shell did not jump.
     pub fold: Option<FoldMean>,
     /// The mesh at the start and after every change.
@@ -134,7 +134,7 @@ impl Summary {
             balance: energy_balance(records),
             fold: fold_mean(&path, snaps.last()),
             snaps,
-            passed: path.iter().filter_map(|point| Some((point.passed?, *point))).collect(),
+            passed: path.iter().filter_map(|point| point.passed).collect(),
             meshes: mesh_changes(records),
             work: work(records),
             rejections: records.iter().filter(|record| record.report.outcome != Outcome::Done).count(),

@@ -153,7 +153,8 @@ impl Summary {
 
     /// Limit points and bifurcations.
     fn write_passed(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        for (critical, point) in &self.passed {
+        for point in &self.passed {
+            let critical = point.critical;
             let value = match (self.driven_by, point.probe, self.probes.first()) {
                 (Parameter::Rotation, ..) => format!("{:8.3}°  {:.3} N·mm", point.parameter, point.moment_n_mm),
                 (_, Some(value), Some(first)) => {

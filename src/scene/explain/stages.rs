@@ -35,6 +35,7 @@ pub(super) fn wrong_order(problem: &StageOrderProblem) -> Explanation {
         .help(format!("to solve on the mesh as it is: {}", list(&Stage::REFINING[..1])))
         .help(format!("to watch where it is too coarse: {}", list(&Stage::REFINING[..2])))
         .help(format!("to refine it: {}", list(&Stage::REFINING)))
+        .help("to leave unstable equilibria as well: \"switch-branch\" after \"solve\"".to_string())
 }
 
 pub(super) fn adapt_unused() -> Explanation {
