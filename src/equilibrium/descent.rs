@@ -3,8 +3,8 @@
 //! Backtracking on the energy (Nocedal & Wright, *Numerical Optimization*, 2nd ed., algorithm 3.1). Where the
 //! stiffness is not positive definite, the negative pivots of its L D Lᵀ factor are replaced by their magnitudes: that
 //! matrix differs from K by one of the rank of its negative part, costs no second factorization, and gives a descent
-//! direction that reverses Newton's where the curvature is negative (section 3.4 there, modified factorizations). The
-//! energy never rises by more than rounding over two steps.
+//! direction that reverses Newton's where the curvature is negative (section 3.4 there, modified factorizations). Of two
+//! points in a row one is, to rounding, as low as any before.
 //!
 //! With loads, what descends is strain energy less the work of the loads since the start, by the trapezoidal rule over
 //! the steps: exact for dead loads, and of third order in the step for those that turn with the shell, so that it needs

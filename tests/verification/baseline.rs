@@ -87,8 +87,8 @@ fn check_work(settled: &[&(State, Record)], until_deg: f64) {
     }
 }
 
-/// The solve that goes through the snap, run again: over two steps the energy never rises by more than rounding, it ends
-/// lower than it began by what the stage reports, and it takes no more factorizations than `most`.
+/// The solve that goes through the snap, run again: of two iterates in a row one is as low as any before, so that the energy
+/// descends; it ends lower than it began by what the stage reports, and takes no more factorizations than `most`.
 fn check_descent(scene: Scene, stages: &[(State, Record)], most: usize) {
     let snap = stages.iter().position(|(_, record)| record.report.jumped).unwrap();
     let report = &stages[snap].1.report;
@@ -96,8 +96,11 @@ fn check_descent(scene: Scene, stages: &[(State, Record)], most: usize) {
     let mut energies = Vec::new();
     let mut observer = |iterate: &foldline::equilibrium::Iterate| energies.push(parts * iterate.energy);
     Stages::new(scene).run(Stage::Solve, before, &mut observer).unwrap();
-    for window in energies.windows(3) {
-        assert!(window[2] <= window[0] * (1.0 + 1e-11), "{} N·mm after {}", window[2], window[0]);
+    let (mut lowest, mut above) = (f64::INFINITY, 0);
+    for energy in &energies {
+        above = if *energy <= lowest * (1.0 + 1e-11) { 0 } else { above + 1 };
+        lowest = lowest.min(*energy);
+        assert!(above < 2, "{energies:?}");
     }
     let released = before.strain_energy_n_mm + report.work_n_mm - energies.last().unwrap();
     assert!((released - report.energy_released_n_mm).abs() < 1e-9 * released, "{released}");
