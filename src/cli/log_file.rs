@@ -9,6 +9,10 @@ use crate::journal::{Completeness, Log, Manifest, ReadError};
 use crate::pipeline::Record;
 use crate::scene::Scene;
 
+/// Defaults as they once were, for scenes in logs of that time that leave them out. Laid over any other scene they would
+/// change its hash, which the log holds.
+const DEFAULTS_BEFORE: [&str; 1] = ["mesh.quadrature=full"];
+
 /// A log as far as it can be trusted, with the scene that its last stretch was run with.
 pub(super) struct ReadLog {
     pub(super) log: Log,
@@ -88,8 +92,11 @@ pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
 pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
     let expected = log.entries()[index].record.commit.scene_hash;
     for manifest in log.manifests().iter().rev().filter(|manifest| manifest.first_ordinal <= index as u64) {
-        if scene_in(manifest, path, &[]).is_ok_and(|scene| scene.hash() == expected) {
-            return scene_in(manifest, path, settings);
+        for defaults in [&[][..], &DEFAULTS_BEFORE] {
+            let as_then: Vec<String> = defaults.iter().map(ToString::to_string).collect();
+            if scene_in(manifest, path, &as_then).is_ok_and(|scene| scene.hash() == expected) {
+                return scene_in(manifest, path, &[&as_then[..], settings].concat());
+            }
         }
     }
     Err(Failure::SceneLost { log: path.to_path_buf(), ordinal: index })

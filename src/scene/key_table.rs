@@ -202,7 +202,7 @@ pub(super) static DEGREE: Key = Key {
     }),
     presence: Default("3"),
     reach: Everything,
-    meaning: "Polynomial degree along the length and along the arc; degree 2 locks on coarse meshes unless quadrature is reduced.",
+    meaning: "Polynomial degree along the length and along the arc; degree 2 locks on coarse meshes with full quadrature.",
     example: "[3, 3]",
     aliases: &["p", "order", "degrees"],
 };
@@ -238,10 +238,10 @@ pub(super) static QUADRATURE: Key = Key {
             "degree - 1 points each way (at least 2) where the spline is smooth, degree next to edges and repeated knots",
         ),
     ]),
-    presence: Default("\"full\""),
+    presence: Default("\"patch\""),
     reach: Everything,
     meaning: "Integration rule on an element.",
-    example: "\"full\"",
+    example: "\"patch\"",
     aliases: &["integration", "rule"],
 };
 
