@@ -30,7 +30,7 @@ pub struct State {
     pub moment_n_mm: f64,
     /// Strain energy of the whole shell, N·mm.
     pub strain_energy_n_mm: f64,
-    /// Negative pivots of the tangent stiffness at the last equilibrium; 0 where it is stable.
+    /// Negative pivots of the (symmetric part of the) tangent stiffness at the last equilibrium; 0 where it is stable.
     pub negative_pivots: u64,
     /// What the next solve will try.
     pub control: StepControl,
@@ -53,11 +53,11 @@ pub struct Previous {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathMemory {
     /// Unit tangent of the path: rates of the control points' displacements with its length, in the order of the mesh. A
-    /// motion is as long as its root mean square over the parameter domain.
+    /// motion is about as long as its root mean square over the parameter domain.
     pub heading: Vec<[f64; 3]>,
     /// Rate of the parameter with the length, per mm.
     pub parameter_rate: f64,
-    /// Length of the first step, mm: the unit of the scene's limits.
+    /// Length of the first step, or of the way to a branch that was switched to, mm: the unit of the scene's limits.
     pub first_mm: f64,
     /// Length of the next step, mm.
     pub next_mm: f64,
@@ -65,7 +65,7 @@ pub struct PathMemory {
     pub travelled_mm: f64,
     /// A critical point ahead that is being located.
     pub critical_ahead: Option<CriticalAhead>,
-    /// Whether the last step passed a bifurcation.
+    /// Whether the last step passed a bifurcation at which the branch became less stable.
     pub at_bifurcation: bool,
 }
 

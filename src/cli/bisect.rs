@@ -85,6 +85,7 @@ impl Arguments {
                 format!("{} {}", x.cpu, x.cpu_features.join(" ")),
                 format!("{} {}", y.cpu, y.cpu_features.join(" ")),
             );
+            differs("kernel", x.kernel.clone(), y.kernel.clone());
             differs("program", x.program_version.clone(), y.program_version.clone());
             differs("threads", x.threads.to_string(), y.threads.to_string());
         }

@@ -96,7 +96,7 @@ impl<'a> Continuation<'a> {
         let (tangent, free) = self.tangent_at(from, Sense::Parameter { grows: to > from.parameter })?;
         let distance = (to - from.parameter) / tangent.direction.parameter;
         let start = (along(&free, &tangent.free, distance), to);
-        self.solve(from, &tangent.direction, start, &Constraint::Parameter(to), observer)
+        self.solve(from, &tangent.direction, start, &Constraint::Parameter(to), None, observer)
     }
 
     /// A step of this length, in the sense of `heading`.
@@ -113,7 +113,7 @@ impl<'a> Continuation<'a> {
         let (Tangent { direction, free: rates }, free) = self.tangent_at(from, Sense::Along(heading))?;
         let start = (along(&free, &rates, distance), from.parameter + distance * direction.parameter);
         let plane = Constraint::Plane { normal: &direction.motion, from: from.displacement, distance };
-        self.solve(from, &direction, start, &plane, observer)
+        self.solve(from, &direction, start, &plane, None, observer)
     }
 
     /// The point with this parameter between `from` and a point that was reached from there.
@@ -135,10 +135,10 @@ impl<'a> Continuation<'a> {
         let displacement = between(from.displacement, &beyond.solved.displacement);
         let turns = between(from.turns, &beyond.solved.turns);
         let free = self.work.discretization.unknowns.of_displacement(&displacement, &turns, parameter);
-        self.solve(from, &tangent.direction, (free, parameter), &Constraint::Parameter(parameter), observer)
+        self.solve(from, &tangent.direction, (free, parameter), &Constraint::Parameter(parameter), None, observer)
     }
 
-    /// The point of the path near a displacement that may be out of balance, and near its parameter.
+    /// The point of the path near a displacement that may be out of balance, and near its parameter, or (`held`) with it.
     ///
     /// # Errors
     /// Where none is found in a few iterations.
@@ -146,11 +146,13 @@ impl<'a> Continuation<'a> {
         &mut self,
         from: Standing,
         heading: &Direction,
+        held: bool,
         observer: Observer,
     ) -> Result<ContinuedPoint, SolveError> {
+        let constraint = if held { Constraint::Parameter(from.parameter) } else { Constraint::Nearest };
         let unknowns = &self.work.discretization.unknowns;
         let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        self.solve(from, heading, (free, from.parameter), &Constraint::Nearest, observer)
+        self.solve(from, heading, (free, from.parameter), &constraint, Some(&heading.motion), observer)
     }
 
     /// Unit tangent of the path at an equilibrium.
@@ -175,12 +177,14 @@ impl<'a> Continuation<'a> {
         Ok((tangent, point.free))
     }
 
+    /// `onwards` tells which way the path goes on; otherwise the chord from `from` does.
     fn solve(
         &mut self,
         from: Standing,
         heading: &Direction,
         (mut free, mut parameter): (Vec<f64>, f64),
         constraint: &Constraint,
+        onwards: Option<&[[f64; 3]]>,
         observer: Observer,
     ) -> Result<ContinuedPoint, SolveError> {
         let before = Before::at(self.work, from);
@@ -208,10 +212,7 @@ impl<'a> Continuation<'a> {
             free = along(&along(&point.free, &step, 1.0), &rates, change);
         };
         let chord: Vec<[f64; 3]> = point.displacement.iter().zip(from.displacement).map(|(u, v)| sub(*u, *v)).collect();
-        let sense = match constraint {
-            Constraint::Nearest => &heading.motion,
-            Constraint::Parameter(_) | Constraint::Plane { .. } => &chord,
-        };
+        let sense = onwards.unwrap_or(&chord);
         let end = tangent(&mut equations, &point, metric, Sense::Along(sense))?.direction;
         let (last, ended) = (point.iterate, point.ended(&equations, effort));
         Ok(ContinuedPoint {

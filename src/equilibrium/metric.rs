@@ -1,10 +1,12 @@
 //! Lengths of motions of a shell.
 //!
-//! Root mean squares over the parameter domain with the integrals of the basis functions as weights,
+//! About the root mean square over the parameter domain: a sum over control points with the integrals of the B-splines as
+//! weights (lumped, and without the weights of a NURBS),
 //!
 //! |u|² = Σ_a m_a |u_a|²,  m_a = ∫N_a dξdη  (Σ m_a = 1),
 //!
-//! so that a length means the same before and after knots are inserted, on a whole shell and on its quarter.
+//! so that a length means nearly the same before and after knots are inserted (it falls towards the integral), on a whole
+//! shell and on its quarter.
 
 use crate::shell::dot;
 use crate::spline::Mesh;

@@ -4,7 +4,8 @@
 //! stiffness against a motion whose root mean square is 1 mm, so that it hardly depends on the mesh. It is found below
 //! all others, whatever the number of negative pivots, by Sylvester's law of inertia: K − σ M has as many negative pivots
 //! as there are eigenvalues below σ (spectrum slicing, Parlett, *The Symmetric Eigenvalue Problem*, section 3.3). Inverse
-//! iteration (Golub & Van Loan, *Matrix Computations*, 4th ed., section 8.2.2) from a shift close below then gives the mode.
+//! iteration (Golub & Van Loan, *Matrix Computations*, 4th ed., section 8.2.2) from a shift below it (0 where the state is
+//! stable) then gives the mode. Of a part of a symmetric shell it is the lowest of the modes that share its symmetry.
 
 use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::descent::product;
@@ -19,7 +20,7 @@ const MAX_ITERATIONS: usize = 200;
 const SETTLED: f64 = 1e-10;
 /// The same where only its magnitude is asked for.
 const ROUGH: f64 = 0.1;
-/// The shift is at most this much below the lowest eigenvalue.
+/// The shift is at most this many times the lowest eigenvalue, where that is negative.
 const FARTHEST: f64 = 4.0;
 /// Trials of shifts at most: from the smallest magnitude of a number to the largest.
 const MAX_SHIFTS: usize = 600;
@@ -52,8 +53,8 @@ pub fn soft_mode(work: &mut Workspace, at: Standing) -> Result<SoftMode, SolveEr
     let free = work.discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
     let mut slicing = Slicing { mass: mass(work, &free, at.parameter), stiffness: work.values.clone(), work, tried: 0 };
     // A start that no symmetry is orthogonal to, the same in every run.
-    let mut start: Vec<f64> = (0..free.len()).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
-    slicing.shift_below(&mut start)?;
+    let start: Vec<f64> = (0..free.len()).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
+    slicing.shift_below(&start)?;
     let (vector, eigenvalue, iterations) = slicing.iterate(start, SETTLED);
     let factorizations = slicing.tried;
     let placement = work.discretization.unknowns.place(&free, at.parameter);
@@ -101,14 +102,13 @@ impl Slicing<'_> {
         solver.factorize(values).map(|negative| negative.count).map_err(|cause| SolveError::Factor { cause, effort })
     }
 
-    /// Puts the shift below the lowest eigenvalue and not far from it, and leaves its factor in the solver. `start` becomes
-    /// the mode whose eigenvalue is smallest in magnitude, roughly.
-    fn shift_below(&mut self, start: &mut Vec<f64>) -> Result<(), SolveError> {
+    /// Puts the shift below the lowest eigenvalue and not far from it, and leaves its factor in the solver.
+    fn shift_below(&mut self, start: &[f64]) -> Result<(), SolveError> {
         if self.count_below(0.0)? == 0 {
             return Ok(());
         }
-        let (vector, nearest, _) = self.iterate(std::mem::take(start), ROUGH);
-        *start = vector;
+        // A scale to begin with. The vector itself will not do to go on from: it has little of the lowest mode.
+        let (_, nearest, _) = self.iterate(start.to_vec(), ROUGH);
         let (mut above, mut below) = (0.0, -2.0 * nearest.abs());
         while self.count_below(below)? > 0 && self.tried < MAX_SHIFTS {
             (above, below) = (below, 4.0 * below);

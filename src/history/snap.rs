@@ -134,11 +134,12 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
     let (after, work_done, most_negative) = tries.through(&stable, bracket_deg[1])?;
     let critical = tries.what_is_passed(&stable, bracket_deg);
     let solves = tries.count;
-    let mode = soft_mode(&mut work, Standing::of(&stable)).map_err(|source| SnapError::Solve {
+    let mut mode = soft_mode(&mut work, Standing::of(&stable)).map_err(|source| SnapError::Solve {
         from: shown(stable.parameter),
         to: shown(stable.parameter),
         source: Box::new(source),
     })?;
+    mode.eigenvalue *= scene.symmetry.copies() as f64;
     let [x, y, z, w] = stable.mesh.control_points[mode.largest_at];
     Ok(SnapReport {
         bracket_deg,

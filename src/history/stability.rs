@@ -37,7 +37,9 @@ pub enum StabilityError {
 pub fn stability_at(log: &Log, index: usize, scene: &Scene) -> Result<StabilityReport, StabilityError> {
     let state = log.state(index)?;
     let mut work = Workspace::new(scene, &state.mesh)?;
-    let mode = soft_mode(&mut work, Standing::of(&state))?;
+    let mut mode = soft_mode(&mut work, Standing::of(&state))?;
+    // Of the whole shell, as energies are.
+    mode.eigenvalue *= scene.symmetry.copies() as f64;
     let [x, y, z, w] = state.mesh.control_points[mode.largest_at];
     Ok(StabilityReport { mode_at: [x / w, y / w, z / w], mode, state })
 }

@@ -130,12 +130,13 @@ fn starts(counts: impl Iterator<Item = usize>) -> Vec<usize> {
 
 /// Gauss points of each element in one direction.
 ///
-/// Where a spline is C^(p−1) across both ends of an element, it has one degree of freedom there for each component, and
-/// p − 1 points hold it; functions that live next to the ends of the patch, and to knots of higher multiplicity, take p
-/// (Adam, Hughes, Bouabdallah, Zarroug & Maitournam 2015, *Selective and reduced numerical integrations for NURBS-based
-/// isogeometric analysis*). Eigenvalues show where that is too little: with p points each way a single element has a field
-/// without energy beside the rigid motions, in every degree, and degree 2 with one point inside is four times too soft on
-/// graded meshes.
+/// Reduced integration that knows where splines are smooth (Adam, Hughes, Bouabdallah, Zarroug & Maitournam 2015, *Selective
+/// and reduced numerical integrations for NURBS-based isogeometric analysis*): p − 1 points where a spline is C^(p−1) across
+/// both ends of an element, p next to the ends of the patch and to knots of higher multiplicity. The counts are empirical,
+/// held by eigenvalues (`tests/verification/quadrature.rs`): with p points each way a single element has a field without
+/// energy beside the rigid motions, in every degree, and degree 2 with one point inside is four times too soft on graded
+/// meshes. On the baseline at 8°, 32 × 16 cubic elements, the moment is 285.841 N·mm, full quadrature gives 285.821 and a
+/// fine mesh 285.686.
 fn point_counts(quadrature: Quadrature, degree: usize, knots: &[f64]) -> Vec<usize> {
     let bounds = Spans::of(knots, degree).bounds;
     let is_smooth = |knot: f64| {

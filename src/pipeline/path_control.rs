@@ -7,10 +7,13 @@
 //! | passed a limit point or a bifurcation | half as long, then on with the rest: bisection until the parameter changes by less than the snap tolerance over what is left; then past it |
 //!
 //! Critical points are told by the pivots: at a limit point of the parameter the rate of the parameter along the path
-//! and the determinant of the stiffness change sign; at a bifurcation the pivots change without the rate. The sign of
-//! (rate of the parameter) · (−1)^(negative pivots) is therefore constant along a branch (Keller 1977), and a step that ends
-//! on its own path turned round, or on another branch, shows as a bifurcation that vanishes when the step is halved: it
-//! is never taken, while a real one stays however short the step.
+//! and the determinant of the stiffness change sign; at a bifurcation the pivots change without the rate. Between critical
+//! points the sign of (rate of the parameter) · (−1)^(negative pivots) is therefore constant (Keller 1977), and a step that
+//! ends on its own path turned round, or on another branch, mostly shows as a bifurcation that vanishes when the step is
+//! halved; it is not taken while it can be. A branch with as many negative pivots and the same sense is not told apart.
+//!
+//! Under loads that follow the shell and have no potential the pivots are those of the symmetric part of the tangent, and
+//! pass zero elsewhere than its determinant: a limit point then shows as two critical points close together.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -151,7 +154,7 @@ impl PathAttempt {
             next_mm,
             travelled_mm: path.travelled_mm + point.distance,
             critical_ahead: rest.map(|ahead| CriticalAhead { within_mm: ahead.within_mm - self.length_mm, ..ahead }),
-            at_bifurcation: passed.is_some_and(|critical| critical.is_bifurcation()),
+            at_bifurcation: passed.is_some_and(|critical| critical.is_bifurcation() && critical.pivots_changed > 0),
         }
     }
 

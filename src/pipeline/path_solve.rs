@@ -3,7 +3,7 @@
 use crate::equilibrium::{Continuation, ContinuedPoint, Direction, Iterate, Sense, SolveError, Standing};
 use crate::pipeline::path_control::{CriticalPoint, Judgement, PathAttempt, next_path_attempt, path_begun};
 use crate::pipeline::stages::settle;
-use crate::pipeline::step_control::next_attempt;
+use crate::pipeline::step_control::{has_reached, next_attempt};
 use crate::pipeline::{Outcome, Parameter, Report, StageError, Stages};
 use crate::scene::{ArcLength, Stage};
 use crate::state::{PathMemory, Rejection, State, StepControl};
@@ -45,8 +45,17 @@ impl Stages {
         });
         match found {
             Ok(point) => {
+                let pivots = point.solved.negative_pivots as u64;
+                let passed = CriticalPoint::between((1.0, state.negative_pivots), (1.0, pivots));
+                if let (Some(_), Some(control)) = (passed, attempt.control_after_failure(&self.scene, state)) {
+                    let mut report = self.report(state, step);
+                    report.record_effort(point.solved.effort);
+                    report.attempted_parameter = attempt.target_deg;
+                    report.outcome = Outcome::RejectedCriticalPoint;
+                    return Ok((State { control, marked: Default::default(), ..state.clone() }, report));
+                }
                 let path = path_begun(limits, &point);
-                self.taken(state, &point, path, None)
+                self.taken(state, &point, path, passed)
             }
             Err(cause) => {
                 let mut report = self.report(state, step);
@@ -77,6 +86,7 @@ impl Stages {
             false
         };
         let (from, mut continuation) = (Standing::of(state), Continuation::new(scene, work));
+        let mut aimed_at = state.parameter;
         let mut found = continuation.step(from, &path.heading, attempt.length_mm, &mut watch);
         if let Ok(beyond) = &found
             && beyond.parameter.abs() > target * (1.0 + AT_TARGET)
@@ -84,6 +94,7 @@ impl Stages {
         {
             let end = target.copysign(beyond.parameter);
             let spent = beyond.solved.effort;
+            aimed_at = end;
             found = continuation.step_to(from, beyond, end, &mut watch).map(|mut point| {
                 point.solved.effort.iterations += spent.iterations;
                 point.solved.effort.factorizations += spent.factorizations;
@@ -94,6 +105,7 @@ impl Stages {
             Err(cause) => {
                 let mut report = self.report(state, step);
                 report.record_failure(&cause);
+                report.attempted_parameter = aimed_at;
                 let why = cause.to_string();
                 self.shorten(limits, state, path, attempt, (report, Outcome::RejectedNoEquilibrium, why))
             }
@@ -113,7 +125,11 @@ impl Stages {
                         Ok((turned_down(state, Rejection::CriticalPoint, memory), report))
                     }
                     Judgement::TooFar => {
-                        let why = format!("it turned by {:.0}°", point.turn.clamp(-1.0, 1.0).acos().to_degrees());
+                        let why = format!(
+                            "it ended {:.3e} mm away with the path turned by {:.0}°",
+                            point.distance,
+                            point.turn.clamp(-1.0, 1.0).acos().to_degrees()
+                        );
                         self.shorten(limits, state, path, attempt, (report, Outcome::RejectedSharpTurn, why))
                     }
                 }
@@ -179,7 +195,8 @@ impl Stages {
         Ok((next, report))
     }
 
-    /// On a refined mesh the path is another: its point in the plane across the old one.
+    /// On a refined mesh the path is another: its point nearest to where the shell is, or, at the end of the run, the one
+    /// with that parameter.
     pub(super) fn correct_path(
         &mut self,
         state: &State,
@@ -188,10 +205,12 @@ impl Stages {
     ) -> Result<(State, Report), StageError> {
         let heading = Direction { motion: path.heading.clone(), parameter: path.parameter_rate };
         let (scene, work) = self.workspace(&state.mesh, state.step, Stage::ReEquilibrate)?;
-        let found = Continuation::new(scene, work).correct(Standing::of(state), &heading, &mut |iterate| {
+        let mut watch = |iterate: &Iterate| {
             observer(iterate);
             false
-        });
+        };
+        let at_end = has_reached(scene, state, scene.load.target());
+        let found = Continuation::new(scene, work).correct(Standing::of(state), &heading, at_end, &mut watch);
         let point = found.map_err(|cause| self.not_re_equilibrated(state, cause))?;
         let mut next = settle(state, &point.solved);
         next.parameter = point.parameter;
@@ -203,6 +222,11 @@ impl Stages {
         });
         let mut report = self.report(&next, next.step);
         report.record(&next, &point.solved);
+        // A finer mesh has its critical points elsewhere: one may now lie behind the shell that lay ahead of it.
+        report.critical_point = CriticalPoint::between(
+            (path.parameter_rate, state.negative_pivots),
+            (next.path.as_ref().map_or(0.0, |path| path.parameter_rate), next.negative_pivots),
+        );
         report.probes = self.read_probes(&next)?;
         Ok((next, report))
     }

@@ -40,7 +40,7 @@ pub struct Report {
     pub negative_pivots: u64,
     /// |residual| / |reactions| at the end of the stage.
     pub residual: f64,
-    /// Energy that a jump released in this stage, N·mm; 0 where nothing jumped.
+    /// Energy that a jump, or leaving an unstable equilibrium (switch-branch), released in this stage, N·mm; otherwise 0.
     pub energy_released_n_mm: f64,
     /// Whether the shell jumped in this stage.
     pub jumped: bool,

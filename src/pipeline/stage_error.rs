@@ -43,7 +43,7 @@ pub enum StageError {
     },
     /// The refined mesh has no equilibrium at the load.
     #[error(
-        "step {step}, re-equilibrate at {reached} on {} × {} elements: {cause}; raise solver.max_iterations, or adapt.threshold to \
+        "step {step}, re-equilibrate at {reached} on {} × {} elements: {cause}; raise solver.max_iterations (by arc length: lower continuation.longest_step), or adapt.threshold to \
          refine less at once, and go on with `foldline run SCENE --resume`",
         elements[0],
         elements[1]

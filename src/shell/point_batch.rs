@@ -7,7 +7,7 @@
 //!
 //! H_lm = D_lm n nᵀ for second derivatives l, m; H_αm = y_αm nᵀ − m_m T_αᵀ with y_1m = a₂ × z_m, y_2m = z_m × a₁ and
 //! T_α = (W_α − n N_αᵀ)/J; H_αβ = Σ_i x_αi y_βiᵀ + (P_α N_βᵀ + N_α P_βᵀ)/J² + (M·n)/J² W_αᵀ W_β + membrane terms, and
-//! −v × for α ≠ β. W_1ᵀ W_1 = a₂·a₂ I − a₂ a₂ᵀ, W_1ᵀ W_2 = a₁ a₂ᵀ − a₁·a₂ I, W_2ᵀ W_2 = a₁·a₁ I − a₁ a₁ᵀ join the
+//! +[v×] for α ≠ β. W_1ᵀ W_1 = a₂·a₂ I − a₂ a₂ᵀ, W_1ᵀ W_2 = a₁ a₂ᵀ − a₁·a₂ I, W_2ᵀ W_2 = a₁·a₁ I − a₁ a₁ᵀ join the
 //! membrane's C and f.
 
 use super::lane_vector::{accumulate, add, combination, cross, dot, outer, scaled, sub};

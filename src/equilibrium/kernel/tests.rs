@@ -6,13 +6,15 @@ use crate::scene::{Quadrature, parse};
 use crate::shell::Hessian;
 
 /// Every number of points and of functions that leaves something over: in a batch, a block, a vector, a tile.
-const CASES: [([usize; 2], Quadrature); 11] = [
+const CASES: [([usize; 2], Quadrature); 13] = [
     ([2, 2], Quadrature::Full),
     ([2, 2], Quadrature::Reduced),
     ([2, 3], Quadrature::Full),
     ([3, 2], Quadrature::Full),
     ([3, 3], Quadrature::Full),
     ([3, 3], Quadrature::Reduced),
+    ([3, 3], Quadrature::Patch),
+    ([5, 4], Quadrature::Patch),
     ([2, 4], Quadrature::Full),
     ([4, 4], Quadrature::Full),
     ([4, 3], Quadrature::Reduced),
