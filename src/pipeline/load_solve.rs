@@ -50,10 +50,11 @@ impl Stages {
             unstable_on_the_way |= unstable;
             !attempt.may_jump && unstable
         };
-        // Close to a jump a parabola leads astray: the baseline's snap took 37 factorizations with one, and 26 without.
-        let previous = state.previous.as_ref().filter(|_| state.control.jump_seen_at_deg.is_none());
-        let solved =
-            Equilibrium::new(scene, work).after(previous).advance(Standing::of(state), attempt.target_deg, &mut watch);
+        let solved = Equilibrium::new(scene, work).after(state.previous.as_ref()).advance(
+            Standing::of(state),
+            attempt.target_deg,
+            &mut watch,
+        );
         let mut report = self.report(state, step);
         report.attempted_parameter = attempt.target_deg;
         match solved {
