@@ -158,7 +158,7 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
         None => "not passed by the path that was followed".to_string(),
         Some(critical) => format!(
             "{}: {} of the stiffness changed sign",
-            if critical.is_bifurcation() { "bifurcation" } else { "limit point" },
+            critical.name(),
             count(critical.pivots_changed.unsigned_abs() as usize, "pivot")
         ),
     };

@@ -128,7 +128,9 @@ fn default_log(scene: &Path) -> PathBuf {
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        Ok(_) => Err("a rotation above 0 degrees is wanted".to_string()),
+        Ok(_) => {
+            Err("a rotation or a load factor above 0 is wanted; by arc length it counts on both sides of 0".to_string())
+        }
         Err(_) => Err("a number of degrees is wanted, such as 12.5".to_string()),
     }
 }

@@ -58,8 +58,9 @@ Exit codes: 0 all ended as stated, 1 some did not, 2 wrong arguments or a wrong 
 impl Arguments {
     /// Runs and prints; the exit code.
     pub(super) fn run(self) -> Result<u8, Failure> {
-        let scenes = read_folder(&self.scenes)?;
-        let names = self.chosen(scenes.keys())?;
+        let files = list_folder(&self.scenes)?;
+        let names = self.chosen(files.keys())?;
+        let scenes = read_scenes(&files, &names)?;
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
         let table = StressTable::new(names.iter().map(|name| stem(name)));
         if !self.json {
@@ -96,16 +97,28 @@ impl Arguments {
     }
 }
 
-/// Every scene of a folder by its file name.
-fn read_folder(folder: &Path) -> Result<BTreeMap<String, Scene>, Failure> {
+/// Every scene file of a folder by its name.
+fn list_folder(folder: &Path) -> Result<BTreeMap<String, PathBuf>, Failure> {
     let failed = |source| Failure::Read { path: folder.to_path_buf(), source };
-    let mut scenes = BTreeMap::new();
+    let mut files = BTreeMap::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         if path.extension().is_some_and(|extension| extension == "toml") {
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            scenes.insert(name, read_scene(&path)?.scene);
+            files.insert(path.file_name().unwrap_or_default().to_string_lossy().into_owned(), path);
         }
+    }
+    Ok(files)
+}
+
+/// The scenes that are run, and those that they are held against; others in the folder may be as they are.
+fn read_scenes(files: &BTreeMap<String, PathBuf>, names: &[String]) -> Result<BTreeMap<String, Scene>, Failure> {
+    let mut scenes = BTreeMap::new();
+    let mut wanted: Vec<String> = names.to_vec();
+    while let Some(name) = wanted.pop() {
+        let Some(path) = files.get(&name).filter(|_| !scenes.contains_key(&name)) else { continue };
+        let scene = read_scene(path)?.scene;
+        wanted.extend(scene.expect.iter().filter_map(|expect| expect.same_as.clone()));
+        scenes.insert(name, scene);
     }
     Ok(scenes)
 }

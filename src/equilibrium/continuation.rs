@@ -18,6 +18,8 @@ use crate::shell::{add, scaled, sub};
 /// Newton iterations after which a step is too long. Steps of the tape spring's path that converge take 3 to 7; what has
 /// not converged by then has mostly left the neighbourhood of the path.
 const MOST_ITERATIONS: usize = 12;
+/// The same where the path is met again on a finer mesh.
+const MOST_CORRECTIONS: usize = 60;
 /// The plane is reached to this, relative to the length of the step.
 const ON_PLANE: f64 = 1e-6;
 
@@ -43,6 +45,8 @@ pub struct ContinuedPoint {
     pub distance: f64,
     /// Cosine of the angle between the tangents at both points.
     pub turn: f64,
+    /// Cosine of the angle between the chord and the mean of both tangents: 1 for an arc of a circle.
+    pub chord: f64,
 }
 
 /// Which way the path goes on from a point.
@@ -189,6 +193,8 @@ impl<'a> Continuation<'a> {
     ) -> Result<ContinuedPoint, SolveError> {
         let before = Before::at(self.work, from);
         let Self { scene, work, metric } = self;
+        // A correction has no shorter step to fall back on.
+        let most = if onwards.is_some() { MOST_CORRECTIONS } else { MOST_ITERATIONS };
         let mut effort = Effort::default();
         let mut equations = Equations::of(work);
         let point = loop {
@@ -201,12 +207,15 @@ impl<'a> Continuation<'a> {
             if last.residual <= scene.solver.tolerance * last.reactions && off.abs() <= ON_PLANE * scale {
                 break point;
             }
-            if last.iteration >= MOST_ITERATIONS {
+            if last.iteration >= most {
                 return Err(SolveError::TooManyIterations { last, effort });
             }
             let step = equations.solve(&point, &negative(&point.gradient));
             let rates = equations.solve(&point, &negative(&point.gradient_rate));
             let change = constraint.change(&point, metric, off, &step, &rates);
+            if !change.is_finite() {
+                return Err(SolveError::NothingMoves { parameter: point.parameter, effort });
+            }
             effort.iterations += 1;
             parameter += change;
             free = along(&along(&point.free, &step, 1.0), &rates, change);
@@ -215,7 +224,10 @@ impl<'a> Continuation<'a> {
         let sense = onwards.unwrap_or(&chord);
         let end = tangent(&mut equations, &point, metric, Sense::Along(sense))?.direction;
         let (last, ended) = (point.iterate, point.ended(&equations, effort));
+        let mean: Vec<[f64; 3]> = heading.motion.iter().zip(&end.motion).map(|(a, b)| add(*a, *b)).collect();
+        let lengths = metric.length(&chord) * metric.length(&mean);
         Ok(ContinuedPoint {
+            chord: if lengths > 0.0 { metric.product(&chord, &mean) / lengths } else { 1.0 },
             distance: metric.length(&chord),
             turn: metric.product(&heading.motion, &end.motion),
             heading: end,

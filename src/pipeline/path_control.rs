@@ -10,7 +10,9 @@
 //! and the determinant of the stiffness change sign; at a bifurcation the pivots change without the rate. Between critical
 //! points the sign of (rate of the parameter) · (−1)^(negative pivots) is therefore constant (Keller 1977), and a step that
 //! ends on its own path turned round, or on another branch, mostly shows as a bifurcation that vanishes when the step is
-//! halved; it is not taken while it can be. A branch with as many negative pivots and the same sense is not told apart.
+//! halved; it is not taken while it can be. Pivots that change and change back within a step leave no trace: a step that
+//! leaves out a loop of the path, or ends on a branch with as many of them, is told by its chord, which does not lie
+//! between the tangents at its ends, or by the energy, which is not the work done.
 //!
 //! Under loads that follow the shell and have no potential the pivots are those of the symmetric part of the tangent, and
 //! pass zero elsewhere than its determinant: a limit point then shows as two critical points close together.
@@ -19,6 +21,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::equilibrium::ContinuedPoint;
+use crate::pipeline::step_control::is_jump;
 use crate::scene::{ArcLength, Scene};
 use crate::state::{CriticalAhead, PathMemory, State};
 
@@ -29,6 +32,9 @@ const AIMED_ITERATIONS: f64 = 5.0;
 const AIMED_TURN: f64 = 0.3;
 /// Cosine of the largest turn in a step that is taken.
 const SHARPEST_TURN: f64 = 0.8;
+/// Cosine between the chord of a step and the mean of the tangents at its ends: arcs of circles have 1. A step that leaves
+/// out a loop of the path ends with its tangent anywhere to its chord.
+const STRAIGHTEST_CHORD: f64 = 0.98;
 /// A step that ends farther away than this, relative to its length, has left the path.
 const FARTHEST: f64 = 1.5;
 
@@ -49,18 +55,19 @@ impl CriticalPoint {
         (limit_point || pivots_changed != 0).then_some(Self { limit_point, pivots_changed })
     }
 
+    /// What it is.
+    pub fn name(&self) -> &'static str {
+        match (self.limit_point, self.is_bifurcation()) {
+            (true, false) => "limit point",
+            (true, true) => "limit point and bifurcation",
+            (false, _) => "bifurcation",
+        }
+    }
+
     /// For a table: what it is, and how the pivots changed.
     pub fn in_words(&self) -> String {
-        let change = format!(
-            "{:+} negative pivot{}",
-            self.pivots_changed,
-            if self.pivots_changed.abs() == 1 { "" } else { "s" }
-        );
-        match (self.limit_point, self.is_bifurcation()) {
-            (true, false) => format!("limit point ({change})"),
-            (true, true) => format!("limit point and bifurcation ({change})"),
-            (false, _) => format!("bifurcation ({change})"),
-        }
+        let plural = if self.pivots_changed.abs() == 1 { "" } else { "s" };
+        format!("{} ({:+} negative pivot{plural})", self.name(), self.pivots_changed)
     }
 
     /// Whether the parameter turns back while the pivots stay: no limit point, unless a bifurcation falls on it.
@@ -96,9 +103,12 @@ pub fn next_path_attempt(scene: &Scene, limits: &ArcLength, path: &PathMemory) -
         return attempt(path.next_mm, false);
     };
     let rate = ahead.rate_beyond.abs().max(path.parameter_rate.abs());
-    let may_pass = rate * ahead.within_mm <= scene.snap_tolerance() || ahead.within_mm <= 2.0 * shortest;
+    let may_pass = rate * ahead.within_mm <= scene.snap_tolerance() || ahead.within_mm <= LOCATED * path.first_mm;
     attempt(if may_pass { ahead.within_mm } else { 0.5 * ahead.within_mm }, may_pass)
 }
+
+/// Critical points are not located more finely than this, relative to the first step: rounding decides there.
+const LOCATED: f64 = 1e-7;
 
 /// What to do with a point that a step has found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,7 +124,10 @@ pub enum Judgement {
 impl PathAttempt {
     /// Judges the point that the step found.
     pub fn judge(&self, state: &State, path: &PathMemory, point: &ContinuedPoint) -> Judgement {
-        if point.turn < SHARPEST_TURN || point.distance > FARTHEST * self.length_mm {
+        let strays = point.turn < SHARPEST_TURN || point.chord < STRAIGHTEST_CHORD;
+        let released = state.strain_energy_n_mm + point.solved.work - point.solved.energy;
+        let energies = (state.strain_energy_n_mm, point.solved.energy);
+        if strays || point.distance > FARTHEST * self.length_mm || is_jump(released, energies.0, energies.1) {
             return Judgement::TooFar;
         }
         let here = (path.parameter_rate, state.negative_pivots);

@@ -211,7 +211,17 @@ impl Stages {
         };
         let at_end = has_reached(scene, state, scene.load.target());
         let found = Continuation::new(scene, work).correct(Standing::of(state), &heading, at_end, &mut watch);
-        let point = found.map_err(|cause| self.not_re_equilibrated(state, cause))?;
+        let point = match found {
+            Ok(point) => point,
+            // Where the shell is stable it can be let down to the finer mesh's equilibrium at the same load.
+            Err(_) if state.negative_pivots == 0 => {
+                let (relaxed, report) = self.relax(state, observer)?;
+                let memory = self.path_on_branch(&relaxed, &relaxed, path);
+                let memory = memory.map_err(|cause| self.not_re_equilibrated(state, cause))?;
+                return Ok((State { path: Some(memory), ..relaxed }, report));
+            }
+            Err(cause) => return Err(self.not_re_equilibrated(state, cause)),
+        };
         let mut next = settle(state, &point.solved);
         next.parameter = point.parameter;
         next.path = Some(PathMemory {

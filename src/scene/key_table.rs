@@ -502,7 +502,8 @@ pub(super) static STAGES: Key = Key {
     reach: Steps,
     meaning: "The stages of one load step: solve alone, with evaluate-indicators to watch, or with refine-knots, \
               project-displacements and re-equilibrate to refine. switch-branch after solve leaves an unstable equilibrium \
-              along its soft mode, down to a stable one.",
+              along its soft mode, down to a stable one; by arc length only at bifurcations, since behind a limit point the \
+              unstable path is what is followed.",
     example: "[\"solve\", \"evaluate-indicators\", \"refine-knots\", \"project-displacements\", \"re-equilibrate\"]",
     aliases: &["steps", "stage"],
 };
@@ -546,6 +547,8 @@ pub(super) static OUTCOME: Key = Key {
         choice("jump-not-followed", "at a jump beyond which no equilibrium is found"),
         choice("not-re-equilibrated", "on a refined mesh that has no equilibrium"),
         choice("refined-too-far", "where refinement asks for more than memory holds"),
+        choice("path-lost", "where a path by arc length cannot be followed, however short the step"),
+        choice("path-too-long", "where a path by arc length has taken all the steps that it may"),
     ]),
     presence: Default("\"finished\""),
     reach: Free,

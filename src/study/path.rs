@@ -61,9 +61,9 @@ pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
     for report in equilibria(records).map(|record| &record.report) {
         let same_step = path.last().is_some_and(|last| last.step == report.step);
         let jumped_before = same_step && path.last().is_some_and(|last| last.jumped);
-        let passed_before = path.last().filter(|_| same_step).and_then(|last| last.passed);
+        let mut passed_before = None;
         if same_step && (jumped_before || !report.jumped) {
-            path.pop();
+            passed_before = path.pop().and_then(|last| last.passed);
         }
         let probe = report.probes.first().map(|reading| reading.value);
         let passed = report.critical_point.map(|critical| Passed {

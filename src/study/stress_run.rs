@@ -141,6 +141,8 @@ fn stop(error: &RunError) -> StressEnd {
         RunError::Stage(StageError::JumpNotFollowed { .. }) => ExpectedOutcome::JumpNotFollowed,
         RunError::Stage(StageError::NotReEquilibrated { .. }) => ExpectedOutcome::NotReEquilibrated,
         RunError::Stage(StageError::RefinedTooFar { .. }) => ExpectedOutcome::RefinedTooFar,
+        RunError::Stage(StageError::PathLost { .. }) => ExpectedOutcome::PathLost,
+        RunError::Stage(StageError::PathTooLong { .. }) => ExpectedOutcome::PathTooLong,
         RunError::Stage(_) | RunError::Sink(_) => return StressEnd::Broken { message },
     };
     StressEnd::Stopped { outcome, message }

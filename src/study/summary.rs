@@ -34,6 +34,8 @@ pub struct Summary {
     pub snaps: Vec<Snap>,
     /// Limit points and bifurcations that the path passed, in order.
     pub passed: Vec<Passed>,
+    /// Unstable equilibria that were left by switch-branch: parameter, and energy released, N·mm.
+    pub left: Vec<[f64; 2]>,
     /// Moment of the fold; `None` where the shell did not jump.
     pub fold: Option<FoldMean>,
     /// The mesh at the start and after every change.
@@ -135,6 +137,11 @@ impl Summary {
             fold: fold_mean(&path, snaps.last()),
             snaps,
             passed: path.iter().filter_map(|point| point.passed).collect(),
+            left: records
+                .iter()
+                .filter(|record| record.report.stage == Stage::SwitchBranch)
+                .map(|record| [record.report.parameter, record.report.energy_released_n_mm])
+                .collect(),
             meshes: mesh_changes(records),
             work: work(records),
             rejections: records.iter().filter(|record| record.report.outcome != Outcome::Done).count(),

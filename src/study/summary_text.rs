@@ -151,8 +151,12 @@ impl Summary {
         self.write_balance(f)
     }
 
-    /// Limit points and bifurcations.
+    /// Limit points, bifurcations, and branches that were left.
     fn write_passed(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for [parameter, released] in &self.left {
+            let at = self.at(*parameter);
+            writeln!(f, "  {:<17}  unstable branch left at {at}, released {released:.2e} N·mm", "switch-branch")?;
+        }
         for point in &self.passed {
             let critical = point.critical;
             let value = match (self.driven_by, point.probe, self.probes.first()) {
@@ -162,7 +166,7 @@ impl Summary {
                 }
                 _ => format!("{:14.6}", point.parameter),
             };
-            let name = if critical.is_bifurcation() { "bifurcation" } else { "limit point" };
+            let name = critical.name();
             let change = count(critical.pivots_changed.unsigned_abs() as usize, "pivot");
             let sign = if critical.pivots_changed < 0 { "positive" } else { "negative" };
             writeln!(f, "  {name:<17}  {value}  ({change} turned {sign})")?;

@@ -55,7 +55,7 @@ fn wrong_usage() {
       because: No such file or directory (os error 2)
     ");
     insta::assert_snapshot!(refusal(&["run", "a.toml", "--until", "-3"], 2), @r"
-    error: invalid value '-3' for '--until <DEG>': a rotation above 0 degrees is wanted
+    error: invalid value '-3' for '--until <DEG>': a rotation or a load factor above 0 is wanted; by arc length it counts on both sides of 0
 
     For more information, try '--help'.
     ");

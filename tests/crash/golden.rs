@@ -102,6 +102,12 @@ fn every_encoding_of_states_is_among_them() {
     assert!(turning.iter().all(|state| state.turns.len() == 1 && state.path.is_none()));
     let [_, turn, _] = turning.last().unwrap().turns[0];
     assert!(turn < 0.0, "lifted, the section turns towards -y: {turn}");
+    let predicted = states("predicted");
+    let previous = |state: &State| state.previous.as_ref().map(|previous| previous.displacement.len());
+    let points = predicted.iter().map(|state| state.mesh.control_points.len());
+    assert!(predicted.iter().zip(points).skip(1).all(|(state, points)| previous(state) == Some(points)));
+    let meshes: std::collections::BTreeSet<usize> = predicted.iter().filter_map(previous).collect();
+    assert!(meshes.len() > 1, "what states remember is carried to a finer mesh");
     let path = states("path");
     let memory = |state: &State| state.path.clone().expect("a path");
     let located = |state: &State| memory(state).critical_ahead.is_some();
@@ -140,7 +146,7 @@ fn read_scene(name: &str) -> (Scene, Manifest) {
 #[test]
 #[ignore = "writes to checkpoints/golden"]
 fn write_golden_logs_of_later_states() {
-    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch))] {
+    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch)), ("predicted", None)] {
         if path_of(what).exists() {
             continue;
         }

@@ -70,6 +70,7 @@ fn point(distance: f64, turn: f64, rate: f64, negative_pivots: usize, iterations
         heading: Direction { motion: vec![[1.0, 0.0, 0.0]], parameter: rate },
         distance,
         turn,
+        chord: 1.0,
     }
 }
 

@@ -29,6 +29,10 @@ pub enum ExpectedOutcome {
     NotReEquilibrated,
     /// Where refinement asks for more than memory holds.
     RefinedTooFar,
+    /// Where a path by arc length cannot be followed, however short the step.
+    PathLost,
+    /// Where a path by arc length has taken all the steps that it may.
+    PathTooLong,
 }
 
 impl ExpectedOutcome {
@@ -41,6 +45,8 @@ impl ExpectedOutcome {
             Self::JumpNotFollowed => "jump-not-followed",
             Self::NotReEquilibrated => "not-re-equilibrated",
             Self::RefinedTooFar => "refined-too-far",
+            Self::PathLost => "path-lost",
+            Self::PathTooLong => "path-too-long",
         }
     }
 }
