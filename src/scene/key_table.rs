@@ -471,10 +471,10 @@ pub(super) static SHORTEST_STEP: Key = Key {
         low: Limit::excluded(0.0, "a step that fails would be halved without end"),
         high: Limit::included(1.0, "the first step has length 1"),
     }),
-    presence: Default("1e-4"),
+    presence: Default("1e-6"),
     reach: Steps,
     meaning: "Steps are not cut below this many first steps; then the run stops with all good steps kept.",
-    example: "1e-4",
+    example: "1e-6",
     aliases: &["min_step", "shortest", "minimum_step", "min_length"],
 };
 
