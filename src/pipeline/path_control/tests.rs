@@ -128,10 +128,13 @@ fn a_failure_inside_a_bracket_keeps_the_bracket() {
     let shorter = attempt.shortened(&LIMITS, &path).unwrap();
     assert_eq!(next_path_attempt(&scene(0.01), &LIMITS, &shorter).length_mm, 0.25);
     assert_eq!(shorter.next_mm, path.next_mm, "beyond it the path goes on as before");
-    let last =
-        PathMemory { critical_ahead: Some(CriticalAhead { within_mm: 1.9 * SHORTEST_MM, ..ahead }), ..memory(1.0) };
+    let finest = LOCATED * FIRST_MM;
+    let last = PathMemory { critical_ahead: Some(CriticalAhead { within_mm: finest, ..ahead }), ..memory(1.0) };
     let attempt = next_path_attempt(&scene(1e-9), &LIMITS, &last);
-    assert!(attempt.may_pass && attempt.length_mm == 1.9 * SHORTEST_MM, "{attempt:?}");
+    assert!(
+        attempt.may_pass && attempt.length_mm == finest,
+        "located however loose or tight the tolerance: {attempt:?}"
+    );
     assert_eq!(attempt.shortened(&LIMITS, &last), None);
 }
 
