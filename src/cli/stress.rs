@@ -15,7 +15,7 @@ use crate::units::{count, duration};
 
 /// Run scenes at and beyond the edge, and say whether each ends as it states
 ///
-/// A scene states its end in a table [expect]; see `foldline help scene`. A line is printed as soon as its scene has
+/// A scene states its end in a table `[expect]`; see `foldline help scene`. A line is printed as soon as its scene has
 /// ended; what is wrong with it stands below.
 #[derive(Args, Debug)]
 #[command(after_help = COLUMNS)]

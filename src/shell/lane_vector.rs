@@ -32,7 +32,7 @@ pub(super) fn scaled<V: FourLanes>(factor: V, a: [V; 3]) -> [V; 3] {
     [factor * a[0], factor * a[1], factor * a[2]]
 }
 
-/// Σ factors[i] vectors[i].
+/// Σ factors_i vectors_i.
 #[inline(always)]
 pub(super) fn combination<V: FourLanes>(factors: [V; 3], vectors: [[V; 3]; 3]) -> [V; 3] {
     let mut sum = scaled(factors[0], vectors[0]);

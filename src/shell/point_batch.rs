@@ -17,7 +17,7 @@ use super::point::PointReference;
 /// Numbers of the four points.
 type Four = [f64; 4];
 
-/// Gradients: `[k][c][point]`, k and c as in [`crate::shell::Gradient`].
+/// Gradients: `[k][c][point]`, k and c as in `Gradient` of `point`.
 pub(crate) type BatchGradient = [[Four; 3]; 5];
 
 /// Hessians: `[3 k + c][3 l + d][point]`, symmetric.
