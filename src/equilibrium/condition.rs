@@ -5,7 +5,8 @@
 //! cent of it are of no interest, and the iterations stop there.
 
 use crate::equilibrium::descent::product;
-use crate::equilibrium::newton::{SolveError, Standing, Workspace};
+use crate::equilibrium::newton::{Standing, Workspace};
+use crate::equilibrium::solve_error::SolveError;
 
 /// Relative change of an eigenvalue in one iteration at which it is known well enough.
 const SETTLED: f64 = 1e-4;

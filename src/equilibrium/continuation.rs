@@ -11,7 +11,8 @@
 
 use crate::equilibrium::equations::{Equations, Point};
 use crate::equilibrium::metric::Metric;
-use crate::equilibrium::newton::{Before, Effort, Observer, SolveError, Solved, Standing, Workspace};
+use crate::equilibrium::newton::{Before, Effort, Observer, Solved, Standing, Workspace};
+use crate::equilibrium::solve_error::SolveError;
 use crate::scene::Scene;
 use crate::shell::{add, scaled, sub};
 

@@ -28,8 +28,9 @@
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::external::{External, work};
-use crate::equilibrium::newton::{Effort, Iterate, SolveError, Workspace};
+use crate::equilibrium::newton::{Effort, Iterate, Workspace};
 use crate::equilibrium::pattern::Pattern;
+use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::sparse::SparseSolver;
 use crate::model::{Discretization, Placement};
 use crate::shell::dot;

@@ -3,8 +3,9 @@
 use crate::equilibrium::assembly::{Assembled, Want};
 use crate::equilibrium::descent::{Ended, largest, length};
 use crate::equilibrium::external::External;
-use crate::equilibrium::newton::{Effort, Iterate, SolveError, Standing, Workspace};
+use crate::equilibrium::newton::{Effort, Iterate, Standing, Workspace};
 use crate::equilibrium::pattern::Pattern;
+use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::sparse::SparseSolver;
 use crate::model::{Discretization, Placement};
 

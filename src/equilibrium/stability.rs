@@ -10,7 +10,8 @@
 use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::descent::product;
 use crate::equilibrium::metric::Metric;
-use crate::equilibrium::newton::{Effort, SolveError, Standing, Workspace};
+use crate::equilibrium::newton::{Effort, Standing, Workspace};
+use crate::equilibrium::solve_error::SolveError;
 use crate::shell::dot;
 
 /// Inverse iterations at most. Near a critical point the lowest eigenvalue stands far from the next, and a handful

@@ -1,7 +1,8 @@
 //! The pieces of a Newton iteration one by one, for timing.
 
 use crate::equilibrium::assembly::Want;
-use crate::equilibrium::newton::{SolveError, Standing, Workspace};
+use crate::equilibrium::newton::{Standing, Workspace};
+use crate::equilibrium::solve_error::SolveError;
 
 /// What the pieces have to do.
 #[derive(Clone, Copy, Debug, PartialEq)]

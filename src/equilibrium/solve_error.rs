@@ -1,0 +1,96 @@
+//! Why a solve found no equilibrium, or could not begin.
+
+use crate::equilibrium::newton::{Effort, Iterate};
+use crate::equilibrium::sparse::FactorError;
+use crate::model::ModelError;
+
+/// Why no equilibrium was found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// The iterations ran out.
+    #[error("no equilibrium after {} iterations: residual {:.3e} of the reactions", last.iteration, last.residual / last.reactions)]
+    TooManyIterations {
+        /// The last iterate.
+        last: Iterate,
+        /// What it took.
+        effort: Effort,
+    },
+    /// No step along the descent direction lowers the energy.
+    #[error("the energy does not fall along the search direction (iteration {}, residual {:.3e} of the reactions)", last.iteration, last.residual / last.reactions)]
+    LineSearchFailed {
+        /// The last iterate.
+        last: Iterate,
+        /// What it took.
+        effort: Effort,
+    },
+    /// Energy or residual is not a number.
+    #[error("energy or residual is not a number at iteration {}", last.iteration)]
+    NotANumber {
+        /// The last iterate.
+        last: Iterate,
+        /// What it took.
+        effort: Effort,
+    },
+    /// The stiffness has no factor.
+    #[error("the stiffness cannot be factored: {cause}")]
+    Factor {
+        /// What the solver found.
+        cause: FactorError,
+        /// What it took.
+        effort: Effort,
+    },
+    /// Nothing moves as the parameter changes: there is no path to follow.
+    #[error(
+        "nothing moves as the parameter changes at {parameter}: give the loads or motions a history that goes on there"
+    )]
+    NothingMoves {
+        /// The parameter.
+        parameter: f64,
+        /// What it took.
+        effort: Effort,
+    },
+    /// The observer asked to stop.
+    #[error("stopped at iteration {} (energy {:.6e} N·mm)", last.iteration, last.energy)]
+    Stopped {
+        /// The last iterate.
+        last: Iterate,
+        /// What it took.
+        effort: Effort,
+    },
+}
+
+impl SolveError {
+    /// What the failed solve cost.
+    pub fn effort(&self) -> Effort {
+        match self {
+            Self::TooManyIterations { effort, .. }
+            | Self::LineSearchFailed { effort, .. }
+            | Self::NotANumber { effort, .. }
+            | Self::Factor { effort, .. }
+            | Self::NothingMoves { effort, .. }
+            | Self::Stopped { effort, .. } => *effort,
+        }
+    }
+
+    /// The last iterate, where there is one.
+    pub fn last(&self) -> Option<&Iterate> {
+        match self {
+            Self::TooManyIterations { last, .. }
+            | Self::LineSearchFailed { last, .. }
+            | Self::NotANumber { last, .. }
+            | Self::Stopped { last, .. } => Some(last),
+            Self::Factor { .. } | Self::NothingMoves { .. } => None,
+        }
+    }
+}
+
+/// Why a scene has no buffers on a mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WorkspaceError {
+    /// Supports or loads do not fit the mesh.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The factor does not fit in memory.
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+}
