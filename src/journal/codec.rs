@@ -31,6 +31,14 @@ pub enum CodecError {
         /// Version in the message.
         found: u8,
     },
+    /// A version that such messages never had.
+    #[error("the message has encoding version {found}, and messages of its kind have {expected}")]
+    OtherVersion {
+        /// Version in the message.
+        found: u8,
+        /// Version of its kind.
+        expected: u8,
+    },
     /// Not what the encoding says.
     #[error("the message does not decode")]
     Decode(#[from] bincode::error::DecodeError),
@@ -213,10 +221,11 @@ fn encode(version: u8, value: &impl Serialize) -> Result<Vec<u8>, CodecError> {
     Ok(bytes)
 }
 
-fn decode<T: for<'de> Deserialize<'de>>(bytes: &[u8]) -> Result<T, CodecError> {
+/// What the bytes of a message of this version hold.
+fn decode<T: for<'de> Deserialize<'de>>(version: u8, bytes: &[u8]) -> Result<T, CodecError> {
     match bytes {
         [] => Err(CodecError::Empty),
-        [1..=CODEC_VERSION, body @ ..] => {
+        [found, body @ ..] if *found == version => {
             let (value, used) = bincode::serde::decode_from_slice(body, config())?;
             if used == body.len() {
                 Ok(value)
@@ -224,6 +233,7 @@ fn decode<T: for<'de> Deserialize<'de>>(bytes: &[u8]) -> Result<T, CodecError> {
                 Err(CodecError::LeftOver { used: used + 1, total: bytes.len() })
             }
         }
+        [found @ 1..=CODEC_VERSION, ..] => Err(CodecError::OtherVersion { found: *found, expected: version }),
         [found, ..] => Err(CodecError::Version { found: *found }),
     }
 }
@@ -242,7 +252,7 @@ pub fn encode_mesh(mesh: &Mesh) -> Result<Vec<u8>, CodecError> {
 /// # Errors
 /// Where the bytes are anything else.
 pub fn decode_mesh(bytes: &[u8], expected: Hash) -> Result<Mesh, CodecError> {
-    let stored: MeshV1 = decode(bytes)?;
+    let stored: MeshV1 = decode(1, bytes)?;
     let mesh = stored.into_mesh();
     let found = mesh.hash();
     if found != expected {
@@ -330,22 +340,22 @@ pub fn decode_state<'a>(
 ) -> Result<State, CodecError> {
     let (StateV3 { base: stored, turns, path }, previous_parameter) = match bytes.first() {
         Some(4) => {
-            let StateV4 { after, previous_parameter } = decode(bytes)?;
+            let StateV4 { after, previous_parameter } = decode(4, bytes)?;
             (after, Some(previous_parameter))
         }
-        Some(3) => (decode::<StateV3>(bytes)?, None),
+        Some(3) => (decode::<StateV3>(3, bytes)?, None),
         Some(2) => {
-            let StateV2 { base, turns } = decode(bytes)?;
+            let StateV2 { base, turns } = decode(2, bytes)?;
             (StateV3 { base, turns, path: None }, None)
         }
-        _ => (StateV3 { base: decode(bytes)?, turns: Cow::default(), path: None }, None),
+        _ => (StateV3 { base: decode(1, bytes)?, turns: Cow::default(), path: None }, None),
     };
     let found = Hash::from_bytes(stored.mesh);
     if found != mesh_hash {
         return Err(CodecError::OtherMesh { expected: mesh_hash, found });
     }
     let hash = Hash::from_bytes(stored.displacement);
-    let DisplacementV1(displacement) = decode(displacement(hash).ok_or(CodecError::NoDisplacement { hash })?)?;
+    let DisplacementV1(displacement) = decode(1, displacement(hash).ok_or(CodecError::NoDisplacement { hash })?)?;
     let mut displacement = displacement.into_owned();
     let previous = previous_parameter.map(|parameter| {
         let own = displacement.len() / 2;
