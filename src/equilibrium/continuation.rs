@@ -170,8 +170,7 @@ impl<'a> Continuation<'a> {
 
     /// Straight distance between two displacements, mm.
     pub fn distance(&self, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
-        let moved: Vec<[f64; 3]> = to.iter().zip(from).map(|(u, v)| sub(*u, *v)).collect();
-        self.metric.length(&moved)
+        self.metric.length(&motion(from, to))
     }
 
     /// Tangent at an equilibrium, and its free unknowns.
@@ -221,7 +220,7 @@ impl<'a> Continuation<'a> {
             parameter += change;
             free = along(&along(&point.free, &step, 1.0), &rates, change);
         };
-        let chord: Vec<[f64; 3]> = point.displacement.iter().zip(from.displacement).map(|(u, v)| sub(*u, *v)).collect();
+        let chord = motion(from.displacement, &point.displacement);
         let sense = onwards.unwrap_or(&chord);
         let end = tangent(&mut equations, &point, metric, Sense::Along(sense))?.direction;
         let (last, ended) = (point.iterate, point.ended(&equations, effort));
@@ -245,8 +244,7 @@ impl Constraint<'_> {
             Constraint::Parameter(parameter) => (parameter - point.parameter, parameter.abs()),
             Constraint::Nearest => (0.0, 0.0),
             Constraint::Plane { normal, from, distance } => {
-                let moved: Vec<[f64; 3]> = point.displacement.iter().zip(*from).map(|(u, v)| sub(*u, *v)).collect();
-                (distance - metric.product(normal, &moved), distance.abs())
+                (distance - metric.product(normal, &motion(from, &point.displacement)), distance.abs())
             }
         }
     }
@@ -284,6 +282,10 @@ fn tangent(equations: &mut Equations, point: &Point, metric: &Metric, sense: Sen
         direction: Direction { motion: motion.into_iter().map(|rate| scaled(parameter, rate)).collect(), parameter },
         free: rates.iter().map(|rate| parameter * rate).collect(),
     })
+}
+
+fn motion(from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    to.iter().zip(from).map(|(u, v)| sub(*u, *v)).collect()
 }
 
 fn along(from: &[f64], direction: &[f64], distance: f64) -> Vec<f64> {

@@ -2,7 +2,7 @@
 
 use crate::equilibrium::{Continuation, ContinuedPoint, Direction, Iterate, Sense, SolveError, Standing};
 use crate::pipeline::path_control::{CriticalPoint, Judgement, PathAttempt, next_path_attempt, path_begun};
-use crate::pipeline::stages::settle;
+use crate::pipeline::stages::{reject, settle};
 use crate::pipeline::step_control::{has_reached, next_attempt};
 use crate::pipeline::{Outcome, Parameter, Report, StageError, Stages};
 use crate::scene::{ArcLength, Stage};
@@ -51,8 +51,7 @@ impl Stages {
                     let mut report = self.report(state, step);
                     report.record_effort(point.solved.effort);
                     report.attempted_parameter = attempt.target_deg;
-                    report.outcome = Outcome::RejectedCriticalPoint;
-                    return Ok((State { control, marked: Default::default(), ..state.clone() }, report));
+                    return Ok(reject(state, report, Outcome::RejectedCriticalPoint, control));
                 }
                 let path = path_begun(limits, &point);
                 self.taken(state, &point, path, passed)
@@ -61,9 +60,8 @@ impl Stages {
                 let mut report = self.report(state, step);
                 report.attempted_parameter = attempt.target_deg;
                 report.record_failure(&cause);
-                report.outcome = Outcome::RejectedNoEquilibrium;
                 match attempt.control_after_failure(&self.scene, state) {
-                    Some(control) => Ok((State { control, marked: Default::default(), ..state.clone() }, report)),
+                    Some(control) => Ok(reject(state, report, Outcome::RejectedNoEquilibrium, control)),
                     None => Err(self.stopped(state, attempt, cause)),
                 }
             }

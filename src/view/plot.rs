@@ -96,17 +96,7 @@ fn draw_moment(
         .x_label_area_size(28)
         .y_label_area_size(LEFT)
         .build_cartesian_2d(0.0..end_deg, 1.08 * lowest..1.08 * highest)?;
-    chart
-        .configure_mesh()
-        .y_desc("end moment M (N·mm)")
-        .x_label_formatter(&|value| short(*value))
-        .y_label_formatter(&|value| short(*value))
-        .label_style(text(14))
-        .axis_desc_style(text(15))
-        .axis_style(INK)
-        .bold_line_style(GRID)
-        .light_line_style(WHITE)
-        .draw()?;
+    draw_axes(&mut chart, None, "end moment M (N·mm)")?;
 
     let dashes = DashedLineSeries::new(law.clone(), 7, 5, line(LAW, 2));
     chart
@@ -147,6 +137,24 @@ fn draw_moment(
 }
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Axes with a grid; `along` is what stands at the lower one.
+fn draw_axes(chart: &mut Chart, along: Option<String>, upwards: &str) -> Result<(), PlotError> {
+    let mut axes = chart.configure_mesh();
+    if let Some(along) = along {
+        axes.x_desc(along);
+    }
+    axes.y_desc(upwards)
+        .x_label_formatter(&|value| short(*value))
+        .y_label_formatter(&|value| short(*value))
+        .label_style(text(14))
+        .axis_desc_style(text(15))
+        .axis_style(INK)
+        .bold_line_style(GRID)
+        .light_line_style(WHITE)
+        .draw()?;
+    Ok(())
+}
 
 /// Draws points of a path, the first of which is the unloaded shell: stable stretches solid, unstable ones dashed, and
 /// broken where the shell jumped, since a jump is not a path.
@@ -223,18 +231,7 @@ pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result
             .x_label_area_size(48)
             .y_label_area_size(LEFT)
             .build_cartesian_2d(span(|point| point.0), span(|point| point.1))?;
-        chart
-            .configure_mesh()
-            .x_desc(format!("{} ({})", probe.name, reading.unit))
-            .y_desc("load factor")
-            .x_label_formatter(&|value| short(*value))
-            .y_label_formatter(&|value| short(*value))
-            .label_style(text(14))
-            .axis_desc_style(text(15))
-            .axis_style(INK)
-            .bold_line_style(GRID)
-            .light_line_style(WHITE)
-            .draw()?;
+        draw_axes(&mut chart, Some(format!("{} ({})", probe.name, reading.unit)), "load factor")?;
         draw_path(&mut chart, &path, &points)?;
         chart
             .configure_series_labels()
