@@ -5,7 +5,7 @@
 //! cent of it are of no interest, and the iterations stop there.
 
 use crate::equilibrium::descent::product;
-use crate::equilibrium::newton::{Standing, Workspace};
+use crate::equilibrium::newton::{Effort, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 
 /// Relative change of an eigenvalue in one iteration at which it is known well enough.
@@ -29,10 +29,11 @@ impl Condition {
     /// # Errors
     /// Where the stiffness has no factor.
     pub fn at(work: &mut Workspace, at: Standing) -> Result<Self, SolveError> {
-        work.factorize_at(at)?;
-        let Workspace { discretization, pattern, solver, values, .. } = &mut *work;
-        let count = discretization.unknowns.count();
-        let largest = magnitude(count, |vector| pattern.multiply(values, vector));
+        let matrix = work.form_at(at).to_vec();
+        let count = work.discretization.unknowns.count();
+        let solver = &mut work.tangent.solver;
+        solver.factorize().map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })?;
+        let largest = magnitude(count, |vector| solver.multiply(&matrix, vector));
         let smallest = magnitude(count, |vector| {
             let mut solved = vector.to_vec();
             solver.solve(&mut solved);
@@ -91,10 +92,11 @@ mod tests {
             let displacement = work.discretization.unknowns.place(&free, parameter).displacement();
             let at = Standing { displacement: &displacement, turns: &[], parameter };
             let found = Condition::at(&mut work, at).unwrap();
+            let matrix = work.form_at(at).to_vec();
             let dense = DMatrix::from_fn(count, count, |row, column| {
                 let mut unit = vec![0.0; count];
                 unit[column] = 1.0;
-                work.pattern.multiply(&work.values, &unit)[row]
+                work.tangent.solver.multiply(&matrix, &unit)[row]
             });
             let eigenvalues = dense.symmetric_eigen().eigenvalues;
             indefinite += usize::from(eigenvalues.min() < 0.0);

@@ -29,9 +29,8 @@
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::external::{External, work};
 use crate::equilibrium::newton::{Effort, Iterate, Workspace};
-use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::solve_error::SolveError;
-use crate::equilibrium::sparse::SparseSolver;
+use crate::equilibrium::tangent::Tangent;
 use crate::model::{Discretization, Placement};
 use crate::shell::dot;
 
@@ -55,9 +54,7 @@ pub(super) struct Descent<'a> {
     parameter: f64,
     discretization: &'a Discretization,
     assembled: &'a mut Assembled,
-    pattern: &'a Pattern,
-    solver: &'a mut SparseSolver,
-    values: &'a mut [f64],
+    tangent: &'a mut Tangent,
     unknowns: Vec<f64>,
     displacement: Vec<[f64; 3]>,
     external: External,
@@ -102,7 +99,7 @@ impl Start {
 
 impl<'a> Descent<'a> {
     pub(super) fn new(workspace: &'a mut Workspace, parameter: f64, unknowns: Vec<f64>) -> Self {
-        let Workspace { discretization, pattern, solver, assembled, values, .. } = workspace;
+        let Workspace { discretization, tangent, assembled, .. } = workspace;
         let discretization = &*discretization;
         let placement = discretization.unknowns.place(&unknowns, parameter);
         let displacement = placement.displacement();
@@ -115,9 +112,7 @@ impl<'a> Descent<'a> {
             work: 0.0,
             discretization,
             assembled,
-            pattern,
-            solver,
-            values,
+            tangent,
             unknowns,
             displacement,
             gradient: Vec::new(),
@@ -154,11 +149,9 @@ impl<'a> Descent<'a> {
         if !(last.energy.is_finite() && last.residual.is_finite()) {
             return Err(SolveError::NotANumber { last, effort: self.effort });
         }
-        self.pattern.fill(self.discretization, &self.placement, assembled, self.values);
-        self.pattern.add(&self.placement.curvature(&forces), self.values);
         self.effort.factorizations += 1;
-        let negative =
-            self.solver.factorize(self.values).map_err(|cause| SolveError::Factor { cause, effort: self.effort })?;
+        let factored = self.tangent.factorize(self.discretization, &self.placement, assembled, &mut self.external);
+        let negative = factored.map_err(|cause| SolveError::Factor { cause, effort: self.effort })?;
         last.negative_pivots = negative.count;
         last.shift = 2.0 * negative.largest;
         Ok(last)
@@ -168,7 +161,7 @@ impl<'a> Descent<'a> {
     pub(super) fn step(&mut self, last: &Iterate) -> Result<(), SolveError> {
         let indefinite = last.negative_pivots > 0;
         if indefinite {
-            self.solver.make_positive();
+            self.tangent.solver.make_positive();
         }
         let direction = self.direction(indefinite);
         let slope = product(&self.gradient, &direction);
@@ -201,13 +194,13 @@ impl<'a> Descent<'a> {
     fn direction(&mut self, indefinite: bool) -> Vec<f64> {
         let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
         if self.external.has_skew() && !indefinite {
-            let Self { solver, placement, external, discretization, pattern, values, .. } = self;
-            let solved = external.solve(discretization, placement, (pattern, values), solver, &direction);
+            let Self { tangent, placement, external, discretization, .. } = self;
+            let solved = external.solve(discretization, placement, &tangent.solver, &direction);
             if product(&self.gradient, &solved) < 0.0 {
                 return solved;
             }
         }
-        self.solver.solve(&mut direction);
+        self.tangent.solver.solve(&mut direction);
         direction
     }
 

@@ -4,18 +4,15 @@ use crate::equilibrium::assembly::{Assembled, Want};
 use crate::equilibrium::descent::{Ended, largest, length};
 use crate::equilibrium::external::External;
 use crate::equilibrium::newton::{Effort, Iterate, Standing, Workspace};
-use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::solve_error::SolveError;
-use crate::equilibrium::sparse::SparseSolver;
+use crate::equilibrium::tangent::Tangent;
 use crate::model::{Discretization, Placement};
 
 /// The pieces of a workspace that the equations take.
 pub(super) struct Equations<'w> {
     discretization: &'w Discretization,
-    pattern: &'w Pattern,
-    solver: &'w mut SparseSolver,
+    tangent: &'w mut Tangent,
     assembled: &'w mut Assembled,
-    values: &'w mut [f64],
     /// Whether residual, stiffness and factor are those of the state that is asked for next.
     ready: bool,
 }
@@ -38,9 +35,9 @@ pub(super) struct Point<'w> {
 
 impl<'w> Equations<'w> {
     pub fn of(work: &'w mut Workspace) -> Self {
-        let Workspace { discretization, pattern, solver, assembled, values, factored_at } = work;
+        let Workspace { discretization, tangent, assembled, factored_at } = work;
         *factored_at = None;
-        Self { discretization, pattern, solver, assembled, values, ready: false }
+        Self { discretization, tangent, assembled, ready: false }
     }
 
     /// Ready for [`Self::at_standing`] at this state, with the stiffness and factor that a solve left there if there are
@@ -52,8 +49,8 @@ impl<'w> Equations<'w> {
             return Ok(Self::of(work));
         }
         work.factorize_at(at)?;
-        let Workspace { discretization, pattern, solver, assembled, values, .. } = work;
-        Ok(Self { discretization, pattern, solver, assembled, values, ready: true })
+        let Workspace { discretization, tangent, assembled, .. } = work;
+        Ok(Self { discretization, tangent, assembled, ready: true })
     }
 
     /// At a state.
@@ -69,7 +66,7 @@ impl<'w> Equations<'w> {
         let placement = discretization.unknowns.place(&free, parameter);
         let displacement = placement.displacement();
         let ready = std::mem::take(&mut self.ready);
-        let external = if ready {
+        let mut external = if ready {
             External::dead(discretization, &displacement, parameter)
         } else {
             self.assembled.assemble(discretization, &displacement, Want::Stiffness);
@@ -91,10 +88,8 @@ impl<'w> Equations<'w> {
             return Err(SolveError::NotANumber { last: iterate, effort: *effort });
         }
         if !ready {
-            self.pattern.fill(discretization, &placement, self.assembled, self.values);
-            self.pattern.add(&placement.curvature(&forces), self.values);
             effort.factorizations += 1;
-            let factored = self.solver.factorize(self.values);
+            let factored = self.tangent.factorize(discretization, &placement, self.assembled, &mut external);
             let negative = factored.map_err(|cause| SolveError::Factor { cause, effort: *effort })?;
             iterate.negative_pivots = negative.count;
             iterate.shift = 2.0 * negative.largest;
@@ -116,9 +111,9 @@ impl<'w> Equations<'w> {
 
     /// Solves ∂R/∂q x = b at a point.
     pub fn solve(&mut self, point: &Point, right_hand_side: &[f64]) -> Vec<f64> {
-        let Self { discretization, pattern, solver, values, .. } = self;
+        let Self { discretization, tangent: Tangent { solver, .. }, .. } = self;
         match point.external.has_skew() {
-            true => point.external.solve(discretization, &point.placement, (pattern, values), solver, right_hand_side),
+            true => point.external.solve(discretization, &point.placement, solver, right_hand_side),
             false => {
                 let mut solution = right_hand_side.to_vec();
                 solver.solve(&mut solution);

@@ -5,7 +5,6 @@
 
 use crate::equilibrium::assembly::{Assembled, neighbour, neighbour_slot, stencil, stencil_len};
 use crate::equilibrium::gmres::gmres;
-use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::sparse::SparseSolver;
 use crate::model::{Discretization, Loads, Placement};
 
@@ -21,6 +20,8 @@ pub(super) struct External {
     pub forces: Vec<[f64; 3]>,
     /// −½ (∂f/∂u − ∂f/∂uᵀ) in the stencil of the stiffness; empty where nothing turns with the shell.
     skew: Vec<f64>,
+    /// The symmetric part of the matrix on the unknowns; empty where there is no skew one.
+    symmetric: Vec<f64>,
 }
 
 impl External {
@@ -34,7 +35,7 @@ impl External {
 
     /// Forces where no load follows the shell.
     pub fn dead(discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64) -> Self {
-        Self { forces: Self::forces_at(discretization, displacement, parameter), skew: Vec::new() }
+        Self { forces: Self::forces_at(discretization, displacement, parameter), ..Self::default() }
     }
 
     /// Forces and tangent; the symmetric part of the tangent is added to the stiffness in `assembled`.
@@ -45,7 +46,7 @@ impl External {
         assembled: &mut Assembled,
     ) -> Self {
         let forces = Self::forces_at(discretization, displacement, parameter);
-        let mut external = Self { forces, skew: Vec::new() };
+        let mut external = Self { forces, skew: Vec::new(), symmetric: Vec::new() };
         if discretization.loads.follow() {
             external.skew = vec![0.0; assembled.stiffness.len()];
             external.add_tangent(&discretization.loads, discretization, displacement, parameter, assembled);
@@ -88,6 +89,11 @@ impl External {
         subtract(internal, &self.forces)
     }
 
+    /// Keeps the symmetric part of the matrix on the unknowns, which a factorization takes the place of.
+    pub fn keep(&mut self, symmetric: &[f64]) {
+        self.symmetric = symmetric.to_vec();
+    }
+
     /// Whether there is a skew part.
     pub fn has_skew(&self) -> bool {
         !self.skew.is_empty()
@@ -125,12 +131,11 @@ impl External {
         &self,
         discretization: &Discretization,
         placement: &Placement,
-        (pattern, values): (&Pattern, &[f64]),
-        solver: &mut SparseSolver,
+        solver: &SparseSolver,
         right_hand_side: &[f64],
     ) -> Vec<f64> {
         let whole = |x: &[f64]| {
-            let mut product = pattern.multiply(values, x);
+            let mut product = solver.multiply(&self.symmetric, x);
             let moved = placement.velocity(x, &[]);
             let skew = placement.restrict(&self.multiply_skew(discretization, &moved));
             product.iter_mut().zip(skew).for_each(|(a, b)| *a += b);

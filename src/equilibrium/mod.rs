@@ -15,6 +15,7 @@ mod solve_error;
 mod sparse;
 mod stability;
 mod symmetry;
+mod tangent;
 mod timing;
 
 pub use assembly::{Assembled, Want, strain_energy};

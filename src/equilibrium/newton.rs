@@ -11,10 +11,9 @@ use std::sync::Arc;
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::descent::{Descent, Ended, product};
 use crate::equilibrium::external::{External, subtract, work};
-use crate::equilibrium::pattern::Pattern;
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
-use crate::equilibrium::sparse::SparseSolver;
 use crate::equilibrium::stability::SoftMode;
+use crate::equilibrium::tangent::Tangent;
 use crate::model::Discretization;
 use crate::scene::Scene;
 use crate::spline::Mesh;
@@ -101,10 +100,8 @@ impl<'s> Standing<'s> {
 #[derive(Debug)]
 pub struct Workspace {
     pub(super) discretization: Discretization,
-    pub(super) pattern: Pattern,
-    pub(super) solver: SparseSolver,
+    pub(super) tangent: Tangent,
     pub(super) assembled: Assembled,
-    pub(super) values: Vec<f64>,
     /// Where the stiffness in `assembled` and its factor were formed, and its negative pivots.
     pub(super) factored_at: Option<Factored>,
 }
@@ -124,11 +121,9 @@ impl Workspace {
     /// Where supports or loads do not fit the mesh, or the factor does not fit in memory.
     pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, WorkspaceError> {
         let discretization = Discretization::new(scene, mesh)?;
-        let pattern = Pattern::new(&discretization);
-        let solver = SparseSolver::new(pattern.column_starts.clone(), pattern.rows.clone())?;
+        let tangent = Tangent::new(&discretization)?;
         let assembled = Assembled::new(&discretization);
-        let values = vec![0.0; pattern.entry_count()];
-        Ok(Self { discretization, pattern, solver, assembled, values, factored_at: None })
+        Ok(Self { discretization, tangent, assembled, factored_at: None })
     }
 
     /// The mesh's tables and unknowns.
@@ -162,17 +157,23 @@ impl Workspace {
             return Ok(known.negative);
         }
         self.factored_at = None;
-        let Self { discretization, pattern, solver, assembled, values, .. } = self;
+        self.form_at(at);
+        let effort = Effort::default();
+        let factored = self.tangent.solver.factorize();
+        let negative = factored.map_err(|cause| SolveError::Factor { cause, effort })?.count;
+        self.factored_at = Some(Factored::new(at, negative));
+        Ok(negative)
+    }
+
+    /// The matrix on the free unknowns at a state, not factored.
+    pub(super) fn form_at(&mut self, at: Standing) -> &[f64] {
+        self.factored_at = None;
+        let Self { discretization, tangent, assembled, .. } = self;
         assembled.assemble(discretization, at.displacement, Want::Stiffness);
         let external = External::new(discretization, at.displacement, at.parameter, assembled);
         let free = discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
         let placement = discretization.unknowns.place(&free, at.parameter);
-        pattern.fill(discretization, &placement, assembled, values);
-        pattern.add(&placement.curvature(&external.subtract_from(&assembled.residual)), values);
-        let effort = Effort::default();
-        let negative = solver.factorize(values).map_err(|cause| SolveError::Factor { cause, effort })?.count;
-        self.factored_at = Some(Factored::new(at, negative));
-        Ok(negative)
+        tangent.form(discretization, &placement, assembled, &external)
     }
 }
 
@@ -276,7 +277,7 @@ impl<'a> Equilibrium<'a> {
     fn predict(&mut self, from: Standing, to: f64) -> (Vec<f64>, Option<Vec<f64>>, Before) {
         // Where the stiffness has no factor (exactly at a limit point), the old unknowns are as good a start.
         let negative = self.work.factorize_at(from).unwrap_or(usize::MAX);
-        let Workspace { discretization, solver, assembled, .. } = &mut *self.work;
+        let Workspace { discretization, tangent: Tangent { solver, .. }, assembled, .. } = &mut *self.work;
         let unknowns = &discretization.unknowns;
         let old = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
         let placement = unknowns.place(&old, from.parameter);

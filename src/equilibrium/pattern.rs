@@ -1,18 +1,15 @@
-//! From the stencil on control points to the sparse matrix on free unknowns: K_q = Tᵀ K T, lower triangle by columns.
+//! From the stencil on control points to the sparse matrix on free unknowns: K_q = Tᵀ K T.
 //!
 //! Built once per mesh. Almost every block belongs to two control points whose components are unknowns of their own,
 //! and is copied; the others (supports, symmetry, joints) go through their directions.
 
 use crate::equilibrium::assembly::{Assembled, neighbour, stencil};
+use crate::equilibrium::sparse::{Couplings, SparseSolver};
 use crate::model::{Discretization, Placement};
 
 /// Where every block of the stencil goes.
 #[derive(Debug)]
 pub struct Pattern {
-    /// Column starts of the lower triangle; length unknowns + 1.
-    pub column_starts: Vec<usize>,
-    /// Row of each entry, ascending in a column; the first of a column is its diagonal.
-    pub rows: Vec<usize>,
     copied: Vec<CopiedBlock>,
     projected: Vec<ProjectedBlock>,
 }
@@ -37,59 +34,36 @@ struct ProjectedBlock {
     targets: Vec<u32>,
 }
 
+/// Which free unknowns meet in the matrix: those of control points that share an element.
+pub fn couplings(discretization: &Discretization) -> Couplings {
+    let unknowns = &discretization.unknowns;
+    let of_point = |point| unknowns.entries_of(point).iter().map(|entry| entry.coordinate).collect();
+    Couplings {
+        unknowns: unknowns.count(),
+        groups: (0..discretization.mesh.control_points.len()).map(of_point).collect(),
+        pairs: point_pairs(discretization).into_iter().map(|(_, points)| points).collect(),
+    }
+}
+
 impl Pattern {
-    /// Structure of the matrix of a discretization.
-    pub fn new(discretization: &Discretization) -> Self {
-        let pairs = point_pairs(discretization);
-        let unknowns = &discretization.unknowns;
-        let mut columns: Vec<Vec<usize>> = (0..unknowns.count()).map(|unknown| vec![unknown]).collect();
-        for (_, [i, j]) in &pairs {
-            for a in unknowns.entries_of(*i) {
-                for b in unknowns.entries_of(*j) {
-                    columns[a.coordinate.min(b.coordinate)].push(a.coordinate.max(b.coordinate));
-                }
-            }
-        }
-        let mut column_starts = vec![0];
-        let mut rows = Vec::new();
-        for column in &mut columns {
-            column.sort_unstable();
-            column.dedup();
-            rows.extend_from_slice(column);
-            column_starts.push(rows.len());
-        }
-        let mut pattern = Self { column_starts, rows, copied: Vec::new(), projected: Vec::new() };
-        for (block, points) in pairs {
-            pattern.place(discretization, block, points);
+    /// For a matrix that a solver holds for these [`couplings`].
+    pub fn new(discretization: &Discretization, solver: &SparseSolver) -> Self {
+        let mut pattern = Self { copied: Vec::new(), projected: Vec::new() };
+        for (block, points) in point_pairs(discretization) {
+            pattern.place(discretization, solver, block, points);
         }
         pattern
     }
 
-    /// Number of stored entries.
-    pub fn entry_count(&self) -> usize {
-        self.rows.len()
-    }
-
-    fn target(&self, a: usize, b: usize) -> u32 {
-        let (column, row) = (a.min(b), a.max(b));
-        let start = self.column_starts[column];
-        let found = self.rows[start..self.column_starts[column + 1]].binary_search(&row);
-        // Every pair was put into the structure above.
-        found.map_or(NOT_STORED, |offset| (start + offset) as u32)
-    }
-
-    fn place(&mut self, discretization: &Discretization, block: usize, points: [usize; 2]) {
+    fn place(&mut self, discretization: &Discretization, solver: &SparseSolver, block: usize, points: [usize; 2]) {
         let unknowns = &discretization.unknowns;
         let [i, j] = points;
         let stored = |a: usize, b: usize| i != j || a >= b;
         if unknowns.is_regular(i) && unknowns.is_regular(j) {
             let (a, b) = (unknowns.entries_of(i)[0].coordinate, unknowns.entries_of(j)[0].coordinate);
-            let targets =
-                std::array::from_fn(
-                    |k| {
-                        if stored(k / 3, k % 3) { self.target(a + k / 3, b + k % 3) } else { NOT_STORED }
-                    },
-                );
+            let targets = std::array::from_fn(|k| {
+                if stored(k / 3, k % 3) { target(solver, a + k / 3, b + k % 3) } else { NOT_STORED }
+            });
             self.copied.push(CopiedBlock { block, targets });
             return;
         }
@@ -98,34 +72,9 @@ impl Pattern {
             .iter()
             .enumerate()
             .flat_map(|(x, a)| unknowns.entries_of(j).iter().enumerate().map(move |(y, b)| (x, a, y, b)))
-            .map(|(x, a, y, b)| if stored(x, y) { self.target(a.coordinate, b.coordinate) } else { NOT_STORED })
+            .map(|(x, a, y, b)| if stored(x, y) { target(solver, a.coordinate, b.coordinate) } else { NOT_STORED })
             .collect();
         self.projected.push(ProjectedBlock { block, points, targets });
-    }
-
-    /// The symmetric matrix with these values times a vector.
-    pub fn multiply(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
-        let mut product = vec![0.0; vector.len()];
-        for column in 0..vector.len() {
-            for entry in self.column_starts[column]..self.column_starts[column + 1] {
-                let row = self.rows[entry];
-                product[row] += values[entry] * vector[column];
-                if row != column {
-                    product[column] += values[entry] * vector[row];
-                }
-            }
-        }
-        product
-    }
-
-    /// Adds terms (row, column, value) of pairs of unknowns that share a control point, row ≥ column.
-    pub fn add(&self, terms: &[(usize, usize, f64)], values: &mut [f64]) {
-        for (row, column, value) in terms {
-            let target = self.target(*row, *column);
-            if target != NOT_STORED {
-                values[target as usize] += value;
-            }
-        }
     }
 
     /// Fills the values of the matrix.
@@ -169,6 +118,11 @@ impl Pattern {
             }
         }
     }
+}
+
+fn target(solver: &SparseSolver, a: usize, b: usize) -> u32 {
+    // They meet, or they would not stand in a block.
+    solver.place(a, b).map_or(NOT_STORED, |place| place as u32)
 }
 
 /// All pairs of control points i ≤ j of the stencil, with the offset of their block.
@@ -227,19 +181,11 @@ mod tests {
             let field = placement.velocity(&direction, &[]);
             let expected = placement.restrict(&assembled.multiply(&discretization, &field));
 
-            let pattern = Pattern::new(&discretization);
-            let mut values = vec![0.0; pattern.entry_count()];
+            let solver = SparseSolver::new(&couplings(&discretization)).unwrap();
+            let pattern = Pattern::new(&discretization, &solver);
+            let mut values = vec![0.0; solver.value_count()];
             pattern.fill(&discretization, &placement, &assembled, &mut values);
-            let mut product = vec![0.0; count];
-            for column in 0..count {
-                for entry in pattern.column_starts[column]..pattern.column_starts[column + 1] {
-                    let row = pattern.rows[entry];
-                    product[row] += values[entry] * direction[column];
-                    if row != column {
-                        product[column] += values[entry] * direction[row];
-                    }
-                }
-            }
+            let product = solver.multiply(&values, &direction);
             let scale = expected.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
             for (a, b) in product.iter().zip(&expected) {
                 assert!((a - b).abs() < 1e-11 * scale, "{symmetry:?} {arc_deg}°: {a} {b}");

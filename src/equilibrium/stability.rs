@@ -48,11 +48,9 @@ pub struct SoftMode {
 /// # Errors
 /// Where the stiffness has no factor.
 pub fn soft_mode(work: &mut Workspace, at: Standing) -> Result<SoftMode, SolveError> {
-    work.factorize_at(at)?;
-    // The factor becomes that of a shifted matrix.
-    work.factored_at = None;
+    let stiffness = work.form_at(at).to_vec();
     let free = work.discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
-    let mut slicing = Slicing { mass: mass(work, &free, at.parameter), stiffness: work.values.clone(), work, tried: 0 };
+    let mut slicing = Slicing { mass: mass(work, &free, at.parameter), stiffness, work, tried: 0 };
     // A start that no symmetry is orthogonal to, the same in every run.
     let start: Vec<f64> = (0..free.len()).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
     slicing.shift_below(&start)?;
@@ -70,7 +68,7 @@ pub fn soft_mode(work: &mut Workspace, at: Standing) -> Result<SoftMode, SolveEr
 
 /// Tᵀ m T in the structure of the stiffness.
 fn mass(work: &Workspace, free: &[f64], parameter: f64) -> Vec<f64> {
-    let Workspace { discretization, pattern, .. } = work;
+    let Workspace { discretization, tangent, .. } = work;
     let mut diagonal = Assembled::new(discretization);
     let blocks = diagonal.stiffness.len() / discretization.mesh.control_points.len();
     for (point, weight) in Metric::new(&discretization.mesh).weights.iter().enumerate() {
@@ -78,9 +76,7 @@ fn mass(work: &Workspace, free: &[f64], parameter: f64) -> Vec<f64> {
         (0..3).for_each(|c| diagonal.stiffness[point * blocks + 4 * c] = *weight);
     }
     let placement = discretization.unknowns.place(free, parameter);
-    let mut values = vec![0.0; pattern.entry_count()];
-    pattern.fill(discretization, &placement, &diagonal, &mut values);
-    values
+    tangent.project(discretization, &placement, &diagonal)
 }
 
 /// K − σ M for changing σ.
@@ -94,13 +90,13 @@ struct Slicing<'w> {
 impl Slicing<'_> {
     /// Factors K − σ M; returns the number of eigenvalues below σ.
     fn count_below(&mut self, shift: f64) -> Result<usize, SolveError> {
-        let Workspace { solver, values, .. } = &mut *self.work;
-        for (value, (k, m)) in values.iter_mut().zip(self.stiffness.iter().zip(&self.mass)) {
+        let solver = &mut self.work.tangent.solver;
+        for (value, (k, m)) in solver.matrix_mut().iter_mut().zip(self.stiffness.iter().zip(&self.mass)) {
             *value = k - shift * m;
         }
         self.tried += 1;
         let effort = Effort::default();
-        solver.factorize(values).map(|negative| negative.count).map_err(|cause| SolveError::Factor { cause, effort })
+        solver.factorize().map(|negative| negative.count).map_err(|cause| SolveError::Factor { cause, effort })
     }
 
     /// Puts the shift below the lowest eigenvalue and not far from it, and leaves its factor in the solver.
@@ -127,15 +123,15 @@ impl Slicing<'_> {
 
     /// vᵀ A v.
     fn form(&self, vector: &[f64], values: &[f64]) -> f64 {
-        product(vector, &self.work.pattern.multiply(values, vector))
+        product(vector, &self.work.tangent.solver.multiply(values, vector))
     }
 
     /// Inverse iteration with the factor at hand: mode, eigenvalue and iterations.
     fn iterate(&mut self, mut vector: Vec<f64>, settled: f64) -> (Vec<f64>, f64, usize) {
         let mut last = f64::INFINITY;
         for iteration in 1..=MAX_ITERATIONS {
-            let mut next = self.work.pattern.multiply(&self.mass, &vector);
-            self.work.solver.solve(&mut next);
+            let mut next = self.work.tangent.solver.multiply(&self.mass, &vector);
+            self.work.tangent.solver.solve(&mut next);
             let length = self.form(&next, &self.mass).sqrt();
             vector = next.into_iter().map(|value| value / length).collect();
             let eigenvalue = self.form(&vector, &self.stiffness);

@@ -1,6 +1,7 @@
 //! The pieces of a Newton iteration one by one, for timing.
 
 use crate::equilibrium::assembly::Want;
+use crate::equilibrium::external::External;
 use crate::equilibrium::newton::{Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 
@@ -44,8 +45,8 @@ impl<'a> KernelRun<'a> {
         KernelCost {
             assembly_flops: points * per_point,
             table_bytes: (size_of_val(&tables.functions[..]) + size_of_val(&tables.batches[..])) as f64,
-            factor_flops: self.work.solver.flops(),
-            factor_bytes: 8.0 * self.work.solver.factor_len() as f64,
+            factor_flops: self.work.tangent.solver.flops(),
+            factor_bytes: 8.0 * self.work.tangent.solver.factor_len() as f64,
         }
     }
 
@@ -61,12 +62,12 @@ impl<'a> KernelRun<'a> {
 
     /// Matrix on the unknowns and its factor.
     pub fn factor(&mut self) {
-        let Workspace { discretization, pattern, solver, assembled, values, .. } = &mut *self.work;
+        let Workspace { discretization, tangent, assembled, .. } = &mut *self.work;
         let free = discretization.unknowns.of_displacement(self.at.displacement, self.at.turns, self.at.parameter);
         let placement = discretization.unknowns.place(&free, self.at.parameter);
-        pattern.fill(discretization, &placement, assembled, values);
-        // It had a factor in `new`, and the values are the same.
-        let _ = solver.factorize(values);
+        let mut external = External::dead(discretization, self.at.displacement, self.at.parameter);
+        // It had a factor in `new`, and the matrix is the same.
+        let _ = tangent.factorize(discretization, &placement, assembled, &mut external);
     }
 
     /// One right-hand side.
@@ -75,7 +76,7 @@ impl<'a> KernelRun<'a> {
         let free = unknowns.of_displacement(self.at.displacement, self.at.turns, self.at.parameter);
         let placement = unknowns.place(&free, self.at.parameter);
         let mut right_hand_side = placement.restrict(&self.work.assembled.residual);
-        self.work.solver.solve(&mut right_hand_side);
+        self.work.tangent.solver.solve(&mut right_hand_side);
     }
 
     /// All of it.

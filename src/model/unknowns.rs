@@ -160,12 +160,17 @@ impl Unknowns {
     /// Numbers the free motions of sections and the components that were not eliminated, along the length, and lists each
     /// control point's entries.
     fn number(&mut self, eliminated: &BTreeMap<usize, Expression>) {
-        self.number_motions();
         let components = 3 * self.points.len();
         let mut of_component = BTreeMap::new();
-        for component in (0..components).filter(|component| !eliminated.contains_key(component)) {
-            of_component.insert(component, self.home.len());
-            self.home.push(Home::Component(component / 3, component % 3));
+        self.motions = vec![[usize::MAX; 6]; self.supports.sections.len()];
+        for component in 0..components {
+            if component % 3 == 0 {
+                self.number_motions_at(component / 3);
+            }
+            if !eliminated.contains_key(&component) {
+                of_component.insert(component, self.home.len());
+                self.home.push(Home::Component(component / 3, component % 3));
+            }
         }
         self.count = self.home.len();
         self.number_given_motions();
@@ -177,17 +182,17 @@ impl Unknowns {
         }
     }
 
-    /// Free motions come first; given ones are put behind everything else later.
-    fn number_motions(&mut self) {
-        for (section, held) in self.supports.sections.iter().enumerate() {
-            let mut coordinates = [usize::MAX; 6];
+    /// The free motions of a section come with the first control point of its rigid row: far from the rows that they move,
+    /// they would make a banded matrix a full one. Given motions are put behind everything else later.
+    fn number_motions_at(&mut self, point: usize) {
+        for (section, held) in self.supports.sections.iter().enumerate().filter(|(_, held)| held.rigid_row[0] == point)
+        {
             for (motion, law) in held.motions.iter().enumerate() {
                 if law.is_none() {
-                    coordinates[motion] = self.home.len();
-                    self.home.push(Home::Motion { section, motion, point: held.rigid_row[0] });
+                    self.motions[section][motion] = self.home.len();
+                    self.home.push(Home::Motion { section, motion, point });
                 }
             }
-            self.motions.push(coordinates);
         }
     }
 

@@ -1,0 +1,394 @@
+//! Factorization of a long and narrow structure by strips of twelve rows, from both ends at once.
+//!
+//! The unknowns are cut into a head, a separator and a tail that has nothing to do with the head. The head is eliminated
+//! in the order of the unknowns and the tail in the reverse order, each a [`Chain`] that ends with the rows of the
+//! separator, on which both leave their share (nested dissection with one cut: George, *SIAM J. Numer. Anal.* 10, 1973,
+//! p. 345); the separator comes last. Head and tail are independent, so that two threads take half the time, and all sums
+//! have one order on any number of threads. A cut costs some b³ operations for a half-bandwidth b; where that does not
+//! pay, all unknowns are head.
+//!
+//! Each chain holds its rows of the matrix, and of L, as strips; see [`super::strip_kernel`]. Entries of the matrix
+//! between two unknowns of the separator stand with the head.
+
+use crate::equilibrium::sparse::strip_kernel::{ChainData, Column, HEIGHT, SolveData, backward, eliminate, forward};
+use crate::equilibrium::sparse::{Couplings, FactorError, NegativePivots};
+
+/// A cut must leave the longer side with at most this share of the operations.
+const CUT_PAYS: f64 = 0.8;
+
+/// Rows in the order in which they are eliminated: its own, and then those of the separator.
+#[derive(Debug, Default)]
+pub(super) struct Chain {
+    /// Own unknowns.
+    pub own: usize,
+    /// Strips that they take.
+    pub own_strips: usize,
+    /// First block of columns of each strip; of the separator's, at most `own_strips`.
+    pub first: Vec<usize>,
+    /// First column of each strip in the storage, and behind the last.
+    pub start: Vec<usize>,
+}
+
+impl Chain {
+    /// From the first column of each row, own rows first.
+    fn new(own: usize, separator: usize, first_of: impl Fn(usize) -> usize) -> Self {
+        let own_strips = own.div_ceil(HEIGHT);
+        let strips = own_strips + separator.div_ceil(HEIGHT);
+        let place = |row: usize| if row < own { row } else { own_strips * HEIGHT + (row - own) };
+        let mut first: Vec<usize> = (0..strips).map(|strip| strip.min(own_strips)).collect();
+        for row in 0..own + separator {
+            let strip = place(row) / HEIGHT;
+            first[strip] = first[strip].min(place(first_of(row)) / HEIGHT);
+        }
+        let mut start = vec![0];
+        for (strip, first) in first.iter().enumerate() {
+            start.push(start[strip] + HEIGHT * (strip + 1 - first));
+        }
+        Self { own, own_strips, first, start }
+    }
+
+    /// Rows with the padding.
+    fn rows(&self) -> usize {
+        HEIGHT * self.first.len()
+    }
+
+    /// Columns of all strips.
+    fn columns(&self) -> usize {
+        self.start.last().copied().unwrap_or(0)
+    }
+
+    /// Columns of the widest strip.
+    fn widest(&self) -> usize {
+        self.start.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or(0)
+    }
+
+    /// Where the storage holds an entry of the lower triangle.
+    fn place(&self, row: usize, column: usize) -> Option<usize> {
+        let strip = row / HEIGHT;
+        let from_first = column.checked_sub(HEIGHT * self.first[strip])?;
+        Some((self.start[strip] + from_first) * HEIGHT + row % HEIGHT)
+    }
+}
+
+/// Which part of a structure an unknown belongs to, and its row there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Part {
+    Head(usize),
+    Separator(usize),
+    Tail(usize),
+}
+
+/// Structure, and room for one factor.
+#[derive(Debug)]
+pub struct StripSolver {
+    unknowns: usize,
+    /// The separator's unknowns.
+    cut: std::ops::Range<usize>,
+    head: Chain,
+    tail: Chain,
+    middle: Chain,
+    flops: f64,
+    /// The matrix and then its factor: head, tail and separator.
+    numbers: Vec<f64>,
+    inverses: [Vec<f64>; 3],
+    scratch: [Vec<f64>; 2],
+}
+
+impl StripSolver {
+    /// Chooses the cut; there is no room for numbers yet.
+    pub(super) fn structure(couplings: &Couplings) -> Self {
+        let envelope = Envelope::new(couplings);
+        let count = couplings.unknowns;
+        let cut = envelope.best_cut();
+        let (begin, end) = (cut.start, cut.end);
+        let head = Chain::new(begin, end - begin, |row| envelope.first[row]);
+        let tail_own = count - end;
+        let reversed = |unknown: usize| count - 1 - unknown;
+        let tail = Chain::new(tail_own, end - begin, |row| match row < tail_own {
+            true => reversed(envelope.last[reversed(row)]),
+            false => match envelope.last[begin + row - tail_own] {
+                last if last >= end => reversed(last),
+                // Nothing of the tail: the row begins with the separator.
+                _ => tail_own,
+            },
+        });
+        let middle = Chain::new(end - begin, 0, |_| 0);
+        let flops = envelope.flops(&cut);
+        Self {
+            unknowns: count,
+            cut,
+            head,
+            tail,
+            middle,
+            flops,
+            numbers: Vec::new(),
+            inverses: Default::default(),
+            scratch: Default::default(),
+        }
+    }
+
+    /// Takes the memory.
+    pub(super) fn with_room(mut self) -> Result<Self, FactorError> {
+        let entries = self.value_count();
+        let too_large = FactorError::TooLarge { size: self.unknowns, entries };
+        let room = |length: usize| {
+            let mut numbers: Vec<f64> = Vec::new();
+            numbers.try_reserve_exact(length).map_err(|_| too_large)?;
+            numbers.resize(length, 0.0);
+            Ok(numbers)
+        };
+        self.numbers = room(entries + HEIGHT * self.middle.columns())?;
+        for (inverses, chain) in self.inverses.iter_mut().zip([&self.head, &self.tail, &self.middle]) {
+            *inverses = room(HEIGHT * chain.own_strips)?;
+        }
+        let widest = self.head.widest().max(self.middle.widest());
+        self.scratch = [room(HEIGHT * widest)?, room(HEIGHT * self.tail.widest())?];
+        Ok(self)
+    }
+
+    /// Numbers that the values of a matrix take.
+    pub(super) fn value_count(&self) -> usize {
+        HEIGHT * (self.head.columns() + self.tail.columns())
+    }
+
+    /// Sum of the squares of the column counts.
+    pub(super) fn flops(&self) -> f64 {
+        self.flops
+    }
+
+    fn part(&self, unknown: usize) -> Part {
+        if unknown < self.cut.start {
+            Part::Head(unknown)
+        } else if unknown < self.cut.end {
+            Part::Separator(unknown - self.cut.start)
+        } else {
+            Part::Tail(self.unknowns - 1 - unknown)
+        }
+    }
+
+    /// Where the values hold an entry.
+    pub(super) fn place(&self, a: usize, b: usize) -> Option<usize> {
+        let in_head = |row: usize, column: usize| self.head.place(row.max(column), row.min(column));
+        let in_tail = |row: usize, column: usize| {
+            let place = self.tail.place(row.max(column), row.min(column))?;
+            Some(HEIGHT * self.head.columns() + place)
+        };
+        let separator_in = |chain: &Chain, row: usize| HEIGHT * chain.own_strips + row;
+        match (self.part(a), self.part(b)) {
+            (Part::Head(a), Part::Head(b)) => in_head(a, b),
+            (Part::Head(a), Part::Separator(b)) | (Part::Separator(b), Part::Head(a)) => {
+                in_head(a, separator_in(&self.head, b))
+            }
+            (Part::Separator(a), Part::Separator(b)) => {
+                in_head(separator_in(&self.head, a), separator_in(&self.head, b))
+            }
+            (Part::Tail(a), Part::Separator(b)) | (Part::Separator(b), Part::Tail(a)) => {
+                in_tail(a, separator_in(&self.tail, b))
+            }
+            (Part::Tail(a), Part::Tail(b)) => in_tail(a, b),
+            (Part::Head(_), Part::Tail(_)) | (Part::Tail(_), Part::Head(_)) => None,
+        }
+    }
+
+    /// Places on head and separator, and on tail and separator, of what stands at the unknowns.
+    fn spread(&self, vector: &[f64]) -> [Vec<f64>; 2] {
+        let mut parts = [vec![0.0; self.head.rows()], vec![0.0; self.tail.rows()]];
+        parts[0][..self.cut.start].copy_from_slice(&vector[..self.cut.start]);
+        parts[0][HEIGHT * self.head.own_strips..][..self.cut.len()].copy_from_slice(&vector[self.cut.clone()]);
+        for (to, from) in parts[1].iter_mut().zip(vector[self.cut.end..].iter().rev()) {
+            *to = *from;
+        }
+        parts
+    }
+
+    /// The matrix with these values times a vector.
+    pub(super) fn multiply(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
+        let (of_head, of_tail) = columns(values).split_at(self.head.columns());
+        let [head, mut tail] = self.spread(vector);
+        let separator = |chain: &Chain| HEIGHT * chain.own_strips..HEIGHT * chain.own_strips + self.cut.len();
+        tail[separator(&self.tail)].copy_from_slice(&vector[self.cut.clone()]);
+        let head = multiply_chain(&self.head, of_head, &head);
+        let tail = multiply_chain(&self.tail, of_tail, &tail);
+        let mut product = vec![0.0; vector.len()];
+        self.gather([&head, &tail], &mut product);
+        for (sum, more) in product[self.cut.clone()].iter_mut().zip(&tail[separator(&self.tail)]) {
+            *sum += more;
+        }
+        product
+    }
+
+    /// Back to the order of the unknowns; the separator's from the head.
+    fn gather(&self, [head, tail]: [&[f64]; 2], vector: &mut [f64]) {
+        vector[..self.cut.start].copy_from_slice(&head[..self.cut.start]);
+        vector[self.cut.clone()].copy_from_slice(&head[HEIGHT * self.head.own_strips..][..self.cut.len()]);
+        for (to, from) in vector[self.cut.end..].iter_mut().rev().zip(tail) {
+            *to = *from;
+        }
+    }
+
+    /// The matrix, to be filled.
+    pub(super) fn matrix_mut(&mut self) -> &mut [f64] {
+        let entries = self.value_count();
+        &mut self.numbers[..entries]
+    }
+
+    /// Numeric L D Lᵀ in place of the matrix; returns its negative pivots.
+    pub(super) fn factorize(&mut self) -> Result<NegativePivots, FactorError> {
+        let Self { head, tail, middle, numbers, inverses, scratch, .. } = self;
+        let (of_head, rest) = columns_mut(numbers).split_at_mut(head.columns());
+        let (of_tail, of_middle) = rest.split_at_mut(tail.columns());
+        let [head_inverses, tail_inverses, middle_inverses] = inverses;
+        let [row, other_row] = scratch.each_mut().map(|row| columns_mut(row));
+        let (one, other) = rayon::join(
+            || {
+                let (factor, inverses) = (&mut *of_head, &mut head_inverses[..]);
+                eliminate(head, &mut ChainData { factor, inverses, row: &mut *row })
+            },
+            || {
+                let (factor, inverses) = (&mut *of_tail, &mut tail_inverses[..]);
+                eliminate(tail, &mut ChainData { factor, inverses, row: other_row })
+            },
+        );
+        let size = self.unknowns;
+        one.map_err(|place| FactorError::BadPivot { index: place, size })?;
+        other.map_err(|place| FactorError::BadPivot { index: size - 1 - place, size })?;
+        for strip in 0..middle.first.len() {
+            let to = &mut of_middle[middle.start[strip]..middle.start[strip + 1]];
+            let left = &of_head[head.start[head.own_strips + strip + 1] - to.len()..][..to.len()];
+            let right = &of_tail[tail.start[tail.own_strips + strip + 1] - to.len()..][..to.len()];
+            for (to, (a, b)) in
+                to.as_flattened_mut().iter_mut().zip(left.as_flattened().iter().zip(right.as_flattened()))
+            {
+                for v in 0..a.len() {
+                    to[v] = a[v] + b[v];
+                }
+            }
+        }
+        eliminate(middle, &mut ChainData { factor: of_middle, inverses: middle_inverses, row })
+            .map_err(|place| FactorError::BadPivot { index: self.cut.start + place, size })?;
+        let mut negative = NegativePivots::default();
+        self.inverses.iter().flatten().for_each(|inverse| negative.see(1.0 / inverse));
+        Ok(negative)
+    }
+
+    /// Replaces every pivot by its magnitude.
+    pub(super) fn make_positive(&mut self) {
+        self.inverses.iter_mut().flatten().for_each(|inverse| *inverse = inverse.abs());
+    }
+
+    /// Solves in place with the last factor.
+    pub(super) fn solve(&self, right_hand_side: &mut [f64]) {
+        let Self { head, tail, middle, cut, .. } = self;
+        let (of_head, rest) = columns(&self.numbers).split_at(head.columns());
+        let (of_tail, of_middle) = rest.split_at(tail.columns());
+        let [head_inverses, tail_inverses, middle_inverses] = &self.inverses;
+        let head_data = SolveData { factor: of_head, inverses: head_inverses };
+        let tail_data = SolveData { factor: of_tail, inverses: tail_inverses };
+        let middle_data = SolveData { factor: of_middle, inverses: middle_inverses };
+        let [mut one, mut other] = self.spread(right_hand_side);
+        rayon::join(|| forward(head, &head_data, &mut one), || forward(tail, &tail_data, &mut other));
+        let (left, right) = (HEIGHT * head.own_strips, HEIGHT * tail.own_strips);
+        let mut separator: Vec<f64> = one[left..].iter().zip(&other[right..]).map(|(a, b)| a + b).collect();
+        forward(middle, &middle_data, &mut separator);
+        backward(middle, &middle_data, &mut separator);
+        one[left..].copy_from_slice(&separator);
+        other[right..].copy_from_slice(&separator);
+        rayon::join(|| backward(head, &head_data, &mut one), || backward(tail, &tail_data, &mut other));
+        debug_assert!(cut.end <= right_hand_side.len());
+        self.gather([&one, &other], right_hand_side);
+    }
+}
+
+/// A chain's rows of the matrix, mirrored, times a vector.
+fn multiply_chain(chain: &Chain, values: &[Column], vector: &[f64]) -> Vec<f64> {
+    let mut product = vec![0.0; vector.len()];
+    for strip in 0..chain.first.len() {
+        let row = HEIGHT * strip;
+        let stored = values[chain.start[strip]..chain.start[strip + 1]].iter();
+        for (column, numbers) in (HEIGHT * chain.first[strip]..).zip(stored) {
+            let numbers = numbers.as_flattened();
+            let below = column.max(row) - row;
+            for r in below..HEIGHT {
+                product[row + r] += numbers[r] * vector[column];
+            }
+            let mirrored = if column < row { 0 } else { below + 1 };
+            product[column] += (mirrored..HEIGHT).map(|r| numbers[r] * vector[row + r]).sum::<f64>();
+        }
+    }
+    product
+}
+
+fn columns(numbers: &[f64]) -> &[Column] {
+    numbers.as_chunks().0.as_chunks().0
+}
+
+fn columns_mut(numbers: &mut [f64]) -> &mut [Column] {
+    numbers.as_chunks_mut().0.as_chunks_mut().0
+}
+
+/// The first and the last unknown that each one meets.
+struct Envelope {
+    first: Vec<usize>,
+    last: Vec<usize>,
+}
+
+impl Envelope {
+    fn new(couplings: &Couplings) -> Self {
+        let mut envelope = Self { first: (0..couplings.unknowns).collect(), last: (0..couplings.unknowns).collect() };
+        let ends = |group: &Vec<usize>| Some((*group.iter().min()?, *group.iter().max()?));
+        let ends: Vec<Option<(usize, usize)>> = couplings.groups.iter().map(ends).collect();
+        let with_itself = (0..couplings.groups.len()).map(|group| [group, group]);
+        for [i, j] in couplings.pairs.iter().copied().chain(with_itself) {
+            let (Some(one), Some(other)) = (ends[i], ends[j]) else { continue };
+            envelope.widen(&couplings.groups[i], other);
+            envelope.widen(&couplings.groups[j], one);
+        }
+        envelope
+    }
+
+    fn widen(&mut self, group: &[usize], (first, last): (usize, usize)) {
+        for unknown in group {
+            self.first[*unknown] = self.first[*unknown].min(first);
+            self.last[*unknown] = self.last[*unknown].max(last);
+        }
+    }
+
+    /// The separator that the unknowns before `begin` need: as far as they reach.
+    fn cut_at(&self, begin: usize, reach: usize) -> std::ops::Range<usize> {
+        begin..reach.max(begin)
+    }
+
+    /// The cut with the least work for the longer side, or none: an empty separator behind all unknowns.
+    fn best_cut(&self) -> std::ops::Range<usize> {
+        let count = self.first.len();
+        let none = count..count;
+        let mut best = (CUT_PAYS * self.flops(&none), none);
+        // Work of rows from the front, and from the back: squares of the lengths of the rows.
+        let mut behind = vec![0.0; count + 1];
+        let mut least = count;
+        for unknown in (0..count).rev() {
+            least = least.min(self.first[unknown]);
+            behind[unknown] = behind[unknown + 1] + ((self.last[unknown] + 1 - unknown) as f64).powi(2);
+        }
+        let (mut before, mut reach) = (0.0, 0);
+        for begin in 0..count {
+            let cut = self.cut_at(begin, reach);
+            let width = cut.len() as f64;
+            let work = f64::max(before, behind[cut.end]) + width.powi(3);
+            if work < best.0 {
+                best = (work, cut);
+            }
+            before += ((begin + 1 - self.first[begin]) as f64).powi(2);
+            reach = reach.max(self.last[begin] + 1);
+        }
+        best.1
+    }
+
+    /// Operations for a cut: the squares of the column counts of its factor, which in an envelope are at most those of
+    /// its row lengths.
+    fn flops(&self, cut: &std::ops::Range<usize>) -> f64 {
+        let head = (0..cut.start).map(|row| ((row + 1 - self.first[row]) as f64).powi(2)).sum::<f64>();
+        let tail = (cut.end..self.last.len()).map(|row| ((self.last[row] + 1 - row) as f64).powi(2)).sum::<f64>();
+        head + tail + (cut.len() as f64).powi(3)
+    }
+}
