@@ -7,7 +7,7 @@ use crate::history::{ConditionError, NothingStands, ReplayError, SnapError, Stab
 use crate::model::ModelError;
 use crate::pipeline::Parameter;
 use crate::scene::{Scene, Stage};
-use crate::study::{BenchError, ConvergenceError};
+use crate::study::{AccuracyError, BenchError, ConvergenceError};
 use crate::view::{PlotError, SamplesError};
 
 /// Stopped by a signal; nothing is wrong.
@@ -88,6 +88,8 @@ pub(super) enum Failure {
     Bench { source: Box<BenchError> },
     #[error("degree {}, {} × {} elements gave nothing", degree[0], elements[0], elements[1])]
     Convergence { degree: [usize; 2], elements: [usize; 2], source: Box<ConvergenceError> },
+    #[error("{case} gave nothing to compare")]
+    Study { case: String, source: Box<AccuracyError> },
     #[error("the stability of stage {index} of {} cannot be found", log.display())]
     Stability { log: PathBuf, index: usize, source: Box<StabilityError> },
     #[error("{}; there is {}", none_chosen(filter.as_deref(), folder), if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
@@ -113,6 +115,11 @@ impl Failure {
             | Failure::NoSuchScene { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,
+            Failure::Study { source, .. }
+                if matches!(**source, AccuracyError::NothingMeasured | AccuracyError::Model(_)) =>
+            {
+                2
+            }
             Failure::Interrupted { .. } => INTERRUPTED,
             _ => 1,
         }

@@ -24,6 +24,7 @@ mod session;
 mod stability;
 mod stage_table;
 mod stress;
+mod study;
 mod trace;
 mod verify;
 
@@ -59,6 +60,7 @@ enum Command {
     Recover(recover::Arguments),
     Bench(bench::Arguments),
     Converge(converge::Arguments),
+    Study(study::Arguments),
     Stress(stress::Arguments),
     Help(help::Arguments),
 }
@@ -77,6 +79,7 @@ impl Command {
             Command::Verify(arguments) => arguments.run(),
             Command::Recover(arguments) => arguments.run(),
             Command::Converge(arguments) => arguments.run().map(|()| 0),
+            Command::Study(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
             Command::Stress(arguments) => arguments.run(),
             Command::Help(arguments) => arguments.run().map(|()| 0),

@@ -1,6 +1,7 @@
 //! What a run says when it is held against theory: the closed-form laws of tape springs, the summary of a run, and suites
 //! of scenes that state how they end.
 
+mod accuracy;
 mod bench;
 mod convergence;
 mod path;
@@ -13,6 +14,7 @@ mod summary;
 mod summary_text;
 mod wuest;
 
+pub use accuracy::{AccuracyError, AccuracyRow, Measured, measure};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use convergence::{ConvergenceError, ConvergenceRow, converge};
 pub use path::{Passed, PathPoint, Snap, equilibrium_path, snaps};

@@ -1,0 +1,168 @@
+//! `foldline study`: error against run time of scenes and settings.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::output::{print, say};
+use super::scene_file::{checked, read_scene};
+use crate::pipeline::Parameter;
+use crate::scene::Scene;
+use crate::study::{AccuracyError, AccuracyRow, Measured, measure};
+
+/// Run scenes with one setting after another, and hold each against a reference: the error of its moment (or first probe)
+/// before and after the snap, beside its run time
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Scenes (TOML)
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Scene of the reference: the same structure and increments on a mesh that leaves no doubt
+    #[arg(long, value_name = "SCENE")]
+    against: PathBuf,
+    /// Values that a setting takes in turn, as a TOML list: 'mesh.quadrature=["full", "patch"]'; may be repeated, for all
+    /// combinations
+    #[arg(long, value_name = "KEY=LIST", value_parser = varied)]
+    vary: Vec<Varied>,
+    /// Lay a setting over every scene, the reference too, such as load.rotation_deg=20; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print a JSON object for each run
+    #[arg(long)]
+    json: bool,
+}
+
+/// A setting with the values that it takes.
+#[derive(Clone, Debug)]
+struct Varied {
+    key: String,
+    values: Vec<String>,
+}
+
+fn varied(text: &str) -> Result<Varied, String> {
+    let (key, list) = text.split_once('=').ok_or("write KEY=[VALUE, VALUE]")?;
+    let table: toml::Table = toml::from_str(&format!("list = {list}")).map_err(|error| {
+        format!("{} is not a TOML list ({}); names need quotes: '{key}=[\"one\", \"two\"]'", list, error.message())
+    })?;
+    match table.get("list") {
+        Some(toml::Value::Array(values)) if !values.is_empty() => {
+            Ok(Varied { key: key.trim().to_string(), values: values.iter().map(toml::Value::to_string).collect() })
+        }
+        _ => Err(format!("write the values of {key} as a list: '{key}=[{list}]'")),
+    }
+}
+
+/// One run of the study.
+struct Case {
+    scene_name: String,
+    settings: Vec<String>,
+    scene: Scene,
+}
+
+impl Arguments {
+    /// Runs the reference and then every case; a row as soon as it is known.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
+        let cases = self.cases()?;
+        let name = self.against.display().to_string();
+        let reference = checked(&read_scene(&self.against)?.text, &name, &self.set)?;
+        if !self.json {
+            say(&format!("reference: {name}"));
+        }
+        let failed = |case: String| move |source: AccuracyError| Failure::Study { case, source: Box::new(source) };
+        let expected = measure(&reference).map_err(failed(name.clone()))?;
+        if !self.json {
+            print(&head(cases.iter().map(|case| case.label().chars().count()).max().unwrap_or(0)))?;
+        }
+        let width = cases.iter().map(|case| case.label().chars().count()).max().unwrap_or(0);
+        let own = expected.against(&expected, "").map_err(failed(name.clone()))?;
+        self.show(&name, &[], &own, width)?;
+        for case in &cases {
+            let found = case.measure(&expected).map_err(failed(case.label()))?;
+            self.show(&case.scene_name, &case.settings, &found, width)?;
+        }
+        Ok(())
+    }
+
+    fn cases(&self) -> Result<Vec<Case>, Failure> {
+        let mut combinations: Vec<Vec<String>> = vec![vec![]];
+        for Varied { key, values } in &self.vary {
+            let longer = |settings: &Vec<String>| {
+                let with = |value: &String| [settings.clone(), vec![format!("{key}={value}")]].concat();
+                values.iter().map(with).collect::<Vec<_>>()
+            };
+            combinations = combinations.iter().flat_map(longer).collect();
+        }
+        let mut cases = Vec::new();
+        for path in &self.scenes {
+            let (scene_name, text) = (path.display().to_string(), read_scene(path)?.text);
+            for settings in &combinations {
+                let all = [self.set.clone(), settings.clone()].concat();
+                let scene = checked(&text, &scene_name, &all)?;
+                cases.push(Case { scene_name: scene_name.clone(), settings: settings.clone(), scene });
+            }
+        }
+        Ok(cases)
+    }
+
+    fn show(&self, scene: &str, settings: &[String], row: &AccuracyRow, width: usize) -> Result<(), Failure> {
+        if self.json {
+            #[derive(serde::Serialize)]
+            struct Line<'l> {
+                scene: &'l str,
+                settings: &'l [String],
+                #[serde(flatten)]
+                row: &'l AccuracyRow,
+            }
+            return print(&(serde_json::to_string(&Line { scene, settings, row }).unwrap_or_default() + "\n"));
+        }
+        print(&shown(&label(scene, settings), row, width))
+    }
+}
+
+impl Case {
+    fn label(&self) -> String {
+        label(&self.scene_name, &self.settings)
+    }
+
+    fn measure(&self, expected: &Measured) -> Result<AccuracyRow, AccuracyError> {
+        let what = match Parameter::of(&self.scene) {
+            Parameter::Rotation => "rotation",
+            Parameter::LoadFactor => "load factor",
+        };
+        measure(&self.scene)?.against(expected, what)
+    }
+}
+
+fn label(scene: &str, settings: &[String]) -> String {
+    [&[scene.to_string()], settings].concat().join(" ")
+}
+
+fn head(width: usize) -> String {
+    format!(
+        "{:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>5} {:>10} {:>7} {:>7}\n",
+        "run", "elements", "unknowns", "before", "snap", "after", "steps", "iterations", "factors", "wall s"
+    )
+}
+
+fn shown(label: &str, row: &AccuracyRow, width: usize) -> String {
+    let percent = |share: Option<f64>| share.map_or_else(String::new, |share| format!("{:.2} %", 100.0 * share));
+    let [n1, n2] = row.elements;
+    format!(
+        "{:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>5} {:>10} {:>7} {:>7.2}\n",
+        label,
+        format!("{n1}×{n2}"),
+        row.unknowns,
+        percent(row.error_before),
+        row.jump_at.map_or_else(String::new, |at| format!("{at:.3}")),
+        percent(row.error_after),
+        row.compared,
+        row.iterations,
+        row.factorizations,
+        row.wall_s
+    )
+}
