@@ -81,8 +81,8 @@ pub struct CriticalAhead {
 /// Memory of the step control.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepControl {
-    /// The scene's increment is divided by 2 to this power.
-    pub halvings: u32,
+    /// The scene's increment is divided by 2 to this power; negative where it has grown.
+    pub halvings: i32,
     /// A rotation beyond the present one that is known to lie past a jump, degrees.
     pub jump_seen_at_deg: Option<f64>,
     /// Why the last solve left the state where it was; `None` where it went on.
@@ -122,7 +122,8 @@ impl State {
         feed.number(self.moment_n_mm);
         feed.number(self.strain_energy_n_mm);
         feed.integer(self.negative_pivots);
-        feed.integer(u64::from(self.control.halvings));
+        // As 32 bits without a sign, which is how they were counted before increments could grow.
+        feed.integer(u64::from(self.control.halvings.cast_unsigned()));
         feed.integer(u64::from(self.control.jump_seen_at_deg.is_some()));
         feed.number(self.control.jump_seen_at_deg.unwrap_or(0.0));
         feed.integer(match self.control.rejection {

@@ -122,6 +122,7 @@ struct StateV1<'a> {
     moment_n_mm: f64,
     strain_energy_n_mm: f64,
     negative_pivots: u64,
+    /// In two's complement: increments that have grown count as negative halvings.
     halvings: u32,
     jump_seen_at_deg: Option<f64>,
     rejection: Option<RejectionV1>,
@@ -303,7 +304,7 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
         moment_n_mm: state.moment_n_mm,
         strain_energy_n_mm: state.strain_energy_n_mm,
         negative_pivots: state.negative_pivots,
-        halvings: state.control.halvings,
+        halvings: state.control.halvings.cast_unsigned(),
         jump_seen_at_deg: state.control.jump_seen_at_deg,
         rejection: state.control.rejection.map(|rejection| match rejection {
             Rejection::NoEquilibrium => RejectionV1::NoEquilibrium,
@@ -381,7 +382,7 @@ pub fn decode_state<'a>(
         strain_energy_n_mm: stored.strain_energy_n_mm,
         negative_pivots: stored.negative_pivots,
         control: StepControl {
-            halvings: stored.halvings,
+            halvings: stored.halvings.cast_signed(),
             jump_seen_at_deg: stored.jump_seen_at_deg,
             rejection: stored.rejection.map(|rejection| match rejection {
                 RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,

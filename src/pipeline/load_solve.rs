@@ -70,7 +70,7 @@ impl Stages {
                 let mut next = settle(state, &solved);
                 next.step = step;
                 next.parameter = attempt.target_deg;
-                next.control = attempt.control_after_success(&state.control);
+                next.control = attempt.control_after_success(&self.scene, &state.control, solved.effort.iterations);
                 next.path = None;
                 // The path bends on from an equilibrium before only where it is one path, and where displacements say all.
                 let onwards = !jumped && state.negative_pivots == 0 && next.turns.is_empty();

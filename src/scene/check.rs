@@ -44,12 +44,12 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
     let geometry = geometry(reader, folder)?;
     let material = material(reader, &geometry)?;
     let (mesh, symmetry) = mesh(reader)?;
-    let (load, increment) = load(reader, &geometry)?;
+    let (load, increments) = load(reader, &geometry)?;
     let (supports, actions, probes) = structure(reader, &load)?;
     let pipeline = stages(reader)?;
     let adapt = adapt(reader, &pipeline, &geometry)?;
-    let solver = solver(reader, increment.as_ref())?;
-    let continuation = continuation(reader)?;
+    let solver = solver(reader, increments.as_ref().map(|increments| &increments.first))?;
+    let continuation = continuation(reader, &load, increments.and_then(|increments| increments.longest))?;
     let output =
         Output { sync: reader.word(&keys::SYNC)?.value, mesh_history: reader.switch(&keys::MESH_HISTORY)?.value };
     let expect =
@@ -256,7 +256,7 @@ fn element_place(reader: &Reader<'_, '_>, index: usize) -> Option<Place> {
     Some(entry.place_of(item.span()))
 }
 
-fn load(reader: &Reader<'_, '_>, geometry: &Geometry) -> Checked<(Load, Option<Found<f64>>)> {
+fn load(reader: &Reader<'_, '_>, geometry: &Geometry) -> Checked<(Load, Option<Increments>)> {
     if reader.document.is_of_general_kind("load") {
         return Ok((general::steps(reader.document.table("load"))?, None));
     }
@@ -278,7 +278,18 @@ fn load(reader: &Reader<'_, '_>, geometry: &Geometry) -> Checked<(Load, Option<F
         let problem = Problem::IncrementPastTarget { increment_deg, rotation_deg };
         return Err(between(problem, increment.place, rotation.place, reader));
     }
-    Ok((Load::EndRotation(EndRotation { sense, rotation_deg, increment_deg }), Some(increment)))
+    let longest = match reader.entry(&keys::LONGEST_INCREMENT) {
+        Some(_) => Some(reader.number(&keys::LONGEST_INCREMENT)?),
+        None => None,
+    };
+    if let Some(longest) = longest.as_ref().filter(|longest| longest.value < increment_deg) {
+        let problem = Problem::LongestIncrementTooSmall { longest_increment_deg: longest.value, increment_deg };
+        return Err(between(problem, longest.place.clone(), increment.place, reader));
+    }
+    let longest_increment_deg =
+        longest.as_ref().map(|longest| longest.value).filter(|longest| *longest > increment_deg);
+    let load = Load::EndRotation(EndRotation { sense, rotation_deg, increment_deg, longest_increment_deg });
+    Ok((load, Some(Increments { first: increment, longest: longest.and_then(|longest| longest.place) })))
 }
 
 fn stages(reader: &Reader<'_, '_>) -> Checked<Found<Vec<Stage>>> {
@@ -365,11 +376,26 @@ fn solver(reader: &Reader<'_, '_>, increment: Option<&Found<f64>>) -> Checked<So
     })
 }
 
-fn continuation(reader: &Reader<'_, '_>) -> Checked<Option<ArcLength>> {
+/// What a scene says of the increments of a rotation.
+struct Increments {
+    first: Found<f64>,
+    /// Where the longest one stands.
+    longest: Option<Place>,
+}
+
+fn continuation(reader: &Reader<'_, '_>, load: &Load, growing: Option<Place>) -> Checked<Option<ArcLength>> {
     let control = reader.bare_word(&keys::CONTROL)?;
     let (longest, shortest) = (reader.number(&keys::LONGEST_STEP)?, reader.number(&keys::SHORTEST_STEP)?);
     let most_steps = reader.count(&keys::MOST_STEPS)?;
     if control.value == "arc-length" {
+        if load.longest_increment() > load.increment() {
+            let place = growing.or_else(|| reader.document.table("load").place_of("longest_increment"));
+            return Err(reader.document.table("load").wrong(
+                place.as_ref(),
+                "increments do not grow by arc length: only the first step is an increment",
+                "take it out, and write `longest_step` in [continuation]",
+            ));
+        }
         return Ok(Some(ArcLength {
             control: ArcLengthWord::ArcLength,
             longest_step: longest.value,

@@ -318,6 +318,13 @@ pub enum Problem {
         /// Target, degrees.
         rotation_deg: f64,
     },
+    /// The increment is larger than the one that it is to grow to.
+    LongestIncrementTooSmall {
+        /// Longest increment, degrees.
+        longest_increment_deg: f64,
+        /// Increment, degrees.
+        increment_deg: f64,
+    },
     /// The least increment is larger than the increment that is to be cut.
     LeastIncrementTooLarge {
         /// Least increment, degrees.

@@ -1,6 +1,6 @@
 //! The text of `foldline help scene`, from the table of keys.
 
-use super::key_table::{KEYS, SECTIONS};
+use super::key_table::{KEYS, LONGEST_INCREMENT, SECTIONS};
 use super::keys::{Key, Kind, Presence, Section};
 
 /// Columns of the help text.
@@ -54,7 +54,12 @@ pub(super) fn example_scene() -> String {
         let gap = if text.is_empty() { "" } else { "\n" };
         text.push_str(&format!("{gap}[{}]\n", section.name));
         for key in keys_of(section) {
-            let comment = if matches!(key.presence, Presence::InsteadOf(_)) { "# or: " } else { "" };
+            let comment = match key.presence {
+                Presence::InsteadOf(_) => "# or: ",
+                // The example goes by arc length, where increments do not grow.
+                _ if key == &LONGEST_INCREMENT => "# under load control: ",
+                _ => "",
+            };
             text.push_str(&format!("{comment}{} = {}\n", key.name, key.example));
         }
     }

@@ -117,7 +117,9 @@ fn reach(path: &str) -> Reach {
     // Keys of tables that depend on their kind: the table of keys does not hold them.
     match path {
         "load.factor" | "probes" => return Reach::Free,
-        "load.increment" | "load.least_increment" | "load.snap_tolerance" => return Reach::Steps,
+        "load.increment" | "load.longest_increment" | "load.least_increment" | "load.snap_tolerance" => {
+            return Reach::Steps;
+        }
         _ => {}
     }
     KEYS.iter().find(|key| key.path() == path).map_or(Reach::Everything, |key| key.reach)

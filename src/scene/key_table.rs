@@ -21,7 +21,7 @@ pub static SECTIONS: [Section; 11] = [
 ];
 
 /// The keys of a scene file, table by table.
-pub static KEYS: [&Key; 32] = [
+pub static KEYS: [&Key; 33] = [
     &GEOMETRY_KIND,
     &LENGTH,
     &RADIUS,
@@ -38,6 +38,7 @@ pub static KEYS: [&Key; 32] = [
     &SENSE,
     &ROTATION,
     &INCREMENT,
+    &LONGEST_INCREMENT,
     &THRESHOLD,
     &LENGTH_LIMIT,
     &LENGTH_LIMIT_MM,
@@ -323,6 +324,22 @@ pub(super) static INCREMENT: Key = Key {
     meaning: "Rotation increment of one load step; at most the rotation.",
     example: "0.4",
     aliases: &["step", "step_deg", "increment_size", "rotation_step_deg", "rotation_increment_deg"],
+};
+
+pub(super) static LONGEST_INCREMENT: Key = Key {
+    section: "load",
+    name: "longest_increment_deg",
+    unit: Degree,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "every load step goes forward; the sense of the bending is chosen with load.sense"),
+        high: Limit::excluded(180.0, "one increment would go past every rotation that a run can reach"),
+    }),
+    presence: Follows("increment_deg, so that steps do not grow"),
+    reach: Steps,
+    meaning: "Increments are doubled up to this while solves take three iterations or fewer, and halved again where one takes \
+              more than six. Steps stay multiples of increment_deg.",
+    example: "3.2",
+    aliases: &["max_increment_deg", "maximum_increment_deg", "largest_increment_deg", "max_step_deg"],
 };
 
 pub(super) static THRESHOLD: Key = Key {

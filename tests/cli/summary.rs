@@ -58,7 +58,12 @@ fn run_that_has_not_begun() {
 #[test]
 fn equal_sense_folded_far_from_the_ends() {
     let mut scene = synthetic::scene();
-    scene.load = Load::EndRotation(EndRotation { sense: Sense::Equal, rotation_deg: 60.0, increment_deg: 0.4 });
+    scene.load = Load::EndRotation(EndRotation {
+        sense: Sense::Equal,
+        rotation_deg: 60.0,
+        increment_deg: 0.4,
+        longest_increment_deg: None,
+    });
     scene.geometry = foldline::scene::Geometry::TapeSpring { length_mm: 300.0, radius_mm: 12.5, arc_deg: 90.5 };
     let mut script = Script::new();
     script.step((2.0, 60.0, 2.0));

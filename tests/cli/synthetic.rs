@@ -35,7 +35,12 @@ pub fn scene() -> Scene {
         material: Material::Isotropic { youngs_modulus_mpa: 131e3, poissons_ratio: 0.3, thickness_mm: 0.1 },
         mesh: MeshSpec { degree: [3, 3], elements: [4, 4], quadrature: Quadrature::Full },
         symmetry: Symmetry::Quarter,
-        load: Load::EndRotation(EndRotation { sense: Sense::Opposite, rotation_deg: 20.0, increment_deg: 0.8 }),
+        load: Load::EndRotation(EndRotation {
+            sense: Sense::Opposite,
+            rotation_deg: 20.0,
+            increment_deg: 0.8,
+            longest_increment_deg: None,
+        }),
         supports: vec![],
         actions: vec![],
         probes: vec![],

@@ -51,7 +51,7 @@ fn stage() -> impl Strategy<Value = Option<Stage>> {
 }
 
 fn state() -> impl Strategy<Value = State> {
-    let control = (any::<u32>(), prop::option::of(number()), 0..5_u8).prop_map(|(halvings, jump_seen_at_deg, why)| {
+    let control = (any::<i32>(), prop::option::of(number()), 0..5_u8).prop_map(|(halvings, jump_seen_at_deg, why)| {
         let rejection = [
             None,
             Some(Rejection::Jump),

@@ -158,7 +158,13 @@ fn six_motions_six_reactions() {
     scene.mesh.elements = [6, 6];
     scene.actions.clear();
     scene.solver.tolerance = 1e-11;
-    scene.load = Load::Steps(LoadSteps { factor: 1.0, increment: 0.5, least_increment: 1e-6, snap_tolerance: 1e-3 });
+    scene.load = Load::Steps(LoadSteps {
+        factor: 1.0,
+        increment: 0.5,
+        longest_increment: None,
+        least_increment: 1e-6,
+        snap_tolerance: 1e-3,
+    });
     let mut end = scene.supports[0].clone();
     end.name = "end".into();
     end.on = Place::Edge(Edge::UEnd);
@@ -239,8 +245,13 @@ fn observed_orders() {
             foldline::scene::ActionKind::LineForce { on: Place::Edge(Edge::VEnd), force_n_per_mm: [0.0, 0.0, 1e-3] };
         scene.probes.clear();
         scene.solver.tolerance = 1e-12;
-        scene.load =
-            Load::Steps(LoadSteps { factor: 1.0, increment: 1.0, least_increment: 1e-6, snap_tolerance: 1e-3 });
+        scene.load = Load::Steps(LoadSteps {
+            factor: 1.0,
+            increment: 1.0,
+            longest_increment: None,
+            least_increment: 1e-6,
+            snap_tolerance: 1e-3,
+        });
         run_to(&scene, None, 1.0).1.strain_energy_n_mm
     };
     let exact = energy(5, 32);
@@ -320,7 +331,13 @@ fn a_tape_spring_in_other_words() {
     scene.supports = vec![end("one", Edge::UStart, Motion::FREE, 2.0), end("two", Edge::UEnd, zero, -2.0)];
     let kind = ProbeKind::Reaction { support: "one".into(), component: Reaction::MomentY };
     scene.probes = vec![Probe { name: "M".into(), kind }];
-    scene.load = Load::Steps(LoadSteps { factor: 1.0, increment: 0.2, least_increment: 1e-6, snap_tolerance: 1e-3 });
+    scene.load = Load::Steps(LoadSteps {
+        factor: 1.0,
+        increment: 0.2,
+        longest_increment: None,
+        least_increment: 1e-6,
+        snap_tolerance: 1e-3,
+    });
     let (_, report) = run_to(&scene, None, 1.0);
     let (_, turned) = run_to(&turning, None, 2.0);
     assert!(

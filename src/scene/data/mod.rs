@@ -156,6 +156,15 @@ impl Load {
             Load::Steps(load) => load.increment,
         }
     }
+
+    /// Increments grow to this where solves are easy; the increment itself where they do not grow.
+    pub fn longest_increment(&self) -> f64 {
+        let longest = match self {
+            Load::EndRotation(load) => load.longest_increment_deg,
+            Load::Steps(load) => load.longest_increment,
+        };
+        longest.unwrap_or(self.increment())
+    }
 }
 
 /// Steps of the load factor.
@@ -165,6 +174,8 @@ pub struct LoadSteps {
     pub factor: f64,
     /// Increment of the load factor in one load step.
     pub increment: f64,
+    /// Increments grow to this where solves are easy; `None` where they do not grow.
+    pub longest_increment: Option<f64>,
     /// Increments are not cut below this; then the run stops with all good steps kept.
     pub least_increment: f64,
     /// A jump is located to this load factor before the run goes on beyond it.
@@ -180,6 +191,8 @@ pub struct EndRotation {
     pub rotation_deg: f64,
     /// Rotation increment of one load step (degrees).
     pub increment_deg: f64,
+    /// Increments grow to this where solves are easy (degrees); `None` where they do not grow.
+    pub longest_increment_deg: Option<f64>,
 }
 
 /// When and how far the mesh is refined.

@@ -90,6 +90,9 @@ pub(super) fn explain(problem: &Problem) -> Explanation {
         Problem::IncrementPastTarget { increment_deg, rotation_deg } => {
             values::increment_past_target(*increment_deg, *rotation_deg)
         }
+        Problem::LongestIncrementTooSmall { longest_increment_deg, increment_deg } => {
+            values::longest_increment_too_small(*longest_increment_deg, *increment_deg)
+        }
         Problem::LeastIncrementTooLarge { least_increment_deg, increment_deg } => {
             values::least_increment_too_large(*least_increment_deg, *increment_deg)
         }

@@ -106,6 +106,15 @@ pub(super) fn increment_past_target(increment_deg: f64, rotation_deg: f64) -> Ex
     .also("the run stops here")
 }
 
+pub(super) fn longest_increment_too_small(longest_increment_deg: f64, increment_deg: f64) -> Explanation {
+    let (longest, increment) = (number(longest_increment_deg), number(increment_deg));
+    Explanation::new(
+        format!("the longest increment ({longest} degrees) is smaller than the increment ({increment} degrees)"),
+        "must be at least the increment",
+    )
+    .also("the increment that grows where solves are easy")
+}
+
 pub(super) fn least_increment_too_large(least_increment_deg: f64, increment_deg: f64) -> Explanation {
     let (least, increment) = (number(least_increment_deg), number(increment_deg));
     Explanation::new(
