@@ -394,7 +394,8 @@ pub(super) static TOLERANCE: Key = Key {
     }),
     presence: Default("1e-7"),
     reach: Steps,
-    meaning: "A state is in equilibrium when |residual| <= tolerance |reactions|.",
+    meaning: "A state is in equilibrium when |residual| <= tolerance |reactions|. Moments and reactions are then within 20 times \
+              the tolerance of their converged values, also next to limit points; strain energies are far closer.",
     example: "1e-7",
     aliases: &["tol", "eps", "epsilon", "accuracy", "relative_tolerance"],
 };

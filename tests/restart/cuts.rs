@@ -2,10 +2,15 @@
 
 use crate::program::{Place, SMALL, Straight, assert_ends_with, small_syncing};
 
-/// Cuts a straight run after every stage in turn and resumes each.
+/// The small run with a policy of syncing, cut after every stage in turn.
 fn every_cut(policy: &str, threads_before: usize, threads_after: usize) {
     let whole = Straight::run(&small_syncing(policy), threads_before);
     assert_eq!(whole.chain, Straight::small().chain, "syncing and threads change no state");
+    every_cut_of(&whole, policy, threads_before, threads_after);
+}
+
+/// Cuts a straight run after every stage in turn and resumes each.
+fn every_cut_of(whole: &Straight, policy: &str, threads_before: usize, threads_after: usize) {
     let place = Place::new();
     for stages in 0..=whole.stages {
         place.write("cut.mcap", whole.cut_after(stages));
@@ -34,6 +39,20 @@ fn every_cut_from_two_threads_to_one_syncing_each_stage() {
 #[test]
 fn every_cut_from_one_thread_to_one_syncing_at_the_end() {
     every_cut("at-end", 1, 1);
+}
+
+/// How far increments have grown is part of a state.
+#[test]
+fn every_cut_of_a_run_whose_increments_grow() {
+    let growing = SMALL.replace("increment_deg = 2.0", "increment_deg = 0.5\nlongest_increment_deg = 4.0");
+    let whole = Straight::run(&growing, 1);
+    let place = Place::new();
+    place.write("whole.mcap", &whole.bytes);
+    let log = place.log("whole.mcap");
+    let rotations: Vec<f64> = log.entries().iter().map(|entry| entry.record.report.parameter).collect();
+    let longest = rotations.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    assert!(longest > 1.9, "the longest step is {longest}°");
+    every_cut_of(&whole, "each-second", 1, 2);
 }
 
 /// What a resume says: what it found, what it dropped and why, and what it computes first.

@@ -27,6 +27,38 @@ fn reference() -> Vec<[f64; 3]> {
         .collect()
 }
 
+/// What `solver.tolerance` says of the moment: over 12°, with all refinements and the snap, within 20 times the tolerance of
+/// what it converges to. (The first-order error of M is the residual times the rate of the displacements with θ, which next
+/// to the limit point grows. A residual of 1e-11 is lost in rounding.)
+#[test]
+fn the_tolerance_bounds_the_error_of_the_moment() {
+    let at_tolerance = |tolerance: f64| {
+        let mut scene = scene("baseline-quarter.toml");
+        scene.load.set_target(12.0);
+        scene.solver.tolerance = tolerance;
+        let stages = run(scene);
+        // Runs of other tolerances bracket the snap at other rotations and refine alike: compared are equal meshes and steps.
+        let settled = steps(&stages);
+        let points = settled.iter().map(|(state, _)| (state.parameter, state.mesh.element_counts(), state.moment_n_mm));
+        points.collect::<Vec<_>>()
+    };
+    let converged = at_tolerance(1e-10);
+    let mut worst_of_all = 0.0_f64;
+    for tolerance in [1e-5, 1e-7] {
+        let points = at_tolerance(tolerance);
+        let same = points.iter().filter_map(|(parameter, elements, moment)| {
+            let (.., exact) = converged.iter().find(|(p, e, _)| p == parameter && e == elements)?;
+            Some((moment / exact - 1.0).abs())
+        });
+        let errors: Vec<f64> = same.collect();
+        assert!(errors.len() >= 28, "only {} load steps in common", errors.len());
+        let worst = errors.into_iter().fold(0.0, f64::max);
+        assert!(worst <= 20.0 * tolerance, "{worst:e} at a tolerance of {tolerance:e}");
+        worst_of_all = worst_of_all.max(worst);
+    }
+    assert!(worst_of_all > 1e-9, "another tolerance gives other numbers: {worst_of_all:e}");
+}
+
 const REFERENCE_PEAK: f64 = 292.0;
 
 /// Largest |M − M_ref| over the peak, at the reference's rotations in `range`.
