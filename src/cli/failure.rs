@@ -116,7 +116,10 @@ impl Failure {
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,
             Failure::Study { source, .. }
-                if matches!(**source, AccuracyError::NothingMeasured | AccuracyError::Model(_)) =>
+                if matches!(
+                    **source,
+                    AccuracyError::NothingMeasured | AccuracyError::AlongPath { .. } | AccuracyError::Model(_)
+                ) =>
             {
                 2
             }

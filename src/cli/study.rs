@@ -7,12 +7,11 @@ use clap::Args;
 use super::failure::Failure;
 use super::output::{print, say};
 use super::scene_file::{checked, read_scene};
-use crate::pipeline::Parameter;
 use crate::scene::Scene;
-use crate::study::{AccuracyError, AccuracyRow, Measured, measure};
+use crate::study::{AccuracyError, AccuracyRow, measure};
 
 /// Run scenes with one setting after another, and hold each against a reference: the error of its moment (or first probe)
-/// before and after the snap, beside its run time
+/// before and after the first snap, beside its run time
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// Scenes (TOML)
@@ -75,14 +74,16 @@ impl Arguments {
         }
         let failed = |case: String| move |source: AccuracyError| Failure::Study { case, source: Box::new(source) };
         let expected = measure(&reference).map_err(failed(name.clone()))?;
+        let labels = cases.iter().map(Case::label).chain([name.clone()]);
+        let width = labels.map(|label| label.chars().count()).max().unwrap_or(0);
         if !self.json {
-            print(&head(cases.iter().map(|case| case.label().chars().count()).max().unwrap_or(0)))?;
+            print(&head(width))?;
         }
-        let width = cases.iter().map(|case| case.label().chars().count()).max().unwrap_or(0);
-        let own = expected.against(&expected, "").map_err(failed(name.clone()))?;
+        let own = expected.against(&expected).map_err(failed(name.clone()))?;
         self.show(&name, &[], &own, width)?;
         for case in &cases {
-            let found = case.measure(&expected).map_err(failed(case.label()))?;
+            let found = measure(&case.scene).and_then(|found| found.against(&expected));
+            let found = found.map_err(failed(case.label()))?;
             self.show(&case.scene_name, &case.settings, &found, width)?;
         }
         Ok(())
@@ -127,14 +128,6 @@ impl Arguments {
 impl Case {
     fn label(&self) -> String {
         label(&self.scene_name, &self.settings)
-    }
-
-    fn measure(&self, expected: &Measured) -> Result<AccuracyRow, AccuracyError> {
-        let what = match Parameter::of(&self.scene) {
-            Parameter::Rotation => "rotation",
-            Parameter::LoadFactor => "load factor",
-        };
-        measure(&self.scene)?.against(expected, what)
     }
 }
 

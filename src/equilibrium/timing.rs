@@ -2,7 +2,7 @@
 
 use crate::equilibrium::assembly::Want;
 use crate::equilibrium::external::External;
-use crate::equilibrium::newton::{Standing, Workspace};
+use crate::equilibrium::newton::{Effort, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 
 /// What the pieces have to do.
@@ -16,6 +16,8 @@ pub struct KernelCost {
     pub factor_flops: f64,
     /// Bytes of the factor.
     pub factor_bytes: f64,
+    /// Threads that can share factor and solution.
+    pub factor_threads: usize,
 }
 
 /// The pieces at one state; each call does the same work.
@@ -23,6 +25,8 @@ pub struct KernelCost {
 pub struct KernelRun<'a> {
     work: &'a mut Workspace,
     at: Standing<'a>,
+    free: Vec<f64>,
+    right_hand_side: Vec<f64>,
 }
 
 impl<'a> KernelRun<'a> {
@@ -31,8 +35,12 @@ impl<'a> KernelRun<'a> {
     /// # Errors
     /// Where it has none.
     pub fn new(work: &'a mut Workspace, at: Standing<'a>) -> Result<Self, SolveError> {
-        work.factorize_at(at)?;
-        Ok(Self { work, at })
+        let unknowns = &work.discretization.unknowns;
+        let free = unknowns.of_displacement(at.displacement, at.turns, at.parameter);
+        let right_hand_side = (0..free.len()).map(|i| 1.0 + (i % 7) as f64).collect();
+        let mut run = Self { work, at, free, right_hand_side };
+        run.newton_iteration()?;
+        Ok(run)
     }
 
     /// Cost of the pieces.
@@ -47,6 +55,7 @@ impl<'a> KernelRun<'a> {
             table_bytes: (size_of_val(&tables.functions[..]) + size_of_val(&tables.batches[..])) as f64,
             factor_flops: self.work.tangent.solver.flops(),
             factor_bytes: 8.0 * self.work.tangent.solver.factor_len() as f64,
+            factor_threads: self.work.tangent.solver.most_threads(),
         }
     }
 
@@ -60,29 +69,38 @@ impl<'a> KernelRun<'a> {
         self.work.assembled.assemble(&self.work.discretization, self.at.displacement, Want::Residual);
     }
 
-    /// Matrix on the unknowns and its factor.
-    pub fn factor(&mut self) {
+    /// The matrix on the unknowns, from what was assembled last.
+    pub fn form(&mut self) {
         let Workspace { discretization, tangent, assembled, .. } = &mut *self.work;
-        let free = discretization.unknowns.of_displacement(self.at.displacement, self.at.turns, self.at.parameter);
-        let placement = discretization.unknowns.place(&free, self.at.parameter);
-        let mut external = External::dead(discretization, self.at.displacement, self.at.parameter);
-        // It had a factor in `new`, and the matrix is the same.
-        let _ = tangent.factorize(discretization, &placement, assembled, &mut external);
+        let external = External::new(discretization, self.at.displacement, self.at.parameter, assembled);
+        let placement = discretization.unknowns.place(&self.free, self.at.parameter);
+        tangent.form(discretization, &placement, assembled, &external);
+    }
+
+    /// Its factor, in place of it.
+    ///
+    /// # Errors
+    /// Where it has none.
+    pub fn factor(&mut self) -> Result<(), SolveError> {
+        let factored = self.work.tangent.solver.factorize();
+        factored.map(|_| ()).map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })
     }
 
     /// One right-hand side.
     pub fn solve(&mut self) {
-        let unknowns = &self.work.discretization.unknowns;
-        let free = unknowns.of_displacement(self.at.displacement, self.at.turns, self.at.parameter);
-        let placement = unknowns.place(&free, self.at.parameter);
-        let mut right_hand_side = placement.restrict(&self.work.assembled.residual);
+        let mut right_hand_side = self.right_hand_side.clone();
         self.work.tangent.solver.solve(&mut right_hand_side);
     }
 
     /// All of it.
-    pub fn newton_iteration(&mut self) {
+    ///
+    /// # Errors
+    /// As for [`Self::factor`].
+    pub fn newton_iteration(&mut self) -> Result<(), SolveError> {
         self.assemble();
-        self.factor();
+        self.form();
+        self.factor()?;
         self.solve();
+        Ok(())
     }
 }

@@ -105,6 +105,16 @@ pub enum ModelError {
         /// The motion, in words.
         motion: String,
     },
+    /// The supports leave nothing free.
+    #[error(
+        "the supports hold every control point of {} × {} elements: nothing is left to solve for; write more in mesh.elements, or hold less",
+        elements[0],
+        elements[1]
+    )]
+    NothingFree {
+        /// Elements each way of the model.
+        elements: [usize; 2],
+    },
     /// More than memory holds.
     #[error(
         "{} × {} elements have {count} control points, and the most that this program takes on is {MOST_CONTROL_POINTS}: write fewer in \

@@ -94,7 +94,7 @@ impl Unknowns {
             points,
             home: Vec::new(),
         };
-        unknowns.number(&eliminated);
+        unknowns.number(&eliminated, mesh.control_counts());
         Ok(unknowns)
     }
 
@@ -157,19 +157,19 @@ impl Unknowns {
             })
     }
 
-    /// Numbers the free motions of sections and the components that were not eliminated, along the length, and lists each
-    /// control point's entries.
-    fn number(&mut self, eliminated: &BTreeMap<usize, Expression>) {
+    /// Numbers the free motions of sections and the components that were not eliminated, line of control points after line
+    /// along the way that has more of them, so that unknowns that meet stand near each other; and lists each control point's
+    /// entries.
+    fn number(&mut self, eliminated: &BTreeMap<usize, Expression>, [n1, n2]: [usize; 2]) {
         let components = 3 * self.points.len();
         let mut of_component = BTreeMap::new();
         self.motions = vec![[usize::MAX; 6]; self.supports.sections.len()];
-        for component in 0..components {
-            if component % 3 == 0 {
-                self.number_motions_at(component / 3);
-            }
-            if !eliminated.contains_key(&component) {
-                of_component.insert(component, self.home.len());
-                self.home.push(Home::Component(component / 3, component % 3));
+        let point_in_turn = |k: usize| if n1 >= n2 { k } else { k % n1 * n2 + k / n1 };
+        for point in (0..self.points.len()).map(point_in_turn) {
+            self.number_motions_at(point);
+            for c in (0..3).filter(|c| !eliminated.contains_key(&(3 * point + c))) {
+                of_component.insert(3 * point + c, self.home.len());
+                self.home.push(Home::Component(point, c));
             }
         }
         self.count = self.home.len();

@@ -39,6 +39,9 @@ impl Stages {
         if let Some(motion) = free_motion(&unknowns) {
             return Err(ModelError::FreeMotion { motion });
         }
+        if unknowns.count() == 0 {
+            return Err(ModelError::NothingFree { elements: mesh.element_counts() });
+        }
         let turns = if unknowns.turns_are_unknown() { vec![[0.0; 3]; unknowns.sections().len()] } else { vec![] };
         Ok(State {
             turns,

@@ -8,6 +8,7 @@
 //! | went on in at most [`EASY`] iterations, and the scene lets increments grow | the increment doubled | the next multiple of that |
 //! | went on in more than [`HARD`] with an increment that had grown | that halved | the next multiple of that |
 //! | found no equilibrium | halvings, so that the increment is at most half of what was tried | the next multiple of that |
+//! | went on inside a bracket, or jumped, with an increment that had grown | the scene's own increment | the next multiple of that |
 //! | passed an unstable shape or released energy | the rotation where it did | the middle between here and there |
 //! | the same, within `snap_tolerance_deg` of here | the same | there, and the jump is taken |
 //!
@@ -28,11 +29,13 @@ const JUMP_SHARE: f64 = 0.01;
 /// %, the baseline's fold, when the snap goes on during refinement, by 6 to 17 %.
 const REFINEMENT_JUMP_SHARE: f64 = 0.05;
 
-/// Increments grow after a solve that took no more iterations than this, where the scene says how far. The baseline's
-/// quarter takes 511 factorizations at 0.4° throughout, and 393 and 388 with increments up to 1.6° and 3.2°
-/// (`foldline study pipelines/baseline-quarter.toml --vary 'load.longest_increment_deg=[0.4, 1.6, 3.2]'`).
+/// Increments grow after a solve that took no more iterations than this, where the scene says how far. The baseline's quarter
+/// takes 511 factorizations at 0.4° throughout, and 396 and 392 with increments up to 1.6° and 3.2°: `foldline study
+/// pipelines/baseline-quarter.toml --against pipelines/baseline-reference.toml --vary 'load.longest_increment_deg=[0.4, 1.6,
+/// 3.2]'`.
 const EASY: usize = 3;
-/// An increment that has grown is halved after a solve that took more than this.
+/// An increment that has grown is halved after a solve that took more than this: steps of 1.6° up to the baseline's limit point
+/// take 7 iterations and end in a jump, where steps of 3.2° along its fold take 5.
 const HARD: usize = 6;
 
 /// Rotations closer than this, relative to the increment, are one: multiples of decimal numbers are not exact.
@@ -117,7 +120,8 @@ impl Attempt {
         let twice = scene.load.increment() * 2.0_f64.powi(1_i32.saturating_sub(before.halvings));
         let may_grow = iterations <= EASY && twice <= scene.load.longest_increment() * (1.0 + SAME);
         let change = if before.jump_seen_at_deg.is_some() {
-            0
+            // Behind a jump, or a turn that looked like one, an increment that had grown was too large.
+            before.halvings.min(0).saturating_neg()
         } else if before.halvings > 0 || may_grow {
             -1
         } else {
@@ -306,6 +310,11 @@ mod tests {
         }
         // Up to 1.6 (3.2 would be more than 2), steady between, and back to the scene's own, not below it.
         assert_eq!(sizes, [0.4, 0.8, 1.6, 1.6, 1.6, 1.6, 1.6, 0.8, 0.4, 0.4, 0.4]);
+        // A turn that looked like a jump ends the growth.
+        let seen = StepControl { halvings: -2, jump_seen_at_deg: Some(9.6), rejection: None };
+        let bracketed = at(8.0, seen);
+        let after = next_attempt(&scene, &bracketed).control_after_success(&scene, &bracketed.control, 3);
+        assert_eq!((after.halvings, after.jump_seen_at_deg), (0, None));
         // A failure cuts what had grown.
         let grown = at(8.0, StepControl { halvings: -2, ..StepControl::default() });
         let attempt = next_attempt(&scene, &grown);

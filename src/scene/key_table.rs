@@ -337,7 +337,7 @@ pub(super) static LONGEST_INCREMENT: Key = Key {
     presence: Follows("increment_deg, so that steps do not grow"),
     reach: Steps,
     meaning: "Increments are doubled up to this while solves take three iterations or fewer, and halved again where one takes \
-              more than six. Steps stay multiples of increment_deg.",
+              more than six. Until one is cut, steps end at multiples of increment_deg.",
     example: "3.2",
     aliases: &["max_increment_deg", "maximum_increment_deg", "largest_increment_deg", "max_step_deg"],
 };

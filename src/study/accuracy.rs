@@ -1,8 +1,8 @@
 //! Error against run time: a run beside a reference run of the same structure.
 //!
-//! Both are compared at the load steps that end at the same parameter. Before the first jump of either the difference is a
-//! share of the reference's largest value there, after the first jumps of both one of its largest value there; between the
-//! two they stand on different branches, and what differs is where they jump.
+//! Both are compared at the load steps that end at the same parameter, before their first jumps and behind them: the largest
+//! difference, as a share of the largest value of the reference on that side. Where one has jumped and the other has not they
+//! stand on different branches, and what differs is where they jump.
 
 use std::time::Instant;
 
@@ -20,15 +20,25 @@ const SAME: f64 = 1e-9;
 /// A run, as far as it is compared: moment, or first probe, over the parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// Parameter and value at the end of each load step.
-    curve: Vec<(f64, f64)>,
-    /// Parameters before and behind the first jump.
-    jump: Option<[f64; 2]>,
+    curve: Vec<CurvePoint>,
+    /// Parameter of the first equilibrium behind the first jump.
+    jump_at: Option<f64>,
+    /// What the parameter is.
+    what: &'static str,
     elements: [usize; 2],
     unknowns: usize,
     iterations: usize,
     factorizations: usize,
     wall_s: f64,
+}
+
+/// The end of a load step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct CurvePoint {
+    parameter: f64,
+    value: f64,
+    /// Whether the shell has jumped before, or to get here.
+    behind: bool,
 }
 
 /// A run beside the reference.
@@ -40,11 +50,11 @@ pub struct AccuracyRow {
     pub unknowns: usize,
     /// Load steps that both runs have.
     pub compared: usize,
-    /// Largest difference before the first jump, as a share of the reference's largest value there.
+    /// Largest difference before the first jump, as a share of the largest value of the reference there.
     pub error_before: Option<f64>,
     /// Parameter of the first equilibrium behind the first jump.
     pub jump_at: Option<f64>,
-    /// Largest difference behind it, as a share of the reference's largest value there.
+    /// Largest difference behind it, as a share of the largest value of the reference there.
     pub error_after: Option<f64>,
     /// Newton iterations.
     pub iterations: usize,
@@ -66,6 +76,12 @@ pub enum AccuracyError {
     /// Nothing to compare.
     #[error("the scene has no moment and no probe to compare: turn its ends, or write a [[probe]]")]
     NothingMeasured,
+    /// A parameter that goes back is not the same place on the path.
+    #[error("by arc length a path passes one {what} more than once: compare such paths with `foldline converge`")]
+    AlongPath {
+        /// What is driven.
+        what: &'static str,
+    },
     /// No load step ends where one of the reference does.
     #[error("no load step ends at the same {what} as one of the reference: give both the same increment")]
     NothingInCommon {
@@ -90,6 +106,16 @@ impl Sink for Records {
 /// # Errors
 /// Where the run stops before, or measures nothing.
 pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
+    let what = match Parameter::of(scene) {
+        Parameter::Rotation => "rotation",
+        Parameter::LoadFactor => "load factor",
+    };
+    if scene.continuation.is_some() {
+        return Err(AccuracyError::AlongPath { what });
+    }
+    if Parameter::of(scene) == Parameter::LoadFactor && scene.probes.is_empty() {
+        return Err(AccuracyError::NothingMeasured);
+    }
     let stages = Stages::new(scene.clone());
     let start = stages.start()?;
     let mut records = Records::default();
@@ -97,16 +123,11 @@ pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
     Run::new(stages, start, None).to_end(None, &|| false, &mut records).map_err(Box::new)?;
     let wall_s = begin.elapsed().as_secs_f64();
     let Records(records) = records;
-    let value = |point: &PathPoint| match Parameter::of(scene) {
-        Parameter::Rotation => Some(point.moment_n_mm),
-        Parameter::LoadFactor => point.probe,
-    };
-    let path = equilibrium_path(&records);
-    let curve: Option<Vec<_>> = path.iter().map(|point| Some((point.parameter, value(point)?))).collect();
     let last = records.last().map(|record| &record.report);
     Ok(Measured {
-        curve: curve.ok_or(AccuracyError::NothingMeasured)?,
-        jump: snaps(&records).first().map(|snap| [snap.before_deg, snap.after_deg]),
+        curve: curve(&equilibrium_path(&records), Parameter::of(scene)),
+        jump_at: snaps(&records).first().map(|snap| snap.after_deg),
+        what,
         elements: last.map_or([0, 0], |report| report.elements),
         unknowns: last.map_or(0, |report| report.unknowns),
         iterations: records.iter().map(|record| record.report.iterations).sum(),
@@ -115,35 +136,55 @@ pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
     })
 }
 
+/// The moment of turning ends, or else the first probe, at the end of each load step, and once more before a jump that a
+/// finer mesh set off there.
+fn curve(path: &[PathPoint], parameter: Parameter) -> Vec<CurvePoint> {
+    let mut behind = false;
+    let mut curve = Vec::new();
+    for point in path {
+        behind |= point.jumped;
+        let value = match parameter {
+            Parameter::Rotation => point.moment_n_mm,
+            Parameter::LoadFactor => point.probe.unwrap_or(0.0),
+        };
+        curve.push(CurvePoint { parameter: point.parameter, value, behind });
+    }
+    curve
+}
+
 impl Measured {
     /// Beside a reference.
     ///
     /// # Errors
     /// Where they have no load step in common.
-    pub fn against(&self, reference: &Measured, what: &'static str) -> Result<AccuracyRow, AccuracyError> {
-        let jumps = [self.jump, reference.jump];
-        let smooth_to = jumps.iter().flatten().fold(f64::INFINITY, |least, [before, _]| least.min(*before));
-        let beyond = jumps.iter().flatten().fold(f64::NEG_INFINITY, |most, [_, behind]| most.max(*behind));
+    pub fn against(&self, reference: &Measured) -> Result<AccuracyRow, AccuracyError> {
         let is_same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
-        let pairs: Vec<(f64, f64, f64)> = self
+        let pairs: Vec<(CurvePoint, f64)> = self
             .curve
             .iter()
-            .filter_map(|(at, value)| {
-                let (_, expected) = reference.curve.iter().find(|(other, _)| is_same(*at, *other))?;
-                Some((*at, *value, *expected))
+            .filter_map(|point| {
+                let same =
+                    |other: &&CurvePoint| is_same(other.parameter, point.parameter) && other.behind == point.behind;
+                Some((*point, reference.curve.iter().find(same)?.value))
             })
             .collect();
         if pairs.is_empty() {
-            return Err(AccuracyError::NothingInCommon { what });
+            return Err(AccuracyError::NothingInCommon { what: self.what });
         }
-        let jumped = jumps.iter().any(Option::is_some);
+        let error = |behind: bool| {
+            let on_side = pairs.iter().filter(|(point, _)| point.behind == behind);
+            let difference = on_side.map(|(point, expected)| (point.value - expected).abs()).reduce(f64::max)?;
+            let of_reference = reference.curve.iter().filter(|point| point.behind == behind);
+            let scale = of_reference.map(|point| point.value.abs()).fold(0.0, f64::max);
+            (scale > 0.0).then_some(difference / scale)
+        };
         Ok(AccuracyRow {
             elements: self.elements,
             unknowns: self.unknowns,
             compared: pairs.len(),
-            error_before: worst(pairs.iter().filter(|(at, ..)| *at <= smooth_to)),
-            jump_at: self.jump.map(|[_, behind]| behind),
-            error_after: worst(pairs.iter().filter(|(at, ..)| jumped && *at > beyond)),
+            error_before: error(false),
+            jump_at: self.jump_at,
+            error_after: error(true),
             iterations: self.iterations,
             factorizations: self.factorizations,
             wall_s: self.wall_s,
@@ -151,44 +192,51 @@ impl Measured {
     }
 }
 
-/// Largest difference as a share of the largest value expected.
-fn worst<'p>(pairs: impl Iterator<Item = &'p (f64, f64, f64)>) -> Option<f64> {
-    let (mut difference, mut scale) = (0.0_f64, 0.0_f64);
-    for (_, value, expected) in pairs {
-        difference = difference.max((value - expected).abs());
-        scale = scale.max(expected.abs());
-    }
-    (scale > 0.0).then_some(difference / scale)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn measured(curve: &[(f64, f64)], jump: Option<[f64; 2]>) -> Measured {
-        let (elements, unknowns) = ([4, 4], 100);
-        Measured { curve: curve.to_vec(), jump, elements, unknowns, iterations: 1, factorizations: 1, wall_s: 1.0 }
+    /// Parameter, value, and whether it is behind a jump.
+    fn measured(points: &[(f64, f64, bool)]) -> Measured {
+        let of = |&(parameter, value, behind): &(f64, f64, bool)| CurvePoint { parameter, value, behind };
+        let curve: Vec<CurvePoint> = points.iter().map(of).collect();
+        let jump_at = curve.iter().find(|point| point.behind).map(|point| point.parameter);
+        let (elements, unknowns, what) = ([4, 4], 100, "rotation");
+        Measured { curve, jump_at, what, elements, unknowns, iterations: 1, factorizations: 1, wall_s: 1.0 }
     }
 
     #[test]
     fn branches_are_compared_apart() {
-        let reference = measured(&[(1.0, 10.0), (2.0, 20.0), (3.0, 5.0), (4.0, 5.0)], Some([2.0, 2.1]));
-        // Jumps later: at 3 it stands on the other branch.
-        let run = measured(&[(1.0, 10.5), (1.5, 99.0), (2.0, 20.2), (3.0, 30.0), (4.0, 5.1)], Some([3.0, 3.1]));
-        let row = run.against(&reference, "rotation").unwrap();
-        assert_eq!((row.compared, row.jump_at), (4, Some(3.1)));
+        let reference =
+            measured(&[(1.0, 10.0, false), (2.0, 20.0, false), (3.0, 5.0, true), (4.0, 5.0, true), (5.0, 6.0, true)]);
+        // Jumps later: at 3 it stands on the other branch. The fold is largest at 5, which it does not reach.
+        let run = measured(&[
+            (1.0, 10.5, false),
+            (1.5, 99.0, false),
+            (2.0, 20.2, false),
+            (3.0, 30.0, false),
+            (4.0, 5.1, true),
+        ]);
+        let row = run.against(&reference).unwrap();
+        assert_eq!((row.compared, row.jump_at), (3, Some(4.0)));
         assert!((row.error_before.unwrap() - 0.5 / 20.0).abs() < 1e-12);
-        assert!((row.error_after.unwrap() - 0.1 / 5.0).abs() < 1e-12);
+        assert!((row.error_after.unwrap() - 0.1 / 6.0).abs() < 1e-12);
+    }
+
+    /// A jump that a finer mesh sets off: two equilibria at one rotation, on either side of it.
+    #[test]
+    fn a_run_has_no_error_against_itself() {
+        let run = measured(&[(1.0, 10.0, false), (2.0, 20.0, false), (2.0, 5.0, true), (3.0, 5.0, true)]);
+        let row = run.against(&run).unwrap();
+        assert_eq!((row.compared, row.error_before, row.error_after), (4, Some(0.0), Some(0.0)));
     }
 
     #[test]
     fn without_a_jump_all_is_before() {
-        let reference = measured(&[(1.0, 10.0), (2.0, 20.0)], None);
-        let row = measured(&[(1.0, 10.0), (2.0, 19.0)], None).against(&reference, "rotation").unwrap();
+        let reference = measured(&[(1.0, 10.0, false), (2.0, 20.0, false)]);
+        let row = measured(&[(1.0, 10.0, false), (2.0, 19.0, false)]).against(&reference).unwrap();
         assert_eq!((row.error_before, row.error_after), (Some(0.05), None));
-        assert!(matches!(
-            measured(&[(1.5, 10.0)], None).against(&reference, "rotation"),
-            Err(AccuracyError::NothingInCommon { .. })
-        ));
+        let nothing = measured(&[(1.5, 10.0, false)]).against(&reference);
+        assert!(matches!(nothing, Err(AccuracyError::NothingInCommon { .. })));
     }
 }

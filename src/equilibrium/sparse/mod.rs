@@ -10,6 +10,7 @@ mod supernodal;
 
 pub use supernodal::DenseProduct;
 
+use crate::equilibrium::kernel::Build;
 use strips::StripSolver;
 use supernodal::SupernodalSolver;
 
@@ -24,14 +25,14 @@ const STRIPS_PAY: f64 = 1.5;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FactorError {
     /// A pivot is exactly zero or not a number.
-    #[error("pivot {index} of {size} is zero or not a number")]
+    #[error("the pivot of unknown {index} of {size} is zero or not a number")]
     BadPivot {
         /// The unknown.
         index: usize,
         /// Size of the matrix.
         size: usize,
     },
-    /// The structure could not be analysed (out of memory, or more than 2⁶³ entries).
+    /// Out of memory, or 2³² entries and more.
     #[error("a matrix of {size} unknowns and {entries} entries is too large for this machine")]
     TooLarge {
         /// Size of the matrix.
@@ -87,18 +88,29 @@ impl SparseSolver {
     /// # Errors
     /// Where the factor does not fit in memory.
     pub fn new(couplings: &Couplings) -> Result<Self, FactorError> {
-        let strips = StripSolver::structure(couplings);
-        if strips.flops() < WORTH_ASKING_FLOPS {
-            return strips.with_room().map(Self::Strips);
+        let strips = StripSolver::structure(couplings, Build::detect());
+        let size = couplings.unknowns;
+        let solver = match strips.flops() < WORTH_ASKING_FLOPS {
+            true => Self::Strips(strips.with_room()?),
+            false => match SupernodalSolver::structure(couplings) {
+                Ok(other) if strips.flops() > STRIPS_PAY * other.flops() => Self::Supernodal(other.with_room()?),
+                // Where the question itself does not fit in memory, strips may.
+                _ => Self::Strips(strips.with_room()?),
+            },
+        };
+        match u32::try_from(solver.value_count()) {
+            Ok(_) => Ok(solver),
+            Err(_) => Err(FactorError::TooLarge { size, entries: solver.value_count() }),
         }
-        let other = SupernodalSolver::new(couplings)?;
-        if strips.flops() < STRIPS_PAY * other.flops() {
-            return strips.with_room().map(Self::Strips);
-        }
-        Ok(Self::Supernodal(other))
     }
 
-    /// Numbers that the values of a matrix take.
+    /// The storage for any structure, whatever the structure.
+    #[cfg(test)]
+    pub fn supernodal(couplings: &Couplings) -> Result<Self, FactorError> {
+        SupernodalSolver::structure(couplings)?.with_room().map(Self::Supernodal)
+    }
+
+    /// Numbers that the values of a matrix take: fewer than 2³².
     pub fn value_count(&self) -> usize {
         match self {
             Self::Strips(solver) => solver.value_count(),
@@ -106,7 +118,8 @@ impl SparseSolver {
         }
     }
 
-    /// Where the values hold the entry of two unknowns, which is the same both ways round; `None` where they do not meet.
+    /// Where the values hold the entry of two unknowns, which is the same both ways round. Of unknowns that do not meet it
+    /// is `None`, or a place within the envelope that nothing else uses.
     pub fn place(&self, a: usize, b: usize) -> Option<usize> {
         match self {
             Self::Strips(solver) => solver.place(a, b),
@@ -117,7 +130,9 @@ impl SparseSolver {
     /// Adds terms (unknown, unknown, value) to the matrix, each pair one way round.
     pub fn add(&mut self, terms: &[(usize, usize, f64)]) {
         for (a, b, value) in terms {
-            if let Some(place) = self.place(*a, *b) {
+            let place = self.place(*a, *b);
+            debug_assert!(place.is_some(), "unknowns {a} and {b} do not meet");
+            if let Some(place) = place {
                 self.matrix_mut()[place] += value;
             }
         }
@@ -170,18 +185,34 @@ impl SparseSolver {
     /// Numbers in the factor.
     pub fn factor_len(&self) -> usize {
         match self {
-            Self::Strips(solver) => solver.value_count(),
+            Self::Strips(solver) => solver.factor_len(),
             Self::Supernodal(solver) => solver.factor_len(),
         }
     }
 
-    /// Floating-point operations of a factorization: the sum of the squares of the column counts.
+    /// Threads that can share a factorization.
+    pub fn most_threads(&self) -> usize {
+        match self {
+            Self::Strips(solver) => solver.most_threads(),
+            Self::Supernodal(_) => 1,
+        }
+    }
+
+    /// Floating-point operations of a factorization: the sum of the squares of the column counts, or a bound near it.
     pub fn flops(&self) -> f64 {
         match self {
             Self::Strips(solver) => solver.flops(),
             Self::Supernodal(solver) => solver.flops(),
         }
     }
+}
+
+/// Zeros; `None` where memory does not hold so many.
+fn room(length: usize) -> Option<Vec<f64>> {
+    let mut numbers = Vec::new();
+    numbers.try_reserve_exact(length).ok()?;
+    numbers.resize(length, 0.0);
+    Some(numbers)
 }
 
 #[cfg(test)]

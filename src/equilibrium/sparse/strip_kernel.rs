@@ -37,9 +37,9 @@ pub(super) struct ChainData<'a> {
     pub row: &'a mut [Column],
 }
 
-/// Factors a chain; an error is the place of a pivot that is zero or not a number.
-pub(super) fn eliminate(chain: &Chain, data: &mut ChainData) -> Result<(), usize> {
-    match Build::detect() {
+/// Factors a chain; an error is the place of a pivot that has no inverse.
+pub(super) fn eliminate(build: Build, chain: &Chain, data: &mut ChainData) -> Result<(), usize> {
+    match build {
         Build::Portable => eliminate_with::<Portable>((), chain, data),
         #[cfg(target_arch = "x86_64")]
         // SAFETY: `proof` says that the processor has the instructions.
@@ -219,10 +219,11 @@ fn diagonal_block<V: FourLanes>(
             let mut numbers: Column = [[0.0; WIDTH]; TILES];
             store(sums[s], &mut numbers);
             let pivot = if place < used { numbers[tile][s] } else { 1.0 };
-            if !pivot.is_finite() || pivot == 0.0 {
+            inverses[place] = 1.0 / pivot;
+            // Neither zero, nor so small that it has no inverse, nor infinite, nor not a number.
+            if !inverses[place].is_finite() || inverses[place] == 0.0 {
                 return Err(place);
             }
-            inverses[place] = 1.0 / pivot;
             let inverse = V::splat(proof, inverses[place]);
             let mut negative = sums[s];
             for v in 0..TILES {
@@ -254,8 +255,8 @@ pub(super) struct SolveData<'a> {
 }
 
 /// Forward: in the chain's own rows x becomes L⁻¹ x, and the separator's rows lose what these take from them.
-pub(super) fn forward(chain: &Chain, data: &SolveData, x: &mut [f64]) {
-    match Build::detect() {
+pub(super) fn forward(build: Build, chain: &Chain, data: &SolveData, x: &mut [f64]) {
+    match build {
         Build::Portable => forward_with::<Portable>((), chain, data, x),
         #[cfg(target_arch = "x86_64")]
         // SAFETY: `proof` says that the processor has the instructions.
@@ -304,8 +305,8 @@ fn forward_with<V: FourLanes>(proof: V::Proof, chain: &Chain, data: &SolveData, 
 }
 
 /// Backward: x = L⁻ᵀ D⁻¹ x in the chain's own rows; those of the separator are known.
-pub(super) fn backward(chain: &Chain, data: &SolveData, x: &mut [f64]) {
-    match Build::detect() {
+pub(super) fn backward(build: Build, chain: &Chain, data: &SolveData, x: &mut [f64]) {
+    match build {
         Build::Portable => backward_with::<Portable>((), chain, data, x),
         #[cfg(target_arch = "x86_64")]
         // SAFETY: `proof` says that the processor has the instructions.

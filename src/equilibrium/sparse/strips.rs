@@ -10,8 +10,9 @@
 //! Each chain holds its rows of the matrix, and of L, as strips; see [`super::strip_kernel`]. Entries of the matrix
 //! between two unknowns of the separator stand with the head.
 
+use crate::equilibrium::kernel::Build;
 use crate::equilibrium::sparse::strip_kernel::{ChainData, Column, HEIGHT, SolveData, backward, eliminate, forward};
-use crate::equilibrium::sparse::{Couplings, FactorError, NegativePivots};
+use crate::equilibrium::sparse::{Couplings, FactorError, NegativePivots, room};
 
 /// A cut must leave the longer side with at most this share of the operations.
 const CUT_PAYS: f64 = 0.8;
@@ -57,6 +58,12 @@ impl Chain {
         self.start.last().copied().unwrap_or(0)
     }
 
+    /// Columns of all strips that lie in the chain's own.
+    fn own_columns(&self) -> usize {
+        let separator = self.first.len() - self.own_strips;
+        self.columns() - HEIGHT * separator * (separator + 1) / 2
+    }
+
     /// Columns of the widest strip.
     fn widest(&self) -> usize {
         self.start.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or(0)
@@ -81,6 +88,8 @@ enum Part {
 /// Structure, and room for one factor.
 #[derive(Debug)]
 pub struct StripSolver {
+    /// Instructions that it computes with.
+    build: Build,
     unknowns: usize,
     /// The separator's unknowns.
     cut: std::ops::Range<usize>,
@@ -96,7 +105,7 @@ pub struct StripSolver {
 
 impl StripSolver {
     /// Chooses the cut; there is no room for numbers yet.
-    pub(super) fn structure(couplings: &Couplings) -> Self {
+    pub(super) fn structure(couplings: &Couplings, build: Build) -> Self {
         let envelope = Envelope::new(couplings);
         let count = couplings.unknowns;
         let cut = envelope.best_cut();
@@ -115,6 +124,7 @@ impl StripSolver {
         let middle = Chain::new(end - begin, 0, |_| 0);
         let flops = envelope.flops(&cut);
         Self {
+            build,
             unknowns: count,
             cut,
             head,
@@ -131,12 +141,7 @@ impl StripSolver {
     pub(super) fn with_room(mut self) -> Result<Self, FactorError> {
         let entries = self.value_count();
         let too_large = FactorError::TooLarge { size: self.unknowns, entries };
-        let room = |length: usize| {
-            let mut numbers: Vec<f64> = Vec::new();
-            numbers.try_reserve_exact(length).map_err(|_| too_large)?;
-            numbers.resize(length, 0.0);
-            Ok(numbers)
-        };
+        let room = |length: usize| room(length).ok_or(too_large);
         self.numbers = room(entries + HEIGHT * self.middle.columns())?;
         for (inverses, chain) in self.inverses.iter_mut().zip([&self.head, &self.tail, &self.middle]) {
             *inverses = room(HEIGHT * chain.own_strips)?;
@@ -151,9 +156,25 @@ impl StripSolver {
         HEIGHT * (self.head.columns() + self.tail.columns())
     }
 
-    /// Sum of the squares of the column counts.
+    /// Operations of a factorization, at most.
     pub(super) fn flops(&self) -> f64 {
         self.flops
+    }
+
+    /// Numbers in the factor, with the zeros that the envelope holds.
+    pub(super) fn factor_len(&self) -> usize {
+        HEIGHT * (self.head.own_columns() + self.tail.own_columns() + self.middle.columns())
+    }
+
+    /// Threads that can share a factorization.
+    pub(super) fn most_threads(&self) -> usize {
+        1 + usize::from(self.tail.own > 0)
+    }
+
+    /// The unknowns of the separator.
+    #[cfg(test)]
+    pub(super) fn cut(&self) -> std::ops::Range<usize> {
+        self.cut.clone()
     }
 
     fn part(&self, unknown: usize) -> Part {
@@ -234,7 +255,8 @@ impl StripSolver {
 
     /// Numeric L D Lᵀ in place of the matrix; returns its negative pivots.
     pub(super) fn factorize(&mut self) -> Result<NegativePivots, FactorError> {
-        let Self { head, tail, middle, numbers, inverses, scratch, .. } = self;
+        let Self { build, head, tail, middle, numbers, inverses, scratch, .. } = self;
+        let build = *build;
         let (of_head, rest) = columns_mut(numbers).split_at_mut(head.columns());
         let (of_tail, of_middle) = rest.split_at_mut(tail.columns());
         let [head_inverses, tail_inverses, middle_inverses] = inverses;
@@ -242,14 +264,14 @@ impl StripSolver {
         let (one, other) = rayon::join(
             || {
                 let (factor, inverses) = (&mut *of_head, &mut head_inverses[..]);
-                eliminate(head, &mut ChainData { factor, inverses, row: &mut *row })
+                eliminate(build, head, &mut ChainData { factor, inverses, row: &mut *row })
             },
             || {
                 let (factor, inverses) = (&mut *of_tail, &mut tail_inverses[..]);
-                eliminate(tail, &mut ChainData { factor, inverses, row: other_row })
+                eliminate(build, tail, &mut ChainData { factor, inverses, row: other_row })
             },
         );
-        let size = self.unknowns;
+        let (size, mut negative) = (self.unknowns, NegativePivots::default());
         one.map_err(|place| FactorError::BadPivot { index: place, size })?;
         other.map_err(|place| FactorError::BadPivot { index: size - 1 - place, size })?;
         for strip in 0..middle.first.len() {
@@ -264,9 +286,8 @@ impl StripSolver {
                 }
             }
         }
-        eliminate(middle, &mut ChainData { factor: of_middle, inverses: middle_inverses, row })
+        eliminate(build, middle, &mut ChainData { factor: of_middle, inverses: middle_inverses, row })
             .map_err(|place| FactorError::BadPivot { index: self.cut.start + place, size })?;
-        let mut negative = NegativePivots::default();
         self.inverses.iter().flatten().for_each(|inverse| negative.see(1.0 / inverse));
         Ok(negative)
     }
@@ -278,7 +299,8 @@ impl StripSolver {
 
     /// Solves in place with the last factor.
     pub(super) fn solve(&self, right_hand_side: &mut [f64]) {
-        let Self { head, tail, middle, cut, .. } = self;
+        let Self { build, head, tail, middle, .. } = self;
+        let build = *build;
         let (of_head, rest) = columns(&self.numbers).split_at(head.columns());
         let (of_tail, of_middle) = rest.split_at(tail.columns());
         let [head_inverses, tail_inverses, middle_inverses] = &self.inverses;
@@ -286,15 +308,14 @@ impl StripSolver {
         let tail_data = SolveData { factor: of_tail, inverses: tail_inverses };
         let middle_data = SolveData { factor: of_middle, inverses: middle_inverses };
         let [mut one, mut other] = self.spread(right_hand_side);
-        rayon::join(|| forward(head, &head_data, &mut one), || forward(tail, &tail_data, &mut other));
+        rayon::join(|| forward(build, head, &head_data, &mut one), || forward(build, tail, &tail_data, &mut other));
         let (left, right) = (HEIGHT * head.own_strips, HEIGHT * tail.own_strips);
         let mut separator: Vec<f64> = one[left..].iter().zip(&other[right..]).map(|(a, b)| a + b).collect();
-        forward(middle, &middle_data, &mut separator);
-        backward(middle, &middle_data, &mut separator);
+        forward(build, middle, &middle_data, &mut separator);
+        backward(build, middle, &middle_data, &mut separator);
         one[left..].copy_from_slice(&separator);
         other[right..].copy_from_slice(&separator);
-        rayon::join(|| backward(head, &head_data, &mut one), || backward(tail, &tail_data, &mut other));
-        debug_assert!(cut.end <= right_hand_side.len());
+        rayon::join(|| backward(build, head, &head_data, &mut one), || backward(build, tail, &tail_data, &mut other));
         self.gather([&one, &other], right_hand_side);
     }
 }
@@ -353,11 +374,6 @@ impl Envelope {
         }
     }
 
-    /// The separator that the unknowns before `begin` need: as far as they reach.
-    fn cut_at(&self, begin: usize, reach: usize) -> std::ops::Range<usize> {
-        begin..reach.max(begin)
-    }
-
     /// The cut with the least work for the longer side, or none: an empty separator behind all unknowns.
     fn best_cut(&self) -> std::ops::Range<usize> {
         let count = self.first.len();
@@ -365,17 +381,16 @@ impl Envelope {
         let mut best = (CUT_PAYS * self.flops(&none), none);
         // Work of rows from the front, and from the back: squares of the lengths of the rows.
         let mut behind = vec![0.0; count + 1];
-        let mut least = count;
         for unknown in (0..count).rev() {
-            least = least.min(self.first[unknown]);
             behind[unknown] = behind[unknown + 1] + ((self.last[unknown] + 1 - unknown) as f64).powi(2);
         }
         let (mut before, mut reach) = (0.0, 0);
         for begin in 0..count {
-            let cut = self.cut_at(begin, reach);
+            // As far as the unknowns before it reach.
+            let cut = begin..reach.max(begin);
             let width = cut.len() as f64;
             let work = f64::max(before, behind[cut.end]) + width.powi(3);
-            if work < best.0 {
+            if begin > 0 && cut.end < count && work < best.0 {
                 best = (work, cut);
             }
             before += ((begin + 1 - self.first[begin]) as f64).powi(2);
@@ -384,11 +399,23 @@ impl Envelope {
         best.1
     }
 
-    /// Operations for a cut: the squares of the column counts of its factor, which in an envelope are at most those of
-    /// its row lengths.
+    /// Operations for a cut, at most: a row of n numbers takes n² where none before it begins later than it does, and less
+    /// otherwise. Rows of the separator are counted with head and tail, and what is left of them as a full matrix.
     fn flops(&self, cut: &std::ops::Range<usize>) -> f64 {
         let head = (0..cut.start).map(|row| ((row + 1 - self.first[row]) as f64).powi(2)).sum::<f64>();
         let tail = (cut.end..self.last.len()).map(|row| ((self.last[row] + 1 - row) as f64).powi(2)).sum::<f64>();
-        head + tail + (cut.len() as f64).powi(3)
+        let shares: [fn(&Self, usize, &std::ops::Range<usize>) -> usize; 2] = [
+            |envelope, row, cut| cut.start.saturating_sub(envelope.first[row]),
+            |envelope, row, cut| (envelope.last[row] + 1).saturating_sub(cut.end),
+        ];
+        let mut separator = (cut.len() as f64).powi(3) / 3.0;
+        for share in shares {
+            let lengths: Vec<f64> = cut.clone().map(|row| share(self, row, cut) as f64).collect();
+            for (i, length) in lengths.iter().enumerate() {
+                separator += length * length;
+                separator += lengths[..=i].iter().map(|other| 2.0 * length.min(*other)).sum::<f64>();
+            }
+        }
+        head + tail + separator
     }
 }

@@ -3,7 +3,7 @@
 //! In the order that faer finds (approximate minimum degree). Factor and solve with `Par::Seq`: other settings may differ
 //! in bits between thread counts.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::ldlt::factor::LdltError;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
@@ -13,7 +13,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use crate::equilibrium::sparse::{Couplings, FactorError, NegativePivots};
+use crate::equilibrium::sparse::{Couplings, FactorError, NegativePivots, room};
 
 /// Symbolic factor of one structure with room for the numeric one.
 pub struct SupernodalSolver {
@@ -37,11 +37,11 @@ impl std::fmt::Debug for SupernodalSolver {
 }
 
 impl SupernodalSolver {
-    /// Analyses the structure.
+    /// Analyses the structure; there is no room for numbers yet.
     ///
     /// # Errors
-    /// Where the factor does not fit in memory.
-    pub(super) fn new(couplings: &Couplings) -> Result<Self, FactorError> {
+    /// Where the analysis does not fit in memory.
+    pub(super) fn structure(couplings: &Couplings) -> Result<Self, FactorError> {
         let (column_starts, rows) = lower_triangle(couplings);
         let size = couplings.unknowns;
         let too_large = FactorError::TooLarge { size, entries: rows.len() };
@@ -52,11 +52,21 @@ impl SupernodalSolver {
         };
         let symbolic = factorize_symbolic_cholesky(structure, Side::Lower, SymmetricOrdering::Amd, parameters)
             .map_err(|_| too_large)?;
-        let scratch = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
-        let scratch = MemBuffer::try_new(scratch).map_err(|_| too_large)?;
-        let factor = vec![0.0; symbolic.len_val()];
-        let values = vec![0.0; rows.len()];
-        Ok(Self { symbolic, column_starts, rows, values, factor, scratch })
+        let scratch = MemBuffer::new(StackReq::EMPTY);
+        Ok(Self { symbolic, column_starts, rows, values: Vec::new(), factor: Vec::new(), scratch })
+    }
+
+    /// Takes the memory.
+    ///
+    /// # Errors
+    /// Where the factor does not fit in it.
+    pub(super) fn with_room(mut self) -> Result<Self, FactorError> {
+        let too_large = FactorError::TooLarge { size: self.column_starts.len() - 1, entries: self.rows.len() };
+        let scratch = self.symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
+        self.scratch = MemBuffer::try_new(scratch).map_err(|_| too_large)?;
+        self.factor = room(self.symbolic.len_val()).ok_or(too_large)?;
+        self.values = room(self.rows.len()).ok_or(too_large)?;
+        Ok(self)
     }
 
     /// Numbers that the values of a matrix take.

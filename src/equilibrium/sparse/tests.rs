@@ -7,10 +7,11 @@ fn banded(unknowns: usize, width: impl Fn(usize) -> usize) -> Couplings {
     Couplings { unknowns, groups, pairs: (0..unknowns).flat_map(before).collect() }
 }
 
-/// Both storages of one structure, whatever is chosen for it.
-fn both(couplings: &Couplings) -> [SparseSolver; 2] {
-    let strips = StripSolver::structure(couplings).with_room().unwrap();
-    [SparseSolver::Strips(strips), SparseSolver::Supernodal(SupernodalSolver::new(couplings).unwrap())]
+/// Every storage of one structure, whatever is chosen for it, and the strips in every build that this machine runs.
+fn each(couplings: &Couplings) -> Vec<SparseSolver> {
+    let strips = |build| SparseSolver::Strips(StripSolver::structure(couplings, build).with_room().unwrap());
+    let supernodes = SupernodalSolver::structure(couplings).unwrap().with_room().unwrap();
+    vec![strips(Build::detect()), strips(Build::Portable), SparseSolver::Supernodal(supernodes)]
 }
 
 /// A number in −1..1 that two unknowns share.
@@ -47,7 +48,7 @@ fn strips_and_supernodes_agree() {
         for indefinite in [false, true] {
             let diagonal = |i: usize| if indefinite && i % 5 == 2 { -40.0 } else { 40.0 };
             let mut answers = Vec::new();
-            for mut solver in both(&couplings) {
+            for mut solver in each(&couplings) {
                 let values = fill(&mut solver, &couplings, diagonal);
                 let exact: Vec<f64> = (0..count).map(|i| noise(i, 3)).collect();
                 let mut x = solver.multiply(&values, &exact);
@@ -58,42 +59,65 @@ fn strips_and_supernodes_agree() {
                 }
                 answers.push((negative.count, solver.multiply(&values, &exact)));
             }
-            let [one, other] = &answers[..] else { unreachable!() };
-            assert_eq!(one.0, other.0, "{count} unknowns");
-            for (a, b) in one.1.iter().zip(&other.1) {
-                assert!((a - b).abs() < 1e-12 * 100.0, "{count}: {a} {b}");
+            for pair in answers.windows(2) {
+                let [one, other] = pair else { unreachable!() };
+                assert_eq!(one.0, other.0, "{count} unknowns");
+                for (a, b) in one.1.iter().zip(&other.1) {
+                    assert!((a - b).abs() < 1e-10, "{count}: {a} {b}");
+                }
             }
         }
     }
 }
 
-/// With |D| for D the matrix is L |D| Lᵀ: solving with it and then with L D Lᵀ twice gives what D alone decides.
+/// A matrix of one block for each four unknowns, in which the sign of D is known: [[2, 1], [1, −3]] has pivots 2 and −3.5, and
+/// L |D| Lᵀ is [[2, 1], [1, 4]]. In whatever order blocks are taken, the first of a pair meets nothing else.
 #[test]
-fn pivots_turn_positive_alike() {
-    let couplings = banded(400, |_| 15);
-    let mut solutions = Vec::new();
-    for mut solver in both(&couplings) {
-        // A negative pivot comes last in any order where its unknown meets the whole of the matrix only through others.
-        fill(&mut solver, &couplings, |_| 30.0);
-        solver.factorize().unwrap();
-        let mut positive: Vec<f64> = (0..400).map(|i| noise(i, 1)).collect();
-        let mut again = positive.clone();
-        solver.solve(&mut positive);
+fn negative_pivots_turn_positive() {
+    let count = 400;
+    let couplings = banded(count, |row| row % 2);
+    for mut solver in each(&couplings) {
+        solver.add(&(0..count).map(|i| (i, i, if i % 2 == 0 { 2.0 } else { -3.0 })).collect::<Vec<_>>());
+        solver.add(&(1..count).step_by(2).map(|i| (i, i - 1, 1.0)).collect::<Vec<_>>());
+        let negative = solver.factorize().unwrap();
+        assert_eq!(negative.count, count / 2);
         solver.make_positive();
-        solver.solve(&mut again);
-        assert_eq!(positive, again, "a positive matrix stays what it is");
-        fill(&mut solver, &couplings, |_| 30.0);
-        solver.matrix_mut().iter_mut().for_each(|value| *value = -*value);
-        assert_eq!(solver.factorize().unwrap().count, 400);
-        solver.make_positive();
-        let mut turned: Vec<f64> = (0..400).map(|i| noise(i, 1)).collect();
-        solver.solve(&mut turned);
-        for (a, b) in turned.iter().zip(&positive) {
-            assert!((a - b).abs() < 1e-13, "{a} {b}");
+        let mut x: Vec<f64> = (0..count).map(|i| noise(i, 1)).collect();
+        let b = x.clone();
+        solver.solve(&mut x);
+        for pair in 0..count / 2 {
+            let (i, j) = (2 * pair, 2 * pair + 1);
+            // The pair is eliminated from either side: the second one first has pivots −3 and 7/3, and |D| gives
+            // [[8/3, −1], [−1, 3]].
+            let forward = [2.0 * x[i] + x[j] - b[i], x[i] + 4.0 * x[j] - b[j]];
+            let backward = [8.0 / 3.0 * x[i] - x[j] - b[i], -x[i] + 3.0 * x[j] - b[j]];
+            let solves = |residual: [f64; 2]| residual.iter().all(|r| r.abs() < 1e-12);
+            assert!(solves(forward) || solves(backward), "pair {pair}: {forward:?} {backward:?}");
         }
-        solutions.push(turned);
     }
-    assert_eq!(solutions.len(), 2);
+}
+
+/// A band with as many negative eigenvalues as it likes: xᵀ (L |D| Lᵀ)⁻¹ x is positive for every x, and xᵀ A⁻¹ x is not.
+#[test]
+fn an_indefinite_band_turns_positive() {
+    let couplings = banded(500, |row| 5 + row % 9);
+    for mut solver in each(&couplings) {
+        fill(&mut solver, &couplings, |i| if i % 3 == 0 { -30.0 } else { 30.0 });
+        assert!(solver.factorize().unwrap().count > 100);
+        let forms = |solver: &SparseSolver| -> Vec<f64> {
+            (0..20)
+                .map(|seed| {
+                    let x: Vec<f64> = (0..500).map(|i| noise(i, seed) * f64::from(u8::from(i % 20 == seed))).collect();
+                    let mut solved = x.clone();
+                    solver.solve(&mut solved);
+                    x.iter().zip(&solved).map(|(a, b)| a * b).sum()
+                })
+                .collect()
+        };
+        assert!(forms(&solver).iter().any(|form| *form < 0.0));
+        solver.make_positive();
+        assert!(forms(&solver).iter().all(|form| *form > 0.0));
+    }
 }
 
 #[test]
@@ -105,7 +129,7 @@ fn counts_negative_eigenvalues() {
     for shift in [2.5, 1.01, 0.3, -0.7] {
         let eigenvalue = |k: usize| shift - 2.0 * (k as f64 * std::f64::consts::PI / (size + 1) as f64).cos();
         let negative = (1..=size).filter(|k| eigenvalue(*k) < 0.0).count();
-        for mut solver in both(&couplings) {
+        for mut solver in each(&couplings) {
             solver.add(&(0..size).map(|i| (i, i, shift)).collect::<Vec<_>>());
             solver.add(&(1..size).map(|i| (i, i - 1, -1.0)).collect::<Vec<_>>());
             assert_eq!(solver.factorize().unwrap().count, negative, "shift {shift}");
@@ -117,24 +141,40 @@ fn counts_negative_eigenvalues() {
 fn a_pivot_that_is_zero_is_named() {
     for zero in [3, 140, 299] {
         let couplings = banded(300, |_| 0);
-        for mut solver in both(&couplings) {
+        for mut solver in each(&couplings) {
             solver.add(&(0..300).map(|i| (i, i, f64::from(u8::from(i != zero)))).collect::<Vec<_>>());
             assert_eq!(solver.factorize(), Err(FactorError::BadPivot { index: zero, size: 300 }));
         }
     }
 }
 
-/// A long band is cut and a square one not; what would fill the envelope goes to faer.
+/// A long band is cut near its middle, a short and wide one not, and one that is wide at its front in the rest.
+#[test]
+fn the_cut_follows_the_band() {
+    let cut = |couplings: &Couplings| StripSolver::structure(couplings, Build::Portable).cut();
+    let middle = cut(&banded(4000, |_| 100));
+    assert!(middle.start > 1900 && middle.end < 2100 && middle.len() == 100, "{middle:?}");
+    assert_eq!(cut(&banded(400, |_| 300)), 400..400, "none");
+    let wide_front = cut(&banded(4000, |row| if row < 1000 { 300 } else { 50 }));
+    assert!(wide_front.start < 1000, "{wide_front:?}");
+    for couplings in [banded(4000, |_| 100), banded(4000, |row| if row < 1000 { 300 } else { 50 })] {
+        let solver = StripSolver::structure(&couplings, Build::Portable);
+        assert_eq!(solver.most_threads(), 2);
+        // The bound is near the sum of the squares of the column counts, which for a band is n b².
+        let exact: f64 = SupernodalSolver::structure(&couplings).unwrap().flops();
+        assert!(solver.flops() < 1.6 * exact.max(1.0) && solver.flops() > 0.5 * exact, "{} {exact}", solver.flops());
+    }
+}
+
+/// What is long and narrow goes to the strips, also where faer is asked; what would fill its envelope goes to faer.
 #[test]
 fn the_structure_decides() {
-    let narrow = SparseSolver::new(&banded(4000, |_| 100)).unwrap();
-    assert!(matches!(narrow, SparseSolver::Strips(_)));
-    let bottom = |row: usize| if row > 3980 { row } else { 40 };
-    let wide = SparseSolver::new(&banded(4000, bottom)).unwrap();
-    assert!(matches!(wide, SparseSolver::Strips(_)), "few long rows at the end fill nothing else");
-    let top = |row: usize| if row % 10 == 0 { row } else { 3 };
-    let scattered = SparseSolver::new(&banded(4000, top)).unwrap();
-    assert!(matches!(scattered, SparseSolver::Supernodal(_)));
+    let narrow = banded(4000, |_| 600);
+    let scattered = banded(6000, |row| if row % 10 == 0 { row } else { 3 });
+    let flops = |couplings: &Couplings| StripSolver::structure(couplings, Build::Portable).flops();
+    assert!(flops(&narrow) > WORTH_ASKING_FLOPS && flops(&scattered) > WORTH_ASKING_FLOPS, "faer is asked");
+    assert!(matches!(SparseSolver::new(&narrow).unwrap(), SparseSolver::Strips(_)));
+    assert!(matches!(SparseSolver::new(&scattered).unwrap(), SparseSolver::Supernodal(_)));
 }
 
 #[test]
@@ -142,14 +182,15 @@ fn one_and_two_threads_give_the_same_bits() {
     let couplings = banded(900, |row| 10 + row % 17);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let mut solver = SparseSolver::new(&couplings).unwrap();
+        let solve = |mut solver: SparseSolver| {
             fill(&mut solver, &couplings, |i| 20.0 - (i % 3) as f64);
             solver.factorize().unwrap();
             let mut x: Vec<f64> = (0..900).map(|i| noise(i, 2)).collect();
             solver.solve(&mut x);
             x
-        })
+        };
+        pool.install(|| each(&couplings).into_iter().map(solve).collect::<Vec<_>>())
     };
+    assert_eq!(StripSolver::structure(&couplings, Build::detect()).most_threads(), 2);
     assert_eq!(run(1), run(2));
 }
