@@ -2,7 +2,7 @@
 //! stiffness.
 
 use crate::model::rotation::{Rotation, apply};
-use crate::model::supports::Section;
+use crate::model::supports::{Section, Supports};
 use crate::model::unknowns::{Entry, Share, Unknowns, unit};
 use crate::shell::{add, dot, scaled, sub};
 
@@ -40,9 +40,7 @@ impl Pose {
         let [x, y, z, ..] = self.motions;
         let arm = sub(point, self.centre);
         let relative = sub(sub(displacement, [x, y, z]), apply(&self.rotation.change, arm));
-        // exp(ω)ᵀ = exp(−ω).
-        let turned = [0, 1, 2].map(|c| (0..3).map(|row| self.rotation.change[row][c] * relative[row]).sum());
-        add(relative, turned)
+        self.rotation.turn_back(relative)
     }
 }
 
@@ -116,6 +114,20 @@ impl<'a> Placement<'a> {
     fn section(&self, point: usize) -> Option<(usize, &Rotation, f64)> {
         let section = self.unknowns.supports.section_of[point]?;
         Some((section, &self.rotations[section], self.unknowns.supports.sections[section].size))
+    }
+
+    pub(super) fn supports(&self) -> &'a Supports {
+        &self.unknowns.supports
+    }
+
+    /// A force on a control point as seen in its frame.
+    pub(super) fn seen_in_frame(&self, point: usize, force: [f64; 3]) -> [f64; 3] {
+        self.section(point).map_or(force, |(_, rotation, _)| rotation.turn_back(force))
+    }
+
+    /// A force in the frame of a control point as seen in space.
+    pub(super) fn seen_in_space(&self, point: usize, force: [f64; 3]) -> [f64; 3] {
+        self.section(point).map_or(force, |(_, rotation, _)| rotation.turn(force))
     }
 
     fn direction(&self, point: usize, entry: &Entry) -> [f64; 3] {

@@ -56,6 +56,11 @@ impl Rotation {
         let change = apply(&self.change, x);
         [0, 1, 2].map(|c| x[c] + change[c])
     }
+
+    /// exp(ω)ᵀ x = exp(−ω) x.
+    pub fn turn_back(&self, x: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|c| x[c] + (0..3).map(|row| self.change[row][c] * x[row]).sum::<f64>())
+    }
 }
 
 /// Terms of the series: enough for three full turns.

@@ -54,6 +54,8 @@ pub struct Trace {
     pub name: String,
     /// Control points that it holds.
     pub points: Vec<usize>,
+    /// Of a plane of symmetry, the control points of its edge; empty for other supports.
+    pub mirrored: Vec<usize>,
     /// The point that moments are about, undeformed, mm.
     pub pole: [f64; 3],
     /// The section that the pole moves with.
@@ -75,7 +77,7 @@ pub struct Supports {
     /// Where the supports act, in the order of the scene.
     pub traces: Vec<Trace>,
     /// For each constraint, the support that it comes from; `None` for a joint.
-    owner: Vec<Option<usize>>,
+    pub(super) owner: Vec<Option<usize>>,
 }
 
 impl Supports {
@@ -98,7 +100,13 @@ impl Supports {
         let points: Vec<[f64; 3]> = mesh.control_points.iter().map(|[x, y, z, w]| [x / w, y / w, z / w]).collect();
         // Sections first: what else holds their control points must know their frames.
         for (index, support) in all.iter().enumerate() {
-            supports.traces.push(Trace { name: support.name.clone(), points: vec![], pole: [0.0; 3], section: None });
+            supports.traces.push(Trace {
+                name: support.name.clone(),
+                points: vec![],
+                mirrored: vec![],
+                pole: [0.0; 3],
+                section: None,
+            });
             if let (Hold::Rigid { .. }, Place::Edge(edge)) = (&support.hold, support.on) {
                 supports.hold_rigidly(index, support, &ties.rows(mesh, edge)?, &points)?;
             }
@@ -115,7 +123,6 @@ impl Supports {
             }
         }
         supports.tie(&ties, mesh);
-        supports.share_points();
         Ok(supports)
     }
 
@@ -215,6 +222,7 @@ impl Supports {
         }
         self.traces[index].points = rows.outer.iter().chain(&rows.inner).copied().collect();
         self.traces[index].pole = rows.centroid;
+        self.traces[index].mirrored = rows.outer;
         Ok(())
     }
 
@@ -293,16 +301,6 @@ impl Supports {
                     }
                 }
             }
-        }
-    }
-
-    /// A control point that several supports hold counts for the first of them.
-    fn share_points(&mut self) {
-        let mut taken = vec![false; self.section_of.len()];
-        for trace in &mut self.traces {
-            trace.points.sort_unstable();
-            trace.points.dedup();
-            trace.points.retain(|point| !std::mem::replace(&mut taken[*point], true));
         }
     }
 }

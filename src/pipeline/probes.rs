@@ -2,7 +2,7 @@
 
 use crate::adapt::element_strains;
 use crate::equilibrium::{Standing, Workspace};
-use crate::model::{Discretization, control_expressions, line_index, parameters_of};
+use crate::model::{Discretization, Exerted, Placement, control_expressions, line_index, parameters_of};
 use crate::pipeline::Reading;
 use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene};
 use crate::shell::{add, cross, norm, scaled, sub};
@@ -14,7 +14,14 @@ pub fn read_probes(scene: &Scene, work: &mut Workspace, at: Standing, energy: f6
         return Vec::new();
     }
     let forces = work.forces(at);
-    let reader = Reader { scene, discretization: work.discretization(), at, forces: &forces, energy };
+    let discretization = work.discretization();
+    let unknowns = &discretization.unknowns;
+    let free = unknowns.of_displacement(at.displacement, at.turns, at.parameter);
+    let placement = unknowns.place(&free, at.parameter);
+    let of_supports =
+        |probe: &Probe| matches!(probe.kind, ProbeKind::Reaction { .. } | ProbeKind::SectionMoment { .. });
+    let exerted = scene.probes.iter().any(of_supports).then(|| placement.exerted(&forces));
+    let reader = Reader { scene, discretization, at, placement, forces: &forces, exerted, energy };
     scene.probes.iter().map(|probe| reader.read(probe)).collect()
 }
 
@@ -22,8 +29,11 @@ struct Reader<'a> {
     scene: &'a Scene,
     discretization: &'a Discretization,
     at: Standing<'a>,
-    /// What supports exert on the control points, N.
+    placement: Placement<'a>,
+    /// What supports and joints exert on the control points, N.
     forces: &'a [[f64; 3]],
+    /// The same, each apart; where a probe asks for it.
+    exerted: Option<Exerted>,
     energy: f64,
 }
 
@@ -55,17 +65,15 @@ impl Reader<'_> {
         }
     }
 
-    /// Force and moment that the control points of a support take.
+    /// Force and moment that a support exerts.
     fn reaction(&self, support: &str, component: Reaction) -> (f64, &'static str, Option<[f64; 2]>) {
-        let unknowns = &self.discretization.unknowns;
-        let Some(trace) = unknowns.supports().traces.iter().find(|trace| trace.name == support) else {
-            return (f64::NAN, "N", None);
-        };
-        let pole = trace.section.map_or(trace.pole, |section| {
-            let free = unknowns.of_displacement(self.at.displacement, self.at.turns, self.at.parameter);
-            add(trace.pole, unknowns.place(&free, self.at.parameter).translation(section))
-        });
-        let [force, moment] = self.resultant(trace.points.iter().copied(), pole);
+        let traces = &self.discretization.unknowns.supports().traces;
+        let named = traces.iter().position(|trace| trace.name == support);
+        let (Some(index), Some(exerted)) = (named, &self.exerted) else { return (f64::NAN, "N", None) };
+        let trace = &traces[index];
+        let pole = trace.section.map_or(trace.pole, |section| add(trace.pole, self.placement.translation(section)));
+        let forces = exerted.by_supports[index].iter().map(|(point, force)| (*point, *force));
+        let [force, moment] = self.resultant(forces, pole);
         match component {
             Reaction::ForceX => (force[0], "N", None),
             Reaction::ForceY => (force[1], "N", None),
@@ -81,11 +89,11 @@ impl Reader<'_> {
         add([x / w, y / w, z / w], self.at.displacement[point])
     }
 
-    /// Sum of the forces on control points, and of their moments about `pole`.
-    fn resultant(&self, points: impl Iterator<Item = usize>, pole: [f64; 3]) -> [[f64; 3]; 2] {
-        points.fold([[0.0; 3]; 2], |[force, moment], point| {
+    /// Sum of forces on control points, and of their moments about `pole`.
+    fn resultant(&self, forces: impl Iterator<Item = (usize, [f64; 3])>, pole: [f64; 3]) -> [[f64; 3]; 2] {
+        forces.fold([[0.0; 3]; 2], |[sum, moment], (point, force)| {
             let arm = sub(self.position(point), pole);
-            [add(force, self.forces[point]), add(moment, cross(arm, self.forces[point]))]
+            [add(sum, force), add(moment, cross(arm, force))]
         })
     }
 
@@ -106,11 +114,8 @@ impl Reader<'_> {
         let loads = discretization.loads.forces(mesh, self.at.displacement, self.at.parameter);
         let side = (0..mesh.control_points.len()).filter(|point| [point / n2, point % n2][way] < first_beyond);
         // Supports and loads push the side; the other side holds against them.
-        let [_, moment] = side.fold([[0.0; 3]; 2], |[force, moment], point| {
-            let whole = add(self.forces[point], loads[point]);
-            let arm = sub(self.position(point), middle);
-            [add(force, whole), add(moment, cross(arm, whole))]
-        });
+        let whole = side.map(|point| (point, add(self.forces[point], loads[point])));
+        let [_, moment] = self.resultant(whole, middle);
         -match component {
             Axis::X => moment[0],
             Axis::Y => moment[1],

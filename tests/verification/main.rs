@@ -8,6 +8,7 @@ mod extreme;
 mod house;
 mod path;
 mod quadrature;
+mod reactions;
 mod refinement;
 mod roofs;
 mod soft_mode;

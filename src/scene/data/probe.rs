@@ -26,7 +26,9 @@ pub enum ProbeKind {
         component: Component,
     },
     /// What a support exerts on the shell: force (N), or moment (N·mm) about the displaced reference point of a rigid
-    /// section, or for another support about the centroid of the undeformed place.
+    /// section, or for another support about the centroid of the undeformed place. It is the derivative of strain energy
+    /// less work of the loads with respect to the support's motion. Where supports hold the same, a plane of symmetry takes
+    /// force across itself and moment, and otherwise the first in the scene takes all.
     Reaction {
         /// Name of the support.
         support: String,
