@@ -97,9 +97,9 @@ impl Reader<'_> {
         })
     }
 
-    /// By equilibrium of the side of smaller u or v: the internal forces on its control points, which are loads and
-    /// reactions there, are carried across the line. Where loads act within one element of the line, they are shared out
-    /// between the sides as the functions of the control points are.
+    /// By equilibrium of the side of smaller u or v: the internal forces on its control points less those of joints, which
+    /// are loads and reactions there, are carried across the line. Where loads act within one element of the line, they
+    /// are shared out between the sides as the functions of the control points are.
     fn section_moment(&self, on: Place, component: Axis) -> f64 {
         let discretization = self.discretization;
         let mesh = &discretization.mesh;
@@ -113,8 +113,13 @@ impl Reader<'_> {
         let n2 = mesh.control_counts()[1];
         let loads = discretization.loads.forces(mesh, self.at.displacement, self.at.parameter);
         let side = (0..mesh.control_points.len()).filter(|point| [point / n2, point % n2][way] < first_beyond);
-        // Supports and loads push the side; the other side holds against them.
-        let whole = side.map(|point| (point, add(self.forces[point], loads[point])));
+        let Some(Exerted { by_joints, .. }) = &self.exerted else { return f64::NAN };
+        // Supports and loads push the side; the other side holds against them. A joint across the line pulls on control
+        // points of both sides: its part on this one is no push from outside.
+        let whole = side.map(|point| {
+            let joint = by_joints.get(&point).copied().unwrap_or_default();
+            (point, add(sub(self.forces[point], joint), loads[point]))
+        });
         let [_, moment] = self.resultant(whole, middle);
         -match component {
             Axis::X => moment[0],

@@ -361,3 +361,24 @@ fn reactions_and_loads_are_in_equilibrium() {
         assert!((0..3).all(|c| (a[c] - b[c]).abs() < 1e-8), "{name}: {a:?} {b:?}");
     }
 }
+
+/// A moment at the end of an arch goes through it unchanged, across joints of its segments too.
+#[test]
+fn a_section_moment_does_not_see_joints() {
+    let shell = Shell::arch(30.0, 180.0, 2, [2, 8]);
+    let lines = ["v=0.2", "v=0.45", "v=0.5", "v=0.55", "v=0.8"];
+    let mut tables = support("root", "\"v-start\"", "kind = \"clamped\"");
+    tables += &action("on = \"v-end\"\nkind = \"edge-moment\"\nmoment_n = 0.5");
+    for line in lines {
+        tables +=
+            &format!("[[probe]]\nname = \"{line}\"\nkind = \"section-moment\"\non = \"{line}\"\ncomponent = \"x\"\n");
+    }
+    let found = solve(shell.scene(&tables, &["root"]));
+    let root = found.all("root")[3];
+    let wrong: Vec<String> = lines
+        .into_iter()
+        .filter(|line| (found.values[*line] + root).abs() > 1e-6 * root.abs())
+        .map(|line| format!("{line}: {} and not {}", found.values[line], -root))
+        .collect();
+    assert!(wrong.is_empty() && (root.abs() - 15.0).abs() < 0.2, "{root} {wrong:?}");
+}
