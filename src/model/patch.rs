@@ -57,6 +57,17 @@ pub enum ModelError {
         /// Name of the section.
         other: String,
     },
+    /// A plane of symmetry or a joint shares control points with a section that moves, from beside it.
+    #[error(
+        "{tie} and the rigid section \"{section}\", which moves, lie in one element: put more elements between them \
+         (mesh.elements)"
+    )]
+    TiedToSection {
+        /// What ties the control points.
+        tie: String,
+        /// Name of the section.
+        section: String,
+    },
     /// Two supports give different motions to the same control points.
     #[error("support \"{support}\" gives a displacement that {} does not allow: hold that component in one of them only", other.as_ref().map_or("another support".into(), |name| format!("\"{name}\"")))]
     Contradiction {

@@ -123,6 +123,7 @@ impl Supports {
             }
         }
         supports.tie(&ties, mesh);
+        supports.check_frames()?;
         Ok(supports)
     }
 
@@ -268,6 +269,22 @@ impl Supports {
             support: self.traces[index].name.clone(),
             other: other.map_or_else(String::new, |trace| trace.name.clone()),
         }
+    }
+
+    /// Constraints are between components of one frame: on a mesh of too few elements a tie may join a control point of a
+    /// section that moves with one that does not move with it.
+    fn check_frames(&self) -> Result<(), ModelError> {
+        for (expression, owner) in self.constraints.iter().zip(&self.owner) {
+            let mut frames = expression.iter().filter_map(|(component, _)| self.section_of.get(component / 3));
+            let Some(first) = frames.next() else { continue };
+            let Some(other) = frames.find(|frame| *frame != first) else { continue };
+            let section = self.traces.iter().find(|trace| trace.section.is_some() && trace.section == first.or(*other));
+            return Err(ModelError::TiedToSection {
+                tie: owner.map_or("a joint of the surface".into(), |index| format!("\"{}\"", self.traces[index].name)),
+                section: section.map_or_else(String::new, |trace| trace.name.clone()),
+            });
+        }
+        Ok(())
     }
 
     /// C¹ joints of segments, and seams.

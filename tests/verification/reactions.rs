@@ -382,3 +382,18 @@ fn a_section_moment_does_not_see_joints() {
         .collect();
     assert!(wrong.is_empty() && (root.abs() - 15.0).abs() < 0.2, "{root} {wrong:?}");
 }
+
+/// A plane of symmetry one element away from an edge that moves would tie control points of two frames to each other.
+#[test]
+fn a_section_keeps_its_distance_from_ties() {
+    let turn = support("end", "\"v-start\"", "kind = \"rigid\"\nrotation_x_deg = 5.0");
+    let plate = |elements: usize| Shell::plate(20.0, 20.0, 2, [2, elements]).scene(&turn, &["end"]);
+    let half = |elements: usize| Stages::new(with_planes(plate(elements), &[Edge::VEnd], false)).start();
+    let error = half(1).unwrap_err().to_string();
+    assert!(error.contains("\"plane 0\" and the rigid section \"end\", which moves, lie in one element"), "{error}");
+    assert!(half(2).is_ok());
+    let arch = |elements: usize| Stages::new(Shell::arch(20.0, 180.0, 2, [2, elements]).scene(&turn, &["end"])).start();
+    let error = arch(2).unwrap_err().to_string();
+    assert!(error.contains("a joint of the surface and the rigid section \"end\""), "{error}");
+    assert!(arch(4).is_ok());
+}
