@@ -122,7 +122,7 @@ impl State {
         feed.number(self.moment_n_mm);
         feed.number(self.strain_energy_n_mm);
         feed.integer(self.negative_pivots);
-        // As 32 bits without a sign, which is how they were counted before increments could grow.
+        // As 32 bits without a sign: they had none before increments could grow.
         feed.integer(u64::from(self.control.halvings.cast_unsigned()));
         feed.integer(u64::from(self.control.jump_seen_at_deg.is_some()));
         feed.number(self.control.jump_seen_at_deg.unwrap_or(0.0));

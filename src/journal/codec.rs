@@ -17,7 +17,7 @@ use crate::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Rejection, S
 
 /// The newest version that is written, in front of every state and mesh. A state is written in the oldest version that
 /// holds it.
-pub const CODEC_VERSION: u8 = 4;
+pub const CODEC_VERSION: u8 = 5;
 
 /// Why bytes are not a state or a mesh that can be used.
 #[derive(Debug, thiserror::Error)]
@@ -122,7 +122,7 @@ struct StateV1<'a> {
     moment_n_mm: f64,
     strain_energy_n_mm: f64,
     negative_pivots: u64,
-    /// In two's complement: increments that have grown count as negative halvings.
+    /// 0 where the increment has grown instead.
     halvings: u32,
     jump_seen_at_deg: Option<f64>,
     rejection: Option<RejectionV1>,
@@ -149,6 +149,14 @@ struct StateV3<'a> {
 struct StateV4<'a> {
     after: StateV3<'a>,
     previous_parameter: f64,
+}
+
+/// Version 5: an increment that has grown. Written only where it has.
+#[derive(Serialize, Deserialize)]
+struct StateV5<'a> {
+    after: StateV3<'a>,
+    previous_parameter: Option<f64>,
+    doublings: u32,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -304,7 +312,7 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
         moment_n_mm: state.moment_n_mm,
         strain_energy_n_mm: state.strain_energy_n_mm,
         negative_pivots: state.negative_pivots,
-        halvings: state.control.halvings.cast_unsigned(),
+        halvings: state.control.halvings.max(0).unsigned_abs(),
         jump_seen_at_deg: state.control.jump_seen_at_deg,
         rejection: state.control.rejection.map(|rejection| match rejection {
             Rejection::NoEquilibrium => RejectionV1::NoEquilibrium,
@@ -314,7 +322,11 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
         }),
     };
     let turns = Cow::from(&state.turns);
-    let state = if let Some(previous) = &state.previous {
+    let state = if state.control.halvings < 0 {
+        let after = StateV3 { base, turns, path: state.path.as_ref().map(PathV3::of) };
+        let previous_parameter = state.previous.as_ref().map(|previous| previous.parameter);
+        encode(5, &StateV5 { after, previous_parameter, doublings: state.control.halvings.unsigned_abs() })?
+    } else if let Some(previous) = &state.previous {
         let after = StateV3 { base, turns, path: state.path.as_ref().map(PathV3::of) };
         encode(4, &StateV4 { after, previous_parameter: previous.parameter })?
     } else if state.path.is_some() || state.stage == Some(Stage::SwitchBranch) {
@@ -339,18 +351,21 @@ pub fn decode_state<'a>(
     mesh_hash: Hash,
     expected: Hash,
 ) -> Result<State, CodecError> {
-    let (StateV3 { base: stored, turns, path }, previous_parameter) = match bytes.first() {
+    let after = |after| StateV5 { after, previous_parameter: None, doublings: 0 };
+    let stored = match bytes.first() {
+        Some(5) => decode(5, bytes)?,
         Some(4) => {
             let StateV4 { after, previous_parameter } = decode(4, bytes)?;
-            (after, Some(previous_parameter))
+            StateV5 { after, previous_parameter: Some(previous_parameter), doublings: 0 }
         }
-        Some(3) => (decode::<StateV3>(3, bytes)?, None),
+        Some(3) => after(decode(3, bytes)?),
         Some(2) => {
             let StateV2 { base, turns } = decode(2, bytes)?;
-            (StateV3 { base, turns, path: None }, None)
+            after(StateV3 { base, turns, path: None })
         }
-        _ => (StateV3 { base: decode(1, bytes)?, turns: Cow::default(), path: None }, None),
+        _ => after(StateV3 { base: decode(1, bytes)?, turns: Cow::default(), path: None }),
     };
+    let StateV5 { after: StateV3 { base: stored, turns, path }, previous_parameter, doublings } = stored;
     let found = Hash::from_bytes(stored.mesh);
     if found != mesh_hash {
         return Err(CodecError::OtherMesh { expected: mesh_hash, found });
@@ -382,7 +397,11 @@ pub fn decode_state<'a>(
         strain_energy_n_mm: stored.strain_energy_n_mm,
         negative_pivots: stored.negative_pivots,
         control: StepControl {
-            halvings: stored.halvings.cast_signed(),
+            // Numbers that no program writes give another state, which the hash refuses.
+            halvings: match doublings {
+                0 => i32::try_from(stored.halvings).unwrap_or(i32::MAX),
+                _ => 0_i32.wrapping_sub_unsigned(doublings),
+            },
             jump_seen_at_deg: stored.jump_seen_at_deg,
             rejection: stored.rejection.map(|rejection| match rejection {
                 RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,

@@ -102,6 +102,8 @@ fn every_encoding_of_states_is_among_them() {
     assert!(turning.iter().all(|state| state.turns.len() == 1 && state.path.is_none()));
     let [_, turn, _] = turning.last().unwrap().turns[0];
     assert!(turn < 0.0, "lifted, the section turns towards -y: {turn}");
+    let growing: Vec<i32> = states("growing").iter().map(|state| state.control.halvings).collect();
+    assert_eq!(growing, [-1, -2, -2, -2], "doubled twice, up to the longest increment");
     let predicted = states("predicted");
     let previous = |state: &State| state.previous.as_ref().map(|previous| previous.displacement.len());
     let points = predicted.iter().map(|state| state.mesh.control_points.len());
@@ -146,7 +148,7 @@ fn read_scene(name: &str) -> (Scene, Manifest) {
 #[test]
 #[ignore = "writes to checkpoints/golden"]
 fn write_golden_logs_of_later_states() {
-    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch)), ("predicted", None)] {
+    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch)), ("predicted", None), ("growing", None)] {
         if path_of(what).exists() {
             continue;
         }
