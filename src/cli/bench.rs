@@ -7,6 +7,7 @@ use clap::Args;
 use super::failure::Failure;
 use super::output::print;
 use super::scene_file::{checked, read_scene};
+use super::session::use_threads;
 use crate::scene::Scene;
 use crate::study::{BenchError, Figure, kernel_figures, run_figure};
 
@@ -38,7 +39,7 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Times and prints.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
+        use_threads(self.threads.map(usize::from));
         let mut scenes: Vec<(String, Scene)> = Vec::new();
         for path in &self.scenes {
             let name = path.display().to_string();

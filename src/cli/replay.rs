@@ -8,6 +8,7 @@ use super::failure::Failure;
 use super::log_file::{ReadLog, read_log, scene_at};
 use super::output::print;
 use super::scene_file::stage_named;
+use super::session::use_threads;
 use super::trace;
 use crate::history::{ReplayError, Replayed, Verdict, replay_stage, verdict};
 use crate::journal::TraceRow;
@@ -43,7 +44,7 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Replays; the worst verdict is the exit code.
     pub(super) fn run(self) -> Result<u8, Failure> {
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
+        use_threads(self.threads.map(usize::from));
         let read = read_log(&self.log)?;
         let mut stages: Option<Stages> = None;
         let mut rows: Vec<TraceRow> = Vec::new();

@@ -47,10 +47,15 @@ impl RunOptions {
 
     /// Sets up the threads; returns how many there are.
     pub(super) fn use_threads(&self) -> usize {
-        // Fails only where the pool stands already, which is then the one to use.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0)).build_global();
-        rayon::current_num_threads()
+        use_threads(self.threads)
     }
+}
+
+/// Sets up so many threads, or one for each core; returns how many there are.
+pub(super) fn use_threads(threads: Option<usize>) -> usize {
+    // Fails only where the pool stands already, which is then the one to use.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build_global();
+    rayon::current_num_threads()
 }
 
 /// Raised by the first SIGINT or SIGTERM; the second ends the process at once.

@@ -9,6 +9,7 @@ use clap::Args;
 use super::failure::Failure;
 use super::output::{print, say};
 use super::scene_file::read_scene;
+use super::session::use_threads;
 use crate::scene::Scene;
 use crate::study::{StressRow, StressSuite};
 use crate::units::{count, duration};
@@ -61,7 +62,7 @@ impl Arguments {
         let files = list_folder(&self.scenes)?;
         let names = self.chosen(files.keys())?;
         let scenes = read_scenes(&files, &names)?;
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
+        use_threads(self.threads.map(usize::from));
         let table = StressTable::new(names.iter().map(|name| stem(name)));
         if !self.json {
             print(&table.head())?;

@@ -7,6 +7,7 @@ use clap::Args;
 use super::failure::Failure;
 use super::output::{print, say};
 use super::scene_file::{checked, read_scene};
+use super::session::use_threads;
 use crate::scene::Scene;
 use crate::study::{AccuracyError, AccuracyRow, measure};
 
@@ -65,7 +66,7 @@ struct Case {
 impl Arguments {
     /// Runs the reference and then every case; a row as soon as it is known.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build_global();
+        use_threads(self.threads.map(usize::from));
         let cases = self.cases()?;
         let name = self.against.display().to_string();
         let reference = checked(&read_scene(&self.against)?.text, &name, &self.set)?;

@@ -30,7 +30,7 @@ use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::external::{External, work};
 use crate::equilibrium::newton::{Effort, Iterate, Workspace};
 use crate::equilibrium::solve_error::SolveError;
-use crate::equilibrium::tangent::Tangent;
+use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::model::{Discretization, Placement};
 use crate::shell::dot;
 
@@ -54,7 +54,7 @@ pub(super) struct Descent<'a> {
     parameter: f64,
     discretization: &'a Discretization,
     assembled: &'a mut Assembled,
-    tangent: &'a mut Tangent,
+    tangent: &'a mut TangentStiffness,
     unknowns: Vec<f64>,
     displacement: Vec<[f64; 3]>,
     external: External,
@@ -136,19 +136,9 @@ impl<'a> Descent<'a> {
         let assembled = &*self.assembled;
         let forces = self.external.subtract_from(&assembled.residual);
         self.gradient = self.placement.restrict(&forces);
-        let mut last = Iterate {
-            iteration: self.effort.iterations,
-            energy: assembled.energy,
-            residual: self.gradient.iter().map(|g| g * g).sum::<f64>().sqrt(),
-            reactions: length(&assembled.residual).max(length(&self.external.forces)),
-            negative_pivots: 0,
-            step_length: self.step_length,
-            shift: 0.0,
-            worst_point: self.discretization.unknowns.home_of(largest(&self.gradient)),
-        };
-        if !(last.energy.is_finite() && last.residual.is_finite()) {
-            return Err(SolveError::NotANumber { last, effort: self.effort });
-        }
+        let of_unknowns = &self.discretization.unknowns;
+        let mut last = Iterate::at(of_unknowns, assembled, &self.external, &self.gradient, self.effort)?;
+        last.step_length = self.step_length;
         self.effort.factorizations += 1;
         let factored = self.tangent.factorize(self.discretization, &self.placement, assembled, &mut self.external);
         let negative = factored.map_err(|cause| SolveError::Factor { cause, effort: self.effort })?;

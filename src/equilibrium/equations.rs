@@ -1,20 +1,20 @@
 //! The equations R(q, λ) = 0 at a point: residual, its rate with the parameter, and the factor of the stiffness.
 
 use crate::equilibrium::assembly::{Assembled, Want};
-use crate::equilibrium::descent::{Ended, largest, length};
+use crate::equilibrium::descent::Ended;
 use crate::equilibrium::external::External;
 use crate::equilibrium::newton::{Effort, Iterate, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
-use crate::equilibrium::tangent::Tangent;
+use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::model::{Discretization, Placement};
 
 /// The pieces of a workspace that the equations take.
 pub(super) struct Equations<'w> {
     discretization: &'w Discretization,
-    tangent: &'w mut Tangent,
+    tangent: &'w mut TangentStiffness,
     assembled: &'w mut Assembled,
-    /// Whether residual, stiffness and factor are those of the state that is asked for next.
-    ready: bool,
+    /// Negative pivots, where residual, stiffness and factor are those of the state that is asked for next.
+    ready: Option<usize>,
 }
 
 /// The equations at a point; the factor of their stiffness is in the workspace.
@@ -37,7 +37,7 @@ impl<'w> Equations<'w> {
     pub fn of(work: &'w mut Workspace) -> Self {
         let Workspace { discretization, tangent, assembled, factored_at } = work;
         *factored_at = None;
-        Self { discretization, tangent, assembled, ready: false }
+        Self { discretization, tangent, assembled, ready: None }
     }
 
     /// Ready for [`Self::at_standing`] at this state, with the stiffness and factor that a solve left there if there are
@@ -48,9 +48,9 @@ impl<'w> Equations<'w> {
         if discretization.unknowns.turns_are_unknown() || discretization.loads.follow() {
             return Ok(Self::of(work));
         }
-        work.factorize_at(at)?;
+        let negative = work.factorize_at(at)?;
         let Workspace { discretization, tangent, assembled, .. } = work;
-        Ok(Self { discretization, tangent, assembled, ready: true })
+        Ok(Self { discretization, tangent, assembled, ready: Some(negative) })
     }
 
     /// At a state.
@@ -66,7 +66,7 @@ impl<'w> Equations<'w> {
         let placement = discretization.unknowns.place(&free, parameter);
         let displacement = placement.displacement();
         let ready = std::mem::take(&mut self.ready);
-        let mut external = if ready {
+        let mut external = if ready.is_some() {
             External::dead(discretization, &displacement, parameter)
         } else {
             self.assembled.assemble(discretization, &displacement, Want::Stiffness);
@@ -74,20 +74,11 @@ impl<'w> Equations<'w> {
         };
         let forces = external.subtract_from(&self.assembled.residual);
         let gradient = placement.restrict(&forces);
-        let mut iterate = Iterate {
-            iteration: effort.iterations,
-            energy: self.assembled.energy,
-            residual: gradient.iter().map(|g| g * g).sum::<f64>().sqrt(),
-            reactions: length(&self.assembled.residual).max(length(&external.forces)),
-            negative_pivots: 0,
-            step_length: 1.0,
-            shift: 0.0,
-            worst_point: discretization.unknowns.home_of(largest(&gradient)),
-        };
-        if !(iterate.energy.is_finite() && iterate.residual.is_finite()) {
-            return Err(SolveError::NotANumber { last: iterate, effort: *effort });
-        }
-        if !ready {
+        let of_unknowns = &discretization.unknowns;
+        let mut iterate = Iterate::at(of_unknowns, self.assembled, &external, &gradient, *effort)?;
+        if let Some(negative) = ready {
+            iterate.negative_pivots = negative;
+        } else {
             effort.factorizations += 1;
             let factored = self.tangent.factorize(discretization, &placement, self.assembled, &mut external);
             let negative = factored.map_err(|cause| SolveError::Factor { cause, effort: *effort })?;
@@ -111,7 +102,7 @@ impl<'w> Equations<'w> {
 
     /// Solves ∂R/∂q x = b at a point.
     pub fn solve(&mut self, point: &Point, right_hand_side: &[f64]) -> Vec<f64> {
-        let Self { discretization, tangent: Tangent { solver, .. }, .. } = self;
+        let Self { discretization, tangent: TangentStiffness { solver, .. }, .. } = self;
         match point.external.has_skew() {
             true => point.external.solve(discretization, &point.placement, solver, right_hand_side),
             false => {

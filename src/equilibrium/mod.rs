@@ -15,7 +15,7 @@ mod solve_error;
 mod sparse;
 mod stability;
 mod symmetry;
-mod tangent;
+mod tangent_stiffness;
 mod timing;
 
 pub use assembly::{Assembled, Want, strain_energy};

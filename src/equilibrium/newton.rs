@@ -9,12 +9,12 @@
 use std::sync::Arc;
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
-use crate::equilibrium::descent::{Descent, Ended, product};
+use crate::equilibrium::descent::{Descent, Ended, largest, length, product};
 use crate::equilibrium::external::{External, subtract, work};
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
 use crate::equilibrium::stability::SoftMode;
-use crate::equilibrium::tangent::Tangent;
-use crate::model::Discretization;
+use crate::equilibrium::tangent_stiffness::TangentStiffness;
+use crate::model::{Discretization, Unknowns};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 use crate::state::{Previous, State};
@@ -46,6 +46,32 @@ pub struct Iterate {
     pub shift: f64,
     /// Control point with the largest residual.
     pub worst_point: usize,
+}
+
+impl Iterate {
+    /// At a point with this gradient on the free unknowns, whose stiffness is not factored yet.
+    pub(super) fn at(
+        unknowns: &Unknowns,
+        assembled: &Assembled,
+        external: &External,
+        gradient: &[f64],
+        effort: Effort,
+    ) -> Result<Self, SolveError> {
+        let last = Self {
+            iteration: effort.iterations,
+            energy: assembled.energy,
+            residual: gradient.iter().map(|g| g * g).sum::<f64>().sqrt(),
+            reactions: length(&assembled.residual).max(length(&external.forces)),
+            negative_pivots: 0,
+            step_length: 1.0,
+            shift: 0.0,
+            worst_point: unknowns.home_of(largest(gradient)),
+        };
+        match last.energy.is_finite() && last.residual.is_finite() {
+            true => Ok(last),
+            false => Err(SolveError::NotANumber { last, effort }),
+        }
+    }
 }
 
 /// A point of equilibrium.
@@ -100,7 +126,7 @@ impl<'s> Standing<'s> {
 #[derive(Debug)]
 pub struct Workspace {
     pub(super) discretization: Discretization,
-    pub(super) tangent: Tangent,
+    pub(super) tangent: TangentStiffness,
     pub(super) assembled: Assembled,
     /// Where the stiffness in `assembled` and its factor were formed, and its negative pivots.
     pub(super) factored_at: Option<Factored>,
@@ -121,7 +147,7 @@ impl Workspace {
     /// Where supports or loads do not fit the mesh, or the factor does not fit in memory.
     pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, WorkspaceError> {
         let discretization = Discretization::new(scene, mesh)?;
-        let tangent = Tangent::new(&discretization)?;
+        let tangent = TangentStiffness::new(&discretization)?;
         let assembled = Assembled::new(&discretization);
         Ok(Self { discretization, tangent, assembled, factored_at: None })
     }
@@ -277,7 +303,7 @@ impl<'a> Equilibrium<'a> {
     fn predict(&mut self, from: Standing, to: f64) -> (Vec<f64>, Option<Vec<f64>>, Before) {
         // Where the stiffness has no factor (exactly at a limit point), the old unknowns are as good a start.
         let negative = self.work.factorize_at(from).unwrap_or(usize::MAX);
-        let Workspace { discretization, tangent: Tangent { solver, .. }, assembled, .. } = &mut *self.work;
+        let Workspace { discretization, tangent: TangentStiffness { solver, .. }, assembled, .. } = &mut *self.work;
         let unknowns = &discretization.unknowns;
         let old = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
         let placement = unknowns.place(&old, from.parameter);

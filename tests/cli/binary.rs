@@ -49,7 +49,7 @@ fn every_option_stands_in_the_long_help_and_the_short() {
 
 #[test]
 fn wrong_usage() {
-    insta::assert_snapshot!(refusal(&["help", "plto"], 2), @"foldline: no help on `plto`; there is help on run, resume, inspect, plot, replay, bisect, stability, verify, recover, bench, converge, stress, help, scene; did you mean `plot`?");
+    insta::assert_snapshot!(refusal(&["help", "plto"], 2), @"foldline: no help on `plto`; there is help on run, resume, inspect, plot, replay, bisect, stability, verify, recover, bench, converge, study, stress, help, scene; did you mean `plot`?");
     insta::assert_snapshot!(refusal(&["run", "nope.toml"], 2), @r"
     foldline: cannot read nope.toml
       because: No such file or directory (os error 2)
@@ -89,4 +89,18 @@ fn a_full_disk_is() {
     let output = foldline(&["help"]).stdout(full).stderr(Stdio::piped()).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write to standard output"));
+}
+
+/// A shell with nothing left free is refused before anything starts.
+#[test]
+fn a_shell_that_is_held_everywhere() {
+    let place = crate::program::Place::new();
+    let (head, _) = include_str!("../restart/column.toml").split_once("[mesh]").unwrap();
+    let hinged = ["u-start", "u=0.5", "u-end"].map(|on| format!("[[support]]\non = \"{on}\"\nkind = \"hinged\"\n"));
+    let rest = "[mesh]\ndegree = [2, 2]\nelements = [1, 1]\n[load]\nkind = \"steps\"\nincrement = 1.0\n";
+    let pressure = "[[action]]\nkind = \"pressure\"\npressure_mpa = 1e-5\n";
+    place.write("held.toml", format!("{head}{rest}{}{pressure}", hinged.concat()));
+    let said = place.foldline("run held.toml -o held.mcap").ends(2);
+    said.says(&["hold every control point of 1 × 1 elements", "write more in mesh.elements, or hold less"]);
+    assert!(place.logs().is_empty());
 }

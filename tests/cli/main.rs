@@ -7,6 +7,7 @@ mod progress;
 mod stability;
 mod stages;
 mod stress;
+mod study;
 mod summary;
 mod synthetic;
 

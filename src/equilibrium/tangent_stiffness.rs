@@ -8,12 +8,12 @@ use crate::model::{Discretization, Placement};
 
 /// Where its entries come from, and the solver that holds them.
 #[derive(Debug)]
-pub(super) struct Tangent {
+pub(super) struct TangentStiffness {
     pattern: Pattern,
     pub(super) solver: SparseSolver,
 }
 
-impl Tangent {
+impl TangentStiffness {
     /// For a mesh.
     ///
     /// # Errors

@@ -1,0 +1,73 @@
+//! `foldline study`: rows, lists of values, what it refuses.
+
+use crate::program::Place;
+
+const SMALL: &str = include_str!("../restart/small.toml");
+
+/// `small.toml` to 4°, and the strip of `path.toml` beside it.
+fn place() -> Place {
+    let place = Place::new();
+    place.write("short.toml", SMALL.replace("rotation_deg = 16.0", "rotation_deg = 4.0").as_bytes());
+    place.write("along.toml", include_str!("../restart/path.toml").as_bytes());
+    place
+}
+
+fn rows(text: &str) -> Vec<serde_json::Value> {
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn every_combination_has_a_row_behind_the_reference() {
+    let place = place();
+    let said = place.foldline(
+        "study short.toml --against short.toml --vary mesh.quadrature=[\"full\",\"patch\"] --vary adapt.threshold=[0.019,0.03] --json",
+    );
+    let rows = rows(&said.ends(0).out);
+    let settings: Vec<Vec<&str>> = rows
+        .iter()
+        .map(|row| row["settings"].as_array().unwrap().iter().map(|setting| setting.as_str().unwrap()).collect())
+        .collect();
+    assert_eq!(
+        settings,
+        [
+            vec![],
+            vec!["mesh.quadrature=\"full\"", "adapt.threshold=0.019"],
+            vec!["mesh.quadrature=\"full\"", "adapt.threshold=0.03"],
+            vec!["mesh.quadrature=\"patch\"", "adapt.threshold=0.019"],
+            vec!["mesh.quadrature=\"patch\"", "adapt.threshold=0.03"],
+        ]
+    );
+    let error = |row: &serde_json::Value| row["error_before"].as_f64().unwrap();
+    assert_eq!((error(&rows[0]), error(&rows[1])), (0.0, 0.0), "the same run");
+    assert!(error(&rows[3]) > 0.0 && error(&rows[3]) < 0.01, "another rule of quadrature: {}", error(&rows[3]));
+    for row in &rows {
+        assert_eq!((row["compared"].as_u64(), row["jump_at"].is_null()), (Some(2), true));
+        assert!(row["wall_s"].as_f64().unwrap() > 0.0);
+    }
+}
+
+#[test]
+fn the_table_has_the_settings() {
+    let place = place();
+    let said = place.foldline("study short.toml --against short.toml --vary load.increment_deg=[2.0,1.0]");
+    said.ends(0).says(&["run  ", "before", "wall s", "short.toml load.increment_deg=1.0", "0.00 %"]);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let place = place();
+    let says = |arguments: &str, code: i32, pieces: &[&str]| {
+        place.foldline(&format!("study short.toml --against {arguments}")).ends(code).says(pieces);
+    };
+    says("short.toml --vary mesh.quadrature=[full]", 2, &["is not a TOML list", "names need quotes"]);
+    says("short.toml --vary mesh.quadrature=\"full\"", 2, &["write the values of mesh.quadrature as a list"]);
+    says("short.toml --vary mesh.quadrature=[]", 2, &["write the values of mesh.quadrature as a list"]);
+    says("short.toml --vary mesh.quadratur=[\"full\"]", 2, &["quadratur"]);
+    says("along.toml", 2, &["by arc length a path passes one load factor more than once", "foldline converge"]);
+    says("nope.toml", 2, &["cannot read nope.toml"]);
+    says(
+        "short.toml --vary load.increment_deg=[3.0] --vary load.rotation_deg=[3.0]",
+        1,
+        &["give both the same increment"],
+    );
+}
