@@ -205,7 +205,7 @@ mod tests {
         let mut rotations = Vec::new();
         while next_stage(scene, &state).is_some() {
             let attempt = next_attempt(scene, &state);
-            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.control, 4));
+            state = at(attempt.target_deg, attempt.control_after_success(scene, &state.control, 4));
             rotations.push(state.parameter);
         }
         rotations
@@ -239,7 +239,7 @@ mod tests {
             state = if jumps {
                 at(state.parameter, attempt.control_after_jump(&state.control))
             } else {
-                at(attempt.target_deg, attempt.control_after_success(&scene, &state.control, 4))
+                at(attempt.target_deg, attempt.control_after_success(scene, &state.control, 4))
             };
         }
         panic!("never located");

@@ -4,6 +4,7 @@
 //! and narrow in the order of the unknowns, as a tape spring is, and [`supernodal`] for the rest. Factor and solve give
 //! the same bits on any number of threads.
 
+mod envelope;
 mod strip_kernel;
 mod strips;
 mod supernodal;

@@ -11,11 +11,9 @@
 //! between two unknowns of the separator stand with the head.
 
 use crate::equilibrium::kernel::Build;
+use crate::equilibrium::sparse::envelope::Envelope;
 use crate::equilibrium::sparse::strip_kernel::{ChainData, Column, HEIGHT, SolveData, backward, eliminate, forward};
 use crate::equilibrium::sparse::{Couplings, FactorError, NegativePivots, room};
-
-/// A cut must leave the longer side with at most this share of the operations.
-const CUT_PAYS: f64 = 0.8;
 
 /// Rows in the order in which they are eliminated: its own, and then those of the separator.
 #[derive(Debug, Default)]
@@ -345,77 +343,4 @@ fn columns(numbers: &[f64]) -> &[Column] {
 
 fn columns_mut(numbers: &mut [f64]) -> &mut [Column] {
     numbers.as_chunks_mut().0.as_chunks_mut().0
-}
-
-/// The first and the last unknown that each one meets.
-struct Envelope {
-    first: Vec<usize>,
-    last: Vec<usize>,
-}
-
-impl Envelope {
-    fn new(couplings: &Couplings) -> Self {
-        let mut envelope = Self { first: (0..couplings.unknowns).collect(), last: (0..couplings.unknowns).collect() };
-        let ends = |group: &Vec<usize>| Some((*group.iter().min()?, *group.iter().max()?));
-        let ends: Vec<Option<(usize, usize)>> = couplings.groups.iter().map(ends).collect();
-        let with_itself = (0..couplings.groups.len()).map(|group| [group, group]);
-        for [i, j] in couplings.pairs.iter().copied().chain(with_itself) {
-            let (Some(one), Some(other)) = (ends[i], ends[j]) else { continue };
-            envelope.widen(&couplings.groups[i], other);
-            envelope.widen(&couplings.groups[j], one);
-        }
-        envelope
-    }
-
-    fn widen(&mut self, group: &[usize], (first, last): (usize, usize)) {
-        for unknown in group {
-            self.first[*unknown] = self.first[*unknown].min(first);
-            self.last[*unknown] = self.last[*unknown].max(last);
-        }
-    }
-
-    /// The cut with the least work for the longer side, or none: an empty separator behind all unknowns.
-    fn best_cut(&self) -> std::ops::Range<usize> {
-        let count = self.first.len();
-        let none = count..count;
-        let mut best = (CUT_PAYS * self.flops(&none), none);
-        // Work of rows from the front, and from the back: squares of the lengths of the rows.
-        let mut behind = vec![0.0; count + 1];
-        for unknown in (0..count).rev() {
-            behind[unknown] = behind[unknown + 1] + ((self.last[unknown] + 1 - unknown) as f64).powi(2);
-        }
-        let (mut before, mut reach) = (0.0, 0);
-        for begin in 0..count {
-            // As far as the unknowns before it reach.
-            let cut = begin..reach.max(begin);
-            let width = cut.len() as f64;
-            let work = f64::max(before, behind[cut.end]) + width.powi(3);
-            if begin > 0 && cut.end < count && work < best.0 {
-                best = (work, cut);
-            }
-            before += ((begin + 1 - self.first[begin]) as f64).powi(2);
-            reach = reach.max(self.last[begin] + 1);
-        }
-        best.1
-    }
-
-    /// Operations for a cut, at most: a row of n numbers takes n² where none before it begins later than it does, and less
-    /// otherwise. Rows of the separator are counted with head and tail, and what is left of them as a full matrix.
-    fn flops(&self, cut: &std::ops::Range<usize>) -> f64 {
-        let head = (0..cut.start).map(|row| ((row + 1 - self.first[row]) as f64).powi(2)).sum::<f64>();
-        let tail = (cut.end..self.last.len()).map(|row| ((self.last[row] + 1 - row) as f64).powi(2)).sum::<f64>();
-        let shares: [fn(&Self, usize, &std::ops::Range<usize>) -> usize; 2] = [
-            |envelope, row, cut| cut.start.saturating_sub(envelope.first[row]),
-            |envelope, row, cut| (envelope.last[row] + 1).saturating_sub(cut.end),
-        ];
-        let mut separator = (cut.len() as f64).powi(3) / 3.0;
-        for share in shares {
-            let lengths: Vec<f64> = cut.clone().map(|row| share(self, row, cut) as f64).collect();
-            for (i, length) in lengths.iter().enumerate() {
-                separator += length * length;
-                separator += lengths[..=i].iter().map(|other| 2.0 * length.min(*other)).sum::<f64>();
-            }
-        }
-        head + tail + separator
-    }
 }
