@@ -3,26 +3,25 @@
 //! Built once per mesh. Almost every block belongs to two control points whose components are unknowns of their own,
 //! and is copied; the others (supports, symmetry, joints) go through their directions.
 
+use rayon::prelude::*;
+
 use crate::equilibrium::assembly::{Assembled, neighbour, stencil};
 use crate::equilibrium::sparse::{Couplings, SparseSolver};
 use crate::model::{Discretization, Placement};
 
-/// Where every block of the stencil goes.
+/// Numbers of the matrix that a thread fills at a time.
+const SHARE: usize = 1 << 14;
+
+/// Where the numbers of the matrix come from.
 #[derive(Debug)]
 pub struct Pattern {
-    copied: Vec<CopiedBlock>,
+    /// For each number of the matrix the number of the stencil that it is; [`NO_SOURCE`] where it is none.
+    sources: Vec<u32>,
     projected: Vec<ProjectedBlock>,
 }
 
-/// Block of two regular control points: its nine (on the diagonal six) numbers are entries of the matrix.
-#[derive(Debug)]
-struct CopiedBlock {
-    /// Offset of the block in the stencil.
-    block: usize,
-    /// Entry of K(c, d) at `3 c + d`; `NOT_STORED` above the diagonal.
-    targets: [u32; 9],
-}
-
+/// Beyond every stencil.
+const NO_SOURCE: u32 = u32::MAX;
 const NOT_STORED: u32 = u32::MAX;
 
 /// Block of which a control point is constrained.
@@ -48,7 +47,7 @@ pub fn couplings(discretization: &Discretization) -> Couplings {
 impl Pattern {
     /// For a matrix that a solver holds for these [`couplings`].
     pub fn new(discretization: &Discretization, solver: &SparseSolver) -> Self {
-        let mut pattern = Self { copied: Vec::new(), projected: Vec::new() };
+        let mut pattern = Self { sources: vec![NO_SOURCE; solver.value_count()], projected: Vec::new() };
         for (block, points) in point_pairs(discretization) {
             pattern.place(discretization, solver, block, points);
         }
@@ -61,10 +60,9 @@ impl Pattern {
         let stored = |a: usize, b: usize| i != j || a >= b;
         if unknowns.is_regular(i) && unknowns.is_regular(j) {
             let (a, b) = (unknowns.entries_of(i)[0].coordinate, unknowns.entries_of(j)[0].coordinate);
-            let targets = std::array::from_fn(|k| {
-                if stored(k / 3, k % 3) { target(solver, a + k / 3, b + k % 3) } else { NOT_STORED }
-            });
-            self.copied.push(CopiedBlock { block, targets });
+            for k in (0..9).filter(|k| stored(k / 3, k % 3)) {
+                self.sources[target(solver, a + k / 3, b + k % 3) as usize] = (block + k) as u32;
+            }
             return;
         }
         let targets = unknowns
@@ -85,15 +83,12 @@ impl Pattern {
         assembled: &Assembled,
         values: &mut [f64],
     ) {
-        values.fill(0.0);
-        for copied in &self.copied {
-            let block = &assembled.stiffness[copied.block..][..9];
-            for (target, value) in copied.targets.iter().zip(block) {
-                if *target != NOT_STORED {
-                    values[*target as usize] += value;
-                }
+        let shares = values.par_chunks_mut(SHARE).zip(self.sources.par_chunks(SHARE));
+        shares.for_each(|(values, sources)| {
+            for (value, source) in values.iter_mut().zip(sources) {
+                *value = assembled.stiffness.get(*source as usize).copied().unwrap_or(0.0);
             }
-        }
+        });
         let unknowns = &discretization.unknowns;
         for projected in &self.projected {
             let block = &assembled.stiffness[projected.block..][..9];

@@ -397,11 +397,8 @@ pub fn decode_state<'a>(
         strain_energy_n_mm: stored.strain_energy_n_mm,
         negative_pivots: stored.negative_pivots,
         control: StepControl {
-            // Numbers that no program writes give another state, which the hash refuses.
-            halvings: match doublings {
-                0 => i32::try_from(stored.halvings).unwrap_or(i32::MAX),
-                _ => 0_i32.wrapping_sub_unsigned(doublings),
-            },
+            // One of the two is 0; where a changed byte makes it another number, the hash sees it.
+            halvings: stored.halvings.wrapping_sub(doublings).cast_signed(),
             jump_seen_at_deg: stored.jump_seen_at_deg,
             rejection: stored.rejection.map(|rejection| match rejection {
                 RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,
