@@ -67,17 +67,20 @@ impl External {
         let slots = stencil_len(mesh.degree);
         loads.tangent(mesh, displacement, parameter, |part| {
             let [i, j] = part.points;
-            let at = |i: usize, j: usize| (i * slots + neighbour_slot(mesh.degree, n2, i, j)) * 9;
+            let [first, second] = [i.min(j), i.max(j)];
+            let at = (first * slots + neighbour_slot(mesh.degree, n2, first, second)) * 9;
+            let stiffness = &mut assembled.stiffness[at..][..9];
+            let skew = &mut self.skew[at..][..9];
             for c in 0..3 {
                 for d in 0..3 {
                     let half = 0.5 * part.block[c][d];
                     if i <= j {
-                        assembled.stiffness[at(i, j) + 3 * c + d] -= half;
-                        self.skew[at(i, j) + 3 * c + d] -= half;
+                        stiffness[3 * c + d] -= half;
+                        skew[3 * c + d] -= half;
                     }
                     if j <= i {
-                        assembled.stiffness[at(j, i) + 3 * d + c] -= half;
-                        self.skew[at(j, i) + 3 * d + c] += half;
+                        stiffness[3 * d + c] -= half;
+                        skew[3 * d + c] += half;
                     }
                 }
             }

@@ -172,29 +172,61 @@ impl Loads {
         forces
     }
 
-    /// Hands every block of ∂f/∂u to `take`.
+    /// Hands every block of ∂f/∂u to `take`: of each element, once its points are summed up.
     pub fn tangent(&self, mesh: &Mesh, displacement: &[[f64; 3]], parameter: f64, mut take: impl FnMut(LoadBlock)) {
         for following in &self.following {
             let factor = following.history.at(parameter);
-            for point in &following.points {
-                let (_, slopes) = following.kind.work(point.deformed(mesh, displacement));
-                let controls: Vec<usize> = point.controls(mesh).collect();
-                for a in 0..controls.len() {
-                    for b in 0..controls.len() {
-                        let mut block = [[0.0; 3]; 3];
-                        for k in 0..3 {
-                            for l in 0..2 {
-                                let share = factor * point.weight * point.functions[k][a] * point.functions[1 + l][b];
-                                for c in 0..3 {
-                                    block[c] = add(block[c], scaled(share, slopes[k][l][c]));
-                                }
-                            }
-                        }
-                        take(LoadBlock { points: [controls[a], controls[b]], block });
+            for points in following.points.chunk_by(|one, other| one.first == other.first) {
+                let Some(first) = points.first() else { continue };
+                let controls: Vec<usize> = first.controls(mesh).collect();
+                let mut element = ElementTangent::new(controls.len());
+                for point in points {
+                    let (_, slopes) = following.kind.work(point.deformed(mesh, displacement));
+                    element.add(factor, point, &slopes);
+                }
+                for (a, i) in controls.iter().enumerate() {
+                    for (b, j) in controls.iter().enumerate() {
+                        take(LoadBlock { points: [*i, *j], block: element.block(a, b) });
                     }
                 }
             }
         }
+    }
+}
+
+/// ∂f_a/∂u_b of one element: `numbers[((b · 3 + c) · 3 + d) · functions + a]`, c of the force and d of the motion.
+struct ElementTangent {
+    functions: usize,
+    numbers: Vec<f64>,
+}
+
+impl ElementTangent {
+    fn new(functions: usize) -> Self {
+        Self { functions, numbers: vec![0.0; 9 * functions * functions] }
+    }
+
+    /// Σ_k N_k(a) [Σ_l N_l(b) ∂h_k/∂a_l] at a point.
+    fn add(&mut self, factor: f64, point: &LoadPoint, slopes: &WorkSlopes) {
+        for b in 0..self.functions {
+            for (k, slopes) in slopes.iter().enumerate() {
+                for cd in 0..9 {
+                    let [c, d] = [cd / 3, cd % 3];
+                    let slope = point.functions[1][b] * slopes[0][c][d] + point.functions[2][b] * slopes[1][c][d];
+                    if slope == 0.0 {
+                        continue;
+                    }
+                    let share = factor * point.weight * slope;
+                    let to = &mut self.numbers[(b * 9 + cd) * self.functions..][..self.functions];
+                    for (to, function) in to.iter_mut().zip(&point.functions[k]) {
+                        *to += share * function;
+                    }
+                }
+            }
+        }
+    }
+
+    fn block(&self, a: usize, b: usize) -> [[f64; 3]; 3] {
+        [0, 1, 2].map(|c| [0, 1, 2].map(|d| self.numbers[(b * 9 + 3 * c + d) * self.functions + a]))
     }
 }
 
@@ -310,11 +342,13 @@ fn line_points(mesh: &Mesh, way: usize, at: f64) -> Vec<LoadPoint> {
     points
 }
 
-/// Gauss points of the surface; weights are parameter areas.
+/// Gauss points of the surface, element by element; weights are parameter areas.
 fn area_points(mesh: &Mesh) -> Vec<LoadPoint> {
     let (along, across) = (gauss_points(mesh, 0), gauss_points(mesh, 1));
     let pairs = along.iter().flat_map(|one| across.iter().map(move |two| (one, two)));
-    pairs.map(|((u, wu), (v, wv))| LoadPoint::new(mesh, [*u, *v], wu * wv)).collect()
+    let mut points: Vec<_> = pairs.map(|((u, wu), (v, wv))| LoadPoint::new(mesh, [*u, *v], wu * wv)).collect();
+    points.sort_by_key(|point| point.first);
+    points
 }
 
 /// Parameters and weights of Gauss points in every span. A pressure integrates N x,₁ × x,₂, of degree 3p − 1 each way: so
