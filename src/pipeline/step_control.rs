@@ -1,6 +1,7 @@
 //! Which rotation the next solve tries, and what a failed or jumping one teaches.
 //!
-//! Steps lie on the multiples of the scene's increment, so that runs can be compared point by point.
+//! Steps lie on the multiples of the scene's increment, so that runs can be compared point by point. Increments that have
+//! grown end at the points of histories, too.
 //!
 //! | the last solve | memory | the next solve |
 //! |---|---|---|
@@ -62,7 +63,12 @@ pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
     let increment = scene.load.increment() / 2.0_f64.powi(state.control.halvings);
     let multiple = ((here / increment + SAME).floor() + 1.0) * increment;
     let last = scene.load.target();
-    let target_deg = if multiple > last - SAME * increment { last } else { multiple };
+    let mut target_deg = if multiple > last - SAME * increment { last } else { multiple };
+    // An increment that has grown does not pass over what a history asks for.
+    if state.control.halvings < 0 {
+        let point = scene.next_history_point(here + SAME * scene.load.increment());
+        target_deg = point.map_or(target_deg, |point| point.min(target_deg));
+    }
     Attempt { target_deg, may_jump: target_deg - here <= tolerance }
 }
 
@@ -319,6 +325,25 @@ mod tests {
         let grown = at(8.0, StepControl { halvings: -2, ..StepControl::default() });
         let attempt = next_attempt(&scene, &grown);
         assert_eq!(attempt.control_after_failure(&scene, &grown).unwrap().halvings, -1);
+    }
+
+    /// A load that comes and goes is not stepped over.
+    #[test]
+    fn grown_increments_end_at_the_points_of_histories() {
+        let text = include_str!("../../tests/restart/column.toml")
+            .replace("increment = 0.25", "increment = 0.25\nlongest_increment = 2.0")
+            .replace("factor = 1.05", "factor = 4.0")
+            .replace("name = \"thrust\"", "name = \"thrust\"\nhistory = [[0, 0], [1.1, 1], [1.3, 0], [4, 0]]");
+        let (text, _) = text.split_once("[continuation]").unwrap();
+        let scene = parse(text, "column.toml").unwrap();
+        let mut state = at(0.0, StepControl::default());
+        let mut parameters = Vec::new();
+        while next_stage(&scene, &state).is_some() {
+            let attempt = next_attempt(&scene, &state);
+            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.control, 2));
+            parameters.push(state.parameter);
+        }
+        assert_eq!(parameters, [0.25, 0.5, 1.0, 1.1, 1.3, 2.0, 4.0]);
     }
 
     #[test]

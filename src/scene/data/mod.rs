@@ -263,6 +263,14 @@ impl Load {
 }
 
 impl Scene {
+    /// The next load factor at which a history has a point.
+    pub fn next_history_point(&self, load_factor: f64) -> Option<f64> {
+        let histories =
+            self.actions.iter().map(|action| &action.history).chain(self.supports.iter().map(|held| &held.history));
+        let points = histories.flat_map(|history| history.0.iter().map(|[at, _]| *at));
+        points.filter(|at| *at > load_factor).reduce(f64::min)
+    }
+
     /// The turn of the ends, where that drives the run.
     pub fn end_rotation(&self) -> Option<&EndRotation> {
         match &self.load {
