@@ -57,9 +57,19 @@ pub struct MeasuredPeak {
     pub moment_n_mm: f64,
     /// Rotation of each end, degrees.
     pub parameter: f64,
-    /// Whether a parabola through the largest moment and its neighbours says so, rather than the largest moment itself
-    /// (which stands where the shell jumped before the moment fell).
-    pub interpolated: bool,
+    /// How it was found.
+    pub found: PeakFound,
+}
+
+/// How a peak was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PeakFound {
+    /// The top of a parabola through the largest moment and its neighbours.
+    Parabola,
+    /// The largest moment: the shell jumped before it fell.
+    Jump,
+    /// The largest moment: the load steps are too long for a parabola.
+    LoadStep,
 }
 
 /// Mean moment of the fold.
@@ -93,6 +103,8 @@ pub struct EnergyBalance {
     pub work_n_mm: f64,
     /// Strain energy there, N·mm.
     pub strain_energy_n_mm: f64,
+    /// Largest strain energy on the way, N·mm.
+    pub largest_energy_n_mm: f64,
     /// Energy that refinement took out at fixed rotation: a coarse mesh stores too much, N·mm.
     pub taken_out_by_refinement_n_mm: f64,
 }
@@ -207,6 +219,7 @@ fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
             _ => continue,
         }
         (moment, sum.strain_energy_n_mm) = (report.moment_n_mm, report.strain_energy_n_mm);
+        sum.largest_energy_n_mm = sum.largest_energy_n_mm.max(report.strain_energy_n_mm);
     }
     (sum.work_n_mm != 0.0).then_some(sum)
 }
@@ -228,18 +241,24 @@ fn initial_stiffness(path: &[PathPoint]) -> Option<f64> {
     (!points.is_empty()).then(|| points.iter().enumerate().map(at_zero).sum())
 }
 
+/// A parabola's top is taken for the peak where it is no higher than this, as a multiple of the largest moment: beyond it the
+/// steps are too long for a parabola. With steps of 0.4° the baseline's lies 0.1 % above, with steps of 1.6° 2 %, and 1.2 %
+/// above the truth.
+const CLOSE_TOP: f64 = 1.005;
+
 /// The largest moment of the points before the jump.
 fn peak(path: &[PathPoint], jumps_after: bool) -> Option<MeasuredPeak> {
     let index = (0..path.len()).max_by(|&i, &j| path[i].moment_n_mm.total_cmp(&path[j].moment_n_mm))?;
     let largest = &path[index];
-    let as_it_stands =
-        MeasuredPeak { moment_n_mm: largest.moment_n_mm, parameter: largest.parameter, interpolated: false };
+    let as_it_stands = |found| MeasuredPeak { moment_n_mm: largest.moment_n_mm, parameter: largest.parameter, found };
     if index + 1 == path.len() {
-        return jumps_after.then_some(as_it_stands);
+        return jumps_after.then_some(as_it_stands(PeakFound::Jump));
     }
-    let Some(left) = index.checked_sub(1).map(|before| &path[before]) else { return Some(as_it_stands) };
+    let in_step = as_it_stands(PeakFound::LoadStep);
+    let Some(left) = index.checked_sub(1).map(|before| &path[before]) else { return Some(in_step) };
     let right = &path[index + 1];
-    Some(vertex([left, largest, right]).unwrap_or(as_it_stands))
+    let top = vertex([left, largest, right]);
+    Some(top.filter(|top| top.moment_n_mm <= CLOSE_TOP * largest.moment_n_mm).unwrap_or(in_step))
 }
 
 /// The top of the parabola through three points of the path.
@@ -254,7 +273,7 @@ fn vertex(points: [&PathPoint; 3]) -> Option<MeasuredPeak> {
     // y = y1 + slope (x − x1) + bend (x − x1)², with the slope at x1.
     let slope = (slope_left * (x2 - x1) + slope_right * (x1 - x0)) / (x2 - x0);
     let offset = -slope / (2.0 * bend);
-    Some(MeasuredPeak { moment_n_mm: y1 + 0.5 * slope * offset, parameter: x1 + offset, interpolated: true })
+    Some(MeasuredPeak { moment_n_mm: y1 + 0.5 * slope * offset, parameter: x1 + offset, found: PeakFound::Parabola })
 }
 
 /// Mean moment beyond the last jump: over the last third of the rotation, or where all of that is far from the ends,

@@ -4,7 +4,7 @@ use std::fmt::{self, Display, Formatter};
 
 use super::Summary;
 use super::TapeSpring;
-use super::summary::{FoldMean, MeshChange};
+use super::summary::{FoldMean, MeshChange, PeakFound};
 use crate::pipeline::{Parameter, Reading};
 use crate::scene::Sense;
 use crate::units::{count, duration, rounded, signed};
@@ -100,7 +100,9 @@ impl Summary {
         self.write_passed(f)?;
         let Some(balance) = self.balance else { return Ok(()) };
         let stored = balance.strain_energy_n_mm + balance.taken_out_by_refinement_n_mm;
-        let off = signed(100.0 * (balance.work_n_mm / stored - 1.0), 2);
+        // Of the largest energy: a shell that is unloaded again stores none.
+        let scale = balance.largest_energy_n_mm.max(stored.abs());
+        let off = signed(100.0 * (balance.work_n_mm - stored) / scale, 2);
         writeln!(
             f,
             "  {:<17}  {:>14.6} N·mm of loads and given motions (trapezoidal rule over the steps), strain energy {stored:.6}: {off} %",
@@ -195,7 +197,11 @@ impl Summary {
     fn write_peak(&self, f: &mut Formatter<'_>, spring: &TapeSpring) -> fmt::Result {
         let measured = match self.peak {
             Some(peak) => {
-                let how = if peak.interpolated { "" } else { ", jump" };
+                let how = match peak.found {
+                    PeakFound::Parabola => "",
+                    PeakFound::Jump => ", jump",
+                    PeakFound::LoadStep => ", the largest of the steps",
+                };
                 format!("{:7.1}  N·mm at {:.2}°{how}", peak.moment_n_mm, peak.parameter)
             }
             None if self.snaps.is_empty() => "   none, still rising".into(),
