@@ -96,7 +96,8 @@ impl Arguments {
     fn first(&self, read: &ReadLog, text: &str) -> Result<u8, Failure> {
         let records = read.records();
         let never = || Failure::NeverHolds { log: self.log.clone(), condition: text.to_string() };
-        let sample = records.first().ok_or_else(never)?;
+        // One that has probes, if any has.
+        let sample = records.iter().rev().max_by_key(|record| record.report.probes.len()).ok_or_else(never)?;
         let condition = Condition::parse(text, &sample.report)?;
         let found = records.iter().position(|record| condition.holds(&record.report)).ok_or_else(never)?;
         print(&stage_table(&records[found.saturating_sub(1)..=found]))?;

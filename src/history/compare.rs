@@ -97,7 +97,16 @@ fn structure(a: &State, b: &State) -> Option<String> {
         return Some("only one of them remembers the equilibrium before".to_string());
     }
     if a.control != b.control {
-        return Some(format!("step control {:?} against {:?}", a.control, b.control));
+        let what = |state: &State| {
+            let size = match state.control.halvings {
+                0 => "the scene's increment".to_string(),
+                halvings @ 1.. => format!("an increment halved {halvings} times"),
+                grown => format!("an increment doubled {} times", grown.unsigned_abs()),
+            };
+            let jump = state.control.jump_seen_at_deg.map(|at| format!(", a jump seen at {at}"));
+            size + &jump.unwrap_or_default()
+        };
+        return Some(format!("{} for the next step against {}", what(a), what(b)));
     }
     None
 }

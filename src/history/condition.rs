@@ -86,8 +86,9 @@ pub enum ConditionError {
 }
 
 impl Condition {
-    /// Reads `FIELD OPERATOR VALUE`, several joined by `and`. Fields are those of a report in JSON; `elements`,
-    /// `marked` stand for the product or sum of their two numbers, `elements_1` and `elements_2` for one of them.
+    /// Reads `FIELD OPERATOR VALUE`, several joined by `and`. Fields are those of a report in JSON and the names of its
+    /// probes; `elements`, `marked` stand for the product or sum of their two numbers, `elements_1` and `elements_2` for one
+    /// of them. A probe has a value at equilibria alone.
     ///
     /// # Errors
     /// Where it has another form or names a field that reports do not have.
@@ -175,6 +176,10 @@ fn fields_of(report: &Report) -> Vec<(String, Value)> {
     let Ok(Value::Object(object)) = serde_json::to_value(report) else { return Vec::new() };
     let mut fields = Vec::new();
     for (name, value) in object {
+        // Probes are asked for by their own names, below.
+        if name == "probes" {
+            continue;
+        }
         if let Value::Array(pair) = &value {
             for (index, part) in pair.iter().enumerate() {
                 fields.push((format!("{name}_{}", index + 1), part.clone()));
@@ -189,6 +194,9 @@ fn fields_of(report: &Report) -> Vec<(String, Value)> {
         } else {
             fields.push((name, value));
         }
+    }
+    for probe in &report.probes {
+        fields.push((probe.name.clone(), Value::from(probe.value)));
     }
     fields
 }

@@ -192,3 +192,21 @@ fn wrong_meshes_to_compare() {
     let said = refused("converge roof.toml --degree 3 --elements 4,4", 2);
     said.says(&["only a tape spring whose ends turn", "load.kind = \"end-rotation\""]);
 }
+
+/// A probe is asked for by its name, and what is no number is no field.
+#[test]
+fn a_condition_on_a_probe() {
+    let place = with(roof());
+    let when = |condition: &str| {
+        let output = place.command("bisect run.mcap --when").arg(condition).output().unwrap();
+        Said::new(condition, output)
+    };
+    let log = place.log("run.mcap");
+    let deep = |report: &foldline::pipeline::Report| report.probes.iter().any(|probe| probe.value < -5.0);
+    let first = log.entries().iter().position(|entry| deep(&entry.record.report)).unwrap();
+    let step = log.entries()[first].record.report.step;
+    let table = when("w_c < -5").ends(0).out;
+    assert!(table.lines().last().unwrap().split_whitespace().any(|word| word == step.to_string()), "{step}: {table}");
+    when("w_c > 1e9").ends(1);
+    when("probes < -5").ends(2).says(&["reports have no field `probes`", "w_c"]);
+}
