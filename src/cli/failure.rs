@@ -88,6 +88,10 @@ pub(super) enum Failure {
     Bench { source: Box<BenchError> },
     #[error("degree {}, {} × {} elements gave nothing", degree[0], elements[0], elements[1])]
     Convergence { degree: [usize; 2], elements: [usize; 2], source: Box<ConvergenceError> },
+    #[error("{failed} of {of} runs gave nothing to compare")]
+    StudyIncomplete { failed: usize, of: usize },
+    #[error("{key} is set more than once: give all its values in one list")]
+    VariedTwice { key: String },
     #[error("{case} gave nothing to compare")]
     Study { case: String, source: Box<AccuracyError> },
     #[error("the stability of stage {index} of {} cannot be found", log.display())]
@@ -111,6 +115,7 @@ impl Failure {
             | Failure::CannotStart { .. }
             | Failure::Model(_)
             | Failure::Condition(_)
+            | Failure::VariedTwice { .. }
             | Failure::NoSuchTopic { .. }
             | Failure::NoSuchScene { .. } => 2,
             // A wrong scene as well.
@@ -118,7 +123,10 @@ impl Failure {
             Failure::Study { source, .. }
                 if matches!(
                     **source,
-                    AccuracyError::NothingMeasured | AccuracyError::AlongPath { .. } | AccuracyError::Model(_)
+                    AccuracyError::NothingMeasured
+                        | AccuracyError::AlongPath { .. }
+                        | AccuracyError::OtherStructure { .. }
+                        | AccuracyError::Model(_)
                 ) =>
             {
                 2

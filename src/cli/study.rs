@@ -9,7 +9,7 @@ use super::output::{print, say};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
 use crate::scene::Scene;
-use crate::study::{AccuracyError, AccuracyRow, measure};
+use crate::study::{AccuracyError, AccuracyRow, is_one_structure, measure};
 
 /// Run scenes with one setting after another, and hold each against a reference: the error of its moment (or first probe)
 /// before and after the first snap, beside its run time
@@ -18,7 +18,8 @@ pub(super) struct Arguments {
     /// Scenes (TOML)
     #[arg(required = true)]
     scenes: Vec<PathBuf>,
-    /// Scene of the reference: the same structure and increments on a mesh that leaves no doubt
+    /// Scene of the reference: the same structure and increments on a mesh that leaves no doubt. Compared are the load steps
+    /// that end where one of its does
     #[arg(long, value_name = "SCENE")]
     against: PathBuf,
     /// Values that a setting takes in turn, as a TOML list: 'mesh.quadrature=["full", "patch"]'; may be repeated, for all
@@ -49,7 +50,8 @@ fn varied(text: &str) -> Result<Varied, String> {
         format!("{} is not a TOML list ({}); names need quotes: '{key}=[\"one\", \"two\"]'", list, error.message())
     })?;
     match table.get("list") {
-        Some(toml::Value::Array(values)) if !values.is_empty() => {
+        Some(toml::Value::Array(values)) if values.is_empty() => Err(format!("{key} has no value to take")),
+        Some(toml::Value::Array(values)) => {
             Ok(Varied { key: key.trim().to_string(), values: values.iter().map(toml::Value::to_string).collect() })
         }
         _ => Err(format!("write the values of {key} as a list: '{key}=[{list}]'")),
@@ -70,6 +72,10 @@ impl Arguments {
         let cases = self.cases()?;
         let name = self.against.display().to_string();
         let reference = checked(&read_scene(&self.against)?.text, &name, &self.set)?;
+        for case in &cases {
+            let comparable = is_one_structure(&case.scene, &reference);
+            comparable.map_err(|cause| Failure::Study { case: case.label(), source: Box::new(cause) })?;
+        }
         if !self.json {
             say(&format!("reference: {name}"));
         }
@@ -82,15 +88,29 @@ impl Arguments {
         }
         let own = expected.against(&expected).map_err(failed(name.clone()))?;
         self.show(&name, &[], &own, width)?;
+        let mut failures = 0;
         for case in &cases {
-            let found = measure(&case.scene).and_then(|found| found.against(&expected));
-            let found = found.map_err(failed(case.label()))?;
-            self.show(&case.scene_name, &case.settings, &found, width)?;
+            match measure(&case.scene).and_then(|found| found.against(&expected)) {
+                Ok(found) => self.show(&case.scene_name, &case.settings, &found, width)?,
+                Err(cause) => {
+                    failures += 1;
+                    self.show_failure(case, cause, width)?;
+                }
+            }
         }
-        Ok(())
+        match failures {
+            0 => Ok(()),
+            failed => Err(Failure::StudyIncomplete { failed, of: cases.len() }),
+        }
     }
 
     fn cases(&self) -> Result<Vec<Case>, Failure> {
+        for (index, Varied { key, .. }) in self.vary.iter().enumerate() {
+            let set = self.set.iter().any(|setting| setting.split('=').next().map(str::trim) == Some(key));
+            if set || self.vary[..index].iter().any(|other| other.key == *key) {
+                return Err(Failure::VariedTwice { key: key.clone() });
+            }
+        }
         let mut combinations: Vec<Vec<String>> = vec![vec![]];
         for Varied { key, values } in &self.vary {
             let longer = |settings: &Vec<String>| {
@@ -109,6 +129,20 @@ impl Arguments {
             }
         }
         Ok(cases)
+    }
+
+    /// A row for a run that gave none.
+    fn show_failure(&self, case: &Case, cause: AccuracyError, width: usize) -> Result<(), Failure> {
+        let failure = Failure::Study { case: case.label(), source: Box::new(cause) };
+        if self.json {
+            let line = serde_json::json!({
+                "scene": case.scene_name, "settings": case.settings, "error": failure.in_full(),
+            });
+            return print(&format!("{line}\n"));
+        }
+        print(&format!("{:<width$}  failed\n", case.label()))?;
+        say(&failure.in_full());
+        Ok(())
     }
 
     fn show(&self, scene: &str, settings: &[String], row: &AccuracyRow, width: usize) -> Result<(), Failure> {
@@ -138,8 +172,8 @@ fn label(scene: &str, settings: &[String]) -> String {
 
 fn head(width: usize) -> String {
     format!(
-        "{:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>5} {:>10} {:>7} {:>7}\n",
-        "run", "elements", "unknowns", "before", "snap", "after", "steps", "iterations", "factors", "wall s"
+        "{:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>8} {:>10} {:>7} {:>7}\n",
+        "run", "elements", "unknowns", "before", "snap", "after", "compared", "iterations", "factors", "wall s"
     )
 }
 
@@ -147,14 +181,14 @@ fn shown(label: &str, row: &AccuracyRow, width: usize) -> String {
     let percent = |share: Option<f64>| share.map_or_else(String::new, |share| format!("{:.2} %", 100.0 * share));
     let [n1, n2] = row.elements;
     format!(
-        "{:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>5} {:>10} {:>7} {:>7.2}\n",
+        "{:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>8} {:>10} {:>7} {:>7.2}\n",
         label,
         format!("{n1}×{n2}"),
         row.unknowns,
         percent(row.error_before),
         row.jump_at.map_or_else(String::new, |at| format!("{at:.3}")),
         percent(row.error_after),
-        row.compared,
+        format!("{}/{}", row.compared, row.steps),
         row.iterations,
         row.factorizations,
         row.wall_s

@@ -25,6 +25,9 @@ pub struct Measured {
     jump_at: Option<f64>,
     /// What the parameter is.
     what: &'static str,
+    /// What is compared.
+    quantity: String,
+    steps: u64,
     elements: [usize; 2],
     unknowns: usize,
     iterations: usize,
@@ -48,7 +51,13 @@ pub struct AccuracyRow {
     pub elements: [usize; 2],
     /// Free unknowns at the end.
     pub unknowns: usize,
-    /// Load steps that both runs have.
+    /// What is compared: the moment of turning ends, or the name of the first probe with its unit.
+    pub quantity: String,
+    /// Threads.
+    pub threads: usize,
+    /// Load steps.
+    pub steps: u64,
+    /// Load steps that the reference has too.
     pub compared: usize,
     /// Largest difference before the first jump, as a share of the largest value of the reference there.
     pub error_before: Option<f64>,
@@ -76,8 +85,24 @@ pub enum AccuracyError {
     /// Nothing to compare.
     #[error("the scene has no moment and no probe to compare: turn its ends, or write a [[probe]]")]
     NothingMeasured,
+    /// Another structure than the reference.
+    #[error("it is another structure than the reference, so that nothing says how accurate it is: {}", differences.join("; "))]
+    OtherStructure {
+        /// Keys with the value of the reference and its own.
+        differences: Vec<String>,
+    },
+    /// Another quantity than that of the reference.
+    #[error("it measures {own}, and the reference {other}: give both the same first [[probe]]")]
+    OtherQuantity {
+        /// What it measures.
+        own: String,
+        /// What the reference measures.
+        other: String,
+    },
     /// A parameter that goes back is not the same place on the path.
-    #[error("by arc length a path passes one {what} more than once: compare such paths with `foldline converge`")]
+    #[error(
+        "by arc length a path passes one {what} more than once: compare runs under load control (of tape springs, `foldline converge` compares paths)"
+    )]
     AlongPath {
         /// What is driven.
         what: &'static str,
@@ -88,6 +113,22 @@ pub enum AccuracyError {
         /// What is driven.
         what: &'static str,
     },
+}
+
+/// Whether two scenes are of one structure, as far as their keys say: geometry, material, sense of the bending.
+///
+/// # Errors
+/// Where they differ.
+pub fn is_one_structure(scene: &Scene, reference: &Scene) -> Result<(), AccuracyError> {
+    let decides = |path: &str| {
+        ["geometry", "material", "load.sense"].iter().any(|part| path == *part || path.starts_with(&format!("{part}.")))
+    };
+    let differences = reference.differences(scene).into_iter().filter(|difference| decides(&difference.path));
+    let differences: Vec<String> = differences.map(|difference| difference.to_string()).collect();
+    match differences.is_empty() {
+        true => Ok(()),
+        false => Err(AccuracyError::OtherStructure { differences }),
+    }
 }
 
 /// Keeps what was reported, and no states.
@@ -128,6 +169,13 @@ pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
         curve: curve(&equilibrium_path(&records), Parameter::of(scene)),
         jump_at: snaps(&records).first().map(|snap| snap.after_deg),
         what,
+        quantity: match records.iter().find_map(|record| record.report.probes.first()) {
+            Some(reading) if Parameter::of(scene) == Parameter::LoadFactor => {
+                format!("{} ({})", reading.name, reading.unit)
+            }
+            _ => "moment (N·mm)".to_string(),
+        },
+        steps: last.map_or(0, |report| report.step),
         elements: last.map_or([0, 0], |report| report.elements),
         unknowns: last.map_or(0, |report| report.unknowns),
         iterations: records.iter().map(|record| record.report.iterations).sum(),
@@ -158,6 +206,10 @@ impl Measured {
     /// # Errors
     /// Where they have no load step in common.
     pub fn against(&self, reference: &Measured) -> Result<AccuracyRow, AccuracyError> {
+        if self.quantity != reference.quantity {
+            let (own, other) = (self.quantity.clone(), reference.quantity.clone());
+            return Err(AccuracyError::OtherQuantity { own, other });
+        }
         let is_same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
         let pairs: Vec<(CurvePoint, f64)> = self
             .curve
@@ -181,6 +233,9 @@ impl Measured {
         Ok(AccuracyRow {
             elements: self.elements,
             unknowns: self.unknowns,
+            quantity: self.quantity.clone(),
+            threads: rayon::current_num_threads(),
+            steps: self.steps,
             compared: pairs.len(),
             error_before: error(false),
             jump_at: self.jump_at,
@@ -201,8 +256,20 @@ mod tests {
         let of = |&(parameter, value, behind): &(f64, f64, bool)| CurvePoint { parameter, value, behind };
         let curve: Vec<CurvePoint> = points.iter().map(of).collect();
         let jump_at = curve.iter().find(|point| point.behind).map(|point| point.parameter);
-        let (elements, unknowns, what) = ([4, 4], 100, "rotation");
-        Measured { curve, jump_at, what, elements, unknowns, iterations: 1, factorizations: 1, wall_s: 1.0 }
+        let (elements, unknowns, what, quantity) = ([4, 4], 100, "rotation", "moment".to_string());
+        let steps = curve.len() as u64;
+        Measured {
+            curve,
+            jump_at,
+            what,
+            quantity,
+            steps,
+            elements,
+            unknowns,
+            iterations: 1,
+            factorizations: 1,
+            wall_s: 1.0,
+        }
     }
 
     #[test]

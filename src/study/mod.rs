@@ -14,12 +14,12 @@ mod summary;
 mod summary_text;
 mod wuest;
 
-pub use accuracy::{AccuracyError, AccuracyRow, Measured, measure};
+pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_one_structure, measure};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use convergence::{ConvergenceError, ConvergenceRow, converge};
 pub use path::{Passed, PathPoint, Snap, equilibrium_path, snaps};
 pub use stress::{StressRow, StressSuite};
 pub use stress_fault::StressFault;
 pub use stress_run::StressEnd;
-pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, StageWork, Summary};
+pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, StageWork, Summary};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

@@ -61,13 +61,21 @@ fn what_cannot_be_compared_is_refused() {
     };
     says("short.toml --vary mesh.quadrature=[full]", 2, &["is not a TOML list", "names need quotes"]);
     says("short.toml --vary mesh.quadrature=\"full\"", 2, &["write the values of mesh.quadrature as a list"]);
-    says("short.toml --vary mesh.quadrature=[]", 2, &["write the values of mesh.quadrature as a list"]);
+    says("short.toml --vary mesh.quadrature=[]", 2, &["mesh.quadrature has no value to take"]);
+    says(
+        "short.toml --vary mesh.elements=[[4,4]] --vary mesh.elements=[[8,4]]",
+        2,
+        &["mesh.elements is set more than once"],
+    );
+    says("short.toml --vary geometry.radius_mm=[11.0]", 2, &["another structure", "geometry.radius_mm: 10.0 -> 11.0"]);
+    says("along.toml", 2, &["another structure"]);
     says("short.toml --vary mesh.quadratur=[\"full\"]", 2, &["quadratur"]);
-    says("along.toml", 2, &["by arc length a path passes one load factor more than once", "foldline converge"]);
+    let alone = place.foldline("study along.toml --against along.toml").ends(2);
+    alone.says(&["by arc length a path passes one load factor more than once"]);
     says("nope.toml", 2, &["cannot read nope.toml"]);
     says(
         "short.toml --vary load.increment_deg=[3.0] --vary load.rotation_deg=[3.0]",
         1,
-        &["give both the same increment"],
+        &["give both the same increment", "1 of 1 runs gave nothing to compare"],
     );
 }
