@@ -137,6 +137,7 @@ fn another_value(key: &Key) -> Option<&'static str> {
         "load.sense" => "equal",
         "load.rotation_deg" => "61",
         "load.increment_deg" => "0.5",
+        "load.longest_increment_deg" => "1.6",
         "adapt.threshold" => "0.02",
         "adapt.length_limit_mm" => "2",
         "solver.tolerance" => "1e-8",
