@@ -31,7 +31,7 @@ const JUMP_SHARE: f64 = 0.01;
 const REFINEMENT_JUMP_SHARE: f64 = 0.05;
 
 /// Increments grow after a solve that took no more iterations than this, where the scene says how far. The baseline's quarter
-/// takes 511 factorizations at 0.4° throughout, and 396 and 392 with increments up to 1.6° and 3.2°: `foldline study
+/// takes 511 factorizations at 0.4° throughout, and 325 and 329 with increments up to 1.6° and 3.2°: `foldline study
 /// pipelines/baseline-quarter.toml --against pipelines/baseline-reference.toml --vary 'load.longest_increment_deg=[0.4, 1.6,
 /// 3.2]'`.
 const EASY: usize = 3;

@@ -19,7 +19,7 @@ use supernodal::SupernodalSolver;
 /// as long as the question (some 40 ms).
 const WORTH_ASKING_FLOPS: f64 = 1e9;
 /// How many times faster than faer's supernodes strips do an operation, on one thread: on 128 × 16 cubic elements the
-/// strips take 12 ms and the supernodes 20.
+/// strips take 14 ms and the supernodes 20.
 const STRIPS_PAY: f64 = 1.5;
 
 /// Why a matrix has no usable factor.
