@@ -166,7 +166,7 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
     format!(
         "{name:<20} {below:.9}{degree} to {beyond:.9}{degree}, on {n1} × {n2} elements, {} solves\n\
          {moment}\
-         energy released      {:.4} N·mm of {:.4} N·mm\n\
+         energy released      {:.4} N·mm; strain energy before: {:.4} N·mm\n\
          kind                 {kind}\n\
          negative pivots      {stable} before, up to {most} on the way, {end} after\n\
          soft mode            eigenvalue {:.4e} N/mm at {below:.6}{degree}; moves most at ({x:.1}, {y:.1}, {z:.1}) mm, towards ({u:.2}, {v:.2}, {w:.2})\n",

@@ -21,7 +21,7 @@ use crate::study::Summary;
 pub(super) struct Arguments {
     /// Log to go on with (MCAP)
     log: PathBuf,
-    /// Stop after the first step at or beyond this rotation of each end, in degrees
+    /// Stop after the first step at or beyond this rotation of each end, in degrees, or this load factor
     #[arg(long, value_name = "DEG", value_parser = super::run::positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Threads; the result is the same on any number of them [default: one for each core]

@@ -222,7 +222,8 @@ pub(super) static ELEMENTS: Key = Key {
     presence: Required,
     reach: Everything,
     meaning: "Elements along the length and along the arc, counted over the whole shell whatever the symmetry; \
-              even in a direction that the symmetry cuts.",
+              even in a direction that the symmetry cuts. Indicators see what the start mesh can show: two elements of \
+              degree 2 across an arc cannot flatten, and are never refined.",
     example: "[4, 4]",
     aliases: &["n", "element_count", "number_of_elements", "spans"],
 };
