@@ -52,8 +52,11 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
     let continuation = continuation(reader, &load, increments.and_then(|increments| increments.longest))?;
     let output =
         Output { sync: reader.word(&keys::SYNC)?.value, mesh_history: reader.switch(&keys::MESH_HISTORY)?.value };
-    let expect =
-        Expectation { outcome: reader.word(&keys::OUTCOME)?.value, same_as: reader.maybe_text(&keys::SAME_AS)? };
+    let expect = Expectation {
+        outcome: reader.word(&keys::OUTCOME)?.value,
+        same_as: reader.maybe_text(&keys::SAME_AS)?,
+        least_bits: reader.count(&keys::LEAST_BITS)?.value,
+    };
     let expect = reader.document.header(keys::OUTCOME.section).map(|_| expect);
     let pipeline = pipeline.value;
     Ok(Scene {

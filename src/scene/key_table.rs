@@ -21,7 +21,7 @@ pub static SECTIONS: [Section; 11] = [
 ];
 
 /// The keys of a scene file, table by table.
-pub static KEYS: [&Key; 33] = [
+pub static KEYS: [&Key; 34] = [
     &GEOMETRY_KIND,
     &LENGTH,
     &RADIUS,
@@ -55,6 +55,7 @@ pub static KEYS: [&Key; 33] = [
     &MESH_HISTORY,
     &OUTCOME,
     &SAME_AS,
+    &LEAST_BITS,
 ];
 
 const fn section(name: &'static str, required: bool, meaning: &'static str) -> Section {
@@ -587,4 +588,20 @@ pub(super) static SAME_AS: Key = Key {
               scenes the strain energy over E t^3) agrees at every equilibrium to 1e-9 of the largest.",
     example: "\"millimetres.toml\"",
     aliases: &["equals", "same"],
+};
+
+pub(super) static LEAST_BITS: Key = Key {
+    section: "expect",
+    name: "least_bits",
+    unit: None,
+    kind: Kind::Count(Limits {
+        low: Limit::included(1.0, "a result of which nothing survives says nothing"),
+        high: Limit::included(52.0, "numbers have no more"),
+    }),
+    presence: Default("10"),
+    reach: Free,
+    meaning: "Bits of the result that survive where an input changes in its last place; fewer than ten only where the \
+              shell has several ways to fall and rounding decides between them.",
+    example: "10",
+    aliases: &["bits", "significant_bits"],
 };

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::equilibrium::{Condition, Equilibrium, Standing, SymmetryError, Workspace};
 use crate::pipeline::Record;
-use crate::scene::{ExpectedOutcome, Scene};
+use crate::scene::{Expectation, ExpectedOutcome, Scene};
 use crate::state::State;
 use crate::study::stress_curve::{Curve, energy_balance, is_equilibrium, nudged, significant_bits};
 use crate::study::stress_fault::StressFault;
@@ -20,8 +20,6 @@ use crate::study::stress_run::{Done, StressEnd};
 const MOST_IMBALANCE: f64 = 0.02;
 /// Error of a symmetric stiffness that is rounding.
 const MOST_ASYMMETRY: f64 = 1e-12;
-/// Bits of the result below which it is noise: three digits.
-const LEAST_BITS: f64 = 10.0;
 /// What running an equilibrium again from its state may change of its energy, relatively.
 const STANDS: f64 = 1e-9;
 
@@ -213,8 +211,9 @@ fn judge_numbers(scene: &Scene, done: &Done, row: &mut StressRow) {
     if let Some(balance) = row.energy_balance.filter(|balance| balance.is_nan() || balance.abs() > MOST_IMBALANCE) {
         row.faults.push(StressFault::EnergyOutOfBalance { balance, most: MOST_IMBALANCE });
     }
-    if let Some(bits) = row.significant_bits.filter(|bits| bits.is_nan() || *bits < LEAST_BITS) {
-        row.faults.push(StressFault::Noise { bits, least: LEAST_BITS });
+    let least = scene.expect.as_ref().map_or(Expectation::LEAST_BITS, |expect| expect.least_bits) as f64;
+    if let Some(bits) = row.significant_bits.filter(|bits| bits.is_nan() || *bits < least) {
+        row.faults.push(StressFault::Noise { bits, least });
     }
     if let Some(condition) = row.condition.filter(|condition| !condition.is_finite()) {
         row.faults.push(StressFault::Singular { condition });
@@ -224,7 +223,7 @@ fn judge_numbers(scene: &Scene, done: &Done, row: &mut StressRow) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Expectation, parse};
+    use crate::scene::parse;
 
     fn scene() -> Scene {
         let mut scene = parse(include_str!("../../pipelines/baseline-quarter.toml"), "baseline-quarter.toml").unwrap();
@@ -255,7 +254,7 @@ mod tests {
     fn a_scene_that_ends_otherwise_is_not_as_stated() {
         assert!(row(scene()).as_stated);
         let mut wrong = scene();
-        wrong.expect = Some(Expectation { outcome: ExpectedOutcome::NoEquilibrium, same_as: None });
+        wrong.expect = Some(Expectation { outcome: ExpectedOutcome::NoEquilibrium, ..Expectation::default() });
         let found = row(wrong);
         assert!(matches!(found.faults[..], [StressFault::EndedOtherwise { .. }]), "{:?}", found.faults);
     }
@@ -273,7 +272,7 @@ mod tests {
         let mut thicker = scene();
         let crate::scene::Material::Isotropic { poissons_ratio, .. } = &mut thicker.material else { panic!() };
         *poissons_ratio = 0.31;
-        thicker.expect = Some(Expectation { outcome: ExpectedOutcome::Finished, same_as: Some("b.toml".to_owned()) });
+        thicker.expect = Some(Expectation { same_as: Some("b.toml".to_owned()), ..Expectation::default() });
         let scenes = BTreeMap::from([("a.toml".to_owned(), thicker.clone()), ("b.toml".to_owned(), scene())]);
         let found = StressSuite::new(scenes, Duration::from_secs(60)).run("a.toml").unwrap();
         assert!(matches!(found.faults[..], [StressFault::OtherCurve { .. }]), "{:?}", found.faults);

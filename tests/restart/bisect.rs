@@ -79,7 +79,8 @@ fn the_snap_is_located() {
         let [moment, after] = [number_after(&text, "moment               "), number_after(&text, "before, ")];
         assert!((moment / below.moment_n_mm - 1.0).abs() < 0.05, "{text}");
         assert!(after > 0.0 && after < 0.5 * moment, "{text}");
-        let [released, energy] = [number_after(&text, "energy released      "), number_after(&text, "strain energy before: ")];
+        let [released, energy] =
+            [number_after(&text, "energy released      "), number_after(&text, "strain energy before: ")];
         assert!(released > 0.0 && released < energy, "{text}");
         assert!((released / beyond.energy_released_n_mm - 1.0).abs() < 0.1, "{text}");
         let pivots = number_after(&text, "negative pivots      ");

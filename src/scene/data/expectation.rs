@@ -3,13 +3,26 @@
 use serde::{Deserialize, Serialize};
 
 /// What is to come of a run.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Expectation {
     /// How it ends.
     pub outcome: ExpectedOutcome,
     /// File, in the folder of the scene, of one with the same curve but for units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub same_as: Option<String>,
+    /// Bits of the result that survive a change of an input in its last place, at least.
+    pub least_bits: usize,
+}
+
+impl Default for Expectation {
+    fn default() -> Self {
+        Self { outcome: ExpectedOutcome::default(), same_as: None, least_bits: Self::LEAST_BITS }
+    }
+}
+
+impl Expectation {
+    /// Bits of a result below which it is noise, unless the scene says why it may have fewer: three digits.
+    pub const LEAST_BITS: usize = 10;
 }
 
 /// How a run can end that somebody would expect to.
