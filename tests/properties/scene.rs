@@ -177,7 +177,17 @@ fn the_hash_changes_with_every_key_but_the_free_ones() {
 #[test]
 fn free_are_the_outputs_the_target_and_what_is_expected_alone() {
     let free: Vec<_> = KEYS.iter().filter(|key| key.reach == Reach::Free).map(|key| key.path()).collect();
-    assert_eq!(free, ["load.rotation_deg", "output.sync", "output.mesh_history", "expect.outcome", "expect.same_as", "expect.least_bits"]);
+    assert_eq!(
+        free,
+        [
+            "load.rotation_deg",
+            "output.sync",
+            "output.mesh_history",
+            "expect.outcome",
+            "expect.same_as",
+            "expect.least_bits"
+        ]
+    );
 }
 
 #[test]
