@@ -14,10 +14,11 @@ use crate::study::{BenchError, Figure, kernel_figures, run_figure};
 /// The scene that is timed where none is named.
 const BASELINE: &str = include_str!("../../pipelines/baseline.toml");
 
+/// What stands below the options in the help.
 const LIMITS: &str = "\
-The column `limit` is the share of what the machine does at best, measured in the same run: for assemble and factor the
-rate of operations of a dense product on one thread, times the threads that can work on them (a factorization is shared
-by two); for residual and solve the rate of a memory copy on those threads, which data that fit in the caches beat; for
+The column `limit` is the share of what the machine does at best, measured in the same run: for assemble and factor the \
+rate of operations of a dense product on one thread, times the threads that can work on them (a factorization is shared \
+by two); for residual and solve the rate of a memory copy on those threads, which data that fit in the caches beat; for \
 an iteration the time that its pieces would take at their limits. Elements are those of the part that is modelled.";
 
 /// Time the kernels on a uniform mesh, and whole runs of scenes, each as a fraction of what the machine can do
