@@ -107,25 +107,36 @@ impl Assembled {
 
     /// Stiffness times a field on the control points.
     pub fn multiply(&self, discretization: &Discretization, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        let n2 = discretization.mesh.control_counts()[1];
-        let offsets = stencil(discretization.mesh.degree);
-        let mut product = vec![[0.0; 3]; field.len()];
-        for i in 0..field.len() {
-            for (slot, offset) in offsets.iter().enumerate() {
-                let Some(j) = neighbour(i, *offset, n2, field.len()) else { continue };
-                let block = &self.stiffness[(i * offsets.len() + slot) * 9..][..9];
-                for c in 0..3 {
-                    for d in 0..3 {
-                        product[i][c] += block[3 * c + d] * field[j][d];
-                        if j != i {
-                            product[j][d] += block[3 * c + d] * field[i][c];
-                        }
+        multiply_stencil(discretization, &self.stiffness, 1.0, field)
+    }
+}
+
+/// Blocks of the stencil times a field on the control points; the blocks that are not stored are the transposes of those
+/// that are, times `mirrored`: 1 where they are symmetric, −1 where they are skew.
+pub fn multiply_stencil(
+    discretization: &Discretization,
+    blocks: &[f64],
+    mirrored: f64,
+    field: &[[f64; 3]],
+) -> Vec<[f64; 3]> {
+    let n2 = discretization.mesh.control_counts()[1];
+    let offsets = stencil(discretization.mesh.degree);
+    let mut product = vec![[0.0; 3]; field.len()];
+    for i in 0..field.len() {
+        for (slot, offset) in offsets.iter().enumerate() {
+            let Some(j) = neighbour(i, *offset, n2, field.len()) else { continue };
+            let block = &blocks[(i * offsets.len() + slot) * 9..][..9];
+            for c in 0..3 {
+                for d in 0..3 {
+                    product[i][c] += block[3 * c + d] * field[j][d];
+                    if j != i {
+                        product[j][d] += mirrored * (block[3 * c + d] * field[i][c]);
                     }
                 }
             }
         }
-        product
     }
+    product
 }
 
 /// Control point at an offset of the stencil from `i`, where there is one.

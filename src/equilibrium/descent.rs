@@ -122,8 +122,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Goes back to other unknowns; what it took so far stays counted.
-    pub(super) fn start_again(&mut self, unknowns: Vec<f64>) {
+    /// Goes to other unknowns and assembles everything there; what it took so far stays counted.
+    pub(super) fn start_at(&mut self, unknowns: Vec<f64>) {
         self.placement = self.discretization.unknowns.place(&unknowns, self.parameter);
         self.displacement = self.placement.displacement();
         self.unknowns = unknowns;
@@ -277,12 +277,8 @@ impl<'a> Descent<'a> {
 
     /// Moves to a point and assembles everything there; returns the strain energy less the work of the loads.
     fn settle(&mut self, from: &Start, length: f64) -> f64 {
-        self.unknowns = from.moved(length);
-        self.placement = self.discretization.unknowns.place(&self.unknowns, self.parameter);
-        self.displacement = self.placement.displacement();
+        self.start_at(from.moved(length));
         self.step_length = length;
-        self.assembled.assemble(self.discretization, &self.displacement, Want::Stiffness);
-        self.external = External::new(self.discretization, &self.displacement, self.parameter, self.assembled);
         self.work = from.work + work(&from.forces, &self.external.forces, &from.displacement, &self.displacement);
         self.assembled.energy - self.work
     }

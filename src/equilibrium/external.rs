@@ -3,7 +3,7 @@
 //! The symmetric part of the tangent goes into the assembled stiffness; the skew part, where loads turn with the shell,
 //! is kept beside it.
 
-use crate::equilibrium::assembly::{Assembled, neighbour, neighbour_slot, stencil, stencil_len};
+use crate::equilibrium::assembly::{Assembled, multiply_stencil, neighbour_slot, stencil_len};
 use crate::equilibrium::gmres::gmres;
 use crate::equilibrium::sparse::SparseSolver;
 use crate::model::{Discretization, Loads, Placement};
@@ -104,27 +104,10 @@ impl External {
 
     /// The skew part times a field on the control points.
     pub fn multiply_skew(&self, discretization: &Discretization, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        let n2 = discretization.mesh.control_counts()[1];
-        let offsets = stencil(discretization.mesh.degree);
-        let mut product = vec![[0.0; 3]; field.len()];
-        if !self.has_skew() {
-            return product;
+        match self.has_skew() {
+            true => multiply_stencil(discretization, &self.skew, -1.0, field),
+            false => vec![[0.0; 3]; field.len()],
         }
-        for i in 0..field.len() {
-            for (slot, offset) in offsets.iter().enumerate() {
-                let Some(j) = neighbour(i, *offset, n2, field.len()) else { continue };
-                let block = &self.skew[(i * offsets.len() + slot) * 9..][..9];
-                for c in 0..3 {
-                    for d in 0..3 {
-                        product[i][c] += block[3 * c + d] * field[j][d];
-                        if j != i {
-                            product[j][d] -= block[3 * c + d] * field[i][c];
-                        }
-                    }
-                }
-            }
-        }
-        product
     }
 }
 

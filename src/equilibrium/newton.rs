@@ -382,7 +382,7 @@ impl<'a> Equilibrium<'a> {
         let mut descent = Descent::new(self.work, parameter, bent.unwrap_or_else(|| unknowns.clone()));
         let mut first = descent.iterate();
         if is_bent && !first.as_ref().is_ok_and(|first| first.negative_pivots == 0) {
-            descent.start_again(unknowns);
+            descent.start_at(unknowns);
             first = descent.iterate();
         }
         let mut first = Some(first);

@@ -15,41 +15,40 @@ const SHARE: usize = 1 << 14;
 /// Where the numbers of the matrix come from.
 #[derive(Debug)]
 pub struct Pattern {
-    /// For each number of the matrix the number of the stencil that it is; [`NO_SOURCE`] where it is none.
+    /// For each number of the matrix the number of the stencil that it is; [`NOWHERE`] where it is none.
     sources: Vec<u32>,
     projected: Vec<ProjectedBlock>,
 }
 
-/// Beyond every stencil.
-const NO_SOURCE: u32 = u32::MAX;
-const NOT_STORED: u32 = u32::MAX;
+/// Beyond every stencil and every matrix.
+const NOWHERE: u32 = u32::MAX;
 
 /// Block of which a control point is constrained.
 #[derive(Debug)]
 struct ProjectedBlock {
     block: usize,
     points: [usize; 2],
-    /// Entry of the matrix for each pair of entries, row-major, `NOT_STORED` where the mirror image stands for it.
+    /// Entry of the matrix for each pair of entries, row-major, `NOWHERE` where the mirror image stands for it.
     targets: Vec<u32>,
 }
 
 /// Which free unknowns meet in the matrix: those of control points that share an element.
-pub fn couplings(discretization: &Discretization) -> Couplings {
+pub fn couplings(discretization: &Discretization, pairs: &[PointPair]) -> Couplings {
     let unknowns = &discretization.unknowns;
     let of_point = |point| unknowns.entries_of(point).iter().map(|entry| entry.coordinate).collect();
     Couplings {
         unknowns: unknowns.count(),
         groups: (0..discretization.mesh.control_points.len()).map(of_point).collect(),
-        pairs: point_pairs(discretization).into_iter().map(|(_, points)| points).collect(),
+        pairs: pairs.iter().map(|pair| pair.points).collect(),
     }
 }
 
 impl Pattern {
     /// For a matrix that a solver holds for these [`couplings`].
-    pub fn new(discretization: &Discretization, solver: &SparseSolver) -> Self {
-        let mut pattern = Self { sources: vec![NO_SOURCE; solver.value_count()], projected: Vec::new() };
-        for (block, points) in point_pairs(discretization) {
-            pattern.place(discretization, solver, block, points);
+    pub fn new(discretization: &Discretization, pairs: &[PointPair], solver: &SparseSolver) -> Self {
+        let mut pattern = Self { sources: vec![NOWHERE; solver.value_count()], projected: Vec::new() };
+        for PointPair { block, points } in pairs {
+            pattern.place(discretization, solver, *block, *points);
         }
         pattern
     }
@@ -70,7 +69,7 @@ impl Pattern {
             .iter()
             .enumerate()
             .flat_map(|(x, a)| unknowns.entries_of(j).iter().enumerate().map(move |(y, b)| (x, a, y, b)))
-            .map(|(x, a, y, b)| if stored(x, y) { target(solver, a.coordinate, b.coordinate) } else { NOT_STORED })
+            .map(|(x, a, y, b)| if stored(x, y) { target(solver, a.coordinate, b.coordinate) } else { NOWHERE })
             .collect();
         self.projected.push(ProjectedBlock { block, points, targets });
     }
@@ -97,7 +96,7 @@ impl Pattern {
             for (a, left) in unknowns.entries_of(i).iter().zip(placement.directions_of(i)) {
                 for (b, right) in unknowns.entries_of(j).iter().zip(placement.directions_of(j)) {
                     let Some(&target) = targets.next() else { continue };
-                    if target == NOT_STORED {
+                    if target == NOWHERE {
                         continue;
                     }
                     let mut value = 0.0;
@@ -121,8 +120,16 @@ fn target(solver: &SparseSolver, a: usize, b: usize) -> u32 {
     place as u32
 }
 
-/// All pairs of control points i ≤ j of the stencil, with the offset of their block.
-fn point_pairs(discretization: &Discretization) -> Vec<(usize, [usize; 2])> {
+/// Control points i ≤ j that share an element.
+#[derive(Clone, Copy, Debug)]
+pub struct PointPair {
+    /// Offset of their block in the stencil.
+    block: usize,
+    points: [usize; 2],
+}
+
+/// All pairs of the stencil.
+pub fn point_pairs(discretization: &Discretization) -> Vec<PointPair> {
     let mesh = &discretization.mesh;
     let count = mesh.control_points.len();
     let n2 = mesh.control_counts()[1];
@@ -131,7 +138,7 @@ fn point_pairs(discretization: &Discretization) -> Vec<(usize, [usize; 2])> {
     for i in 0..count {
         for (slot, offset) in offsets.iter().enumerate() {
             if let Some(j) = neighbour(i, *offset, n2, count) {
-                pairs.push(((i * offsets.len() + slot) * 9, [i, j]));
+                pairs.push(PointPair { block: (i * offsets.len() + slot) * 9, points: [i, j] });
             }
         }
     }
@@ -177,11 +184,12 @@ mod tests {
             let field = placement.velocity(&direction, &[]);
             let expected = placement.restrict(&assembled.multiply(&discretization, &field));
 
-            let couplings = couplings(&discretization);
+            let pairs = point_pairs(&discretization);
+            let couplings = couplings(&discretization, &pairs);
             let solvers = [SparseSolver::new(&couplings).unwrap(), SparseSolver::supernodal(&couplings).unwrap()];
             let scale = expected.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
             for solver in solvers {
-                let pattern = Pattern::new(&discretization, &solver);
+                let pattern = Pattern::new(&discretization, &pairs, &solver);
                 let mut values = vec![0.0; solver.value_count()];
                 pattern.fill(&discretization, &placement, &assembled, &mut values);
                 let product = solver.multiply(&values, &direction);
@@ -201,7 +209,7 @@ mod tests {
             scene.mesh.elements = elements;
             let mesh = Arc::new(starting_mesh(&scene).unwrap());
             let discretization = Discretization::new(&scene, &mesh).unwrap();
-            SparseSolver::new(&couplings(&discretization)).unwrap().flops()
+            SparseSolver::new(&couplings(&discretization, &point_pairs(&discretization))).unwrap().flops()
         };
         let (along, across) = (flops([40, 4]), flops([4, 40]));
         // Numbered along the shorter way a band would be six times as wide, with 36 times the work.

@@ -2,7 +2,7 @@
 
 use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::external::External;
-use crate::equilibrium::pattern::{Pattern, couplings};
+use crate::equilibrium::pattern::{Pattern, couplings, point_pairs};
 use crate::equilibrium::sparse::{FactorError, NegativePivots, SparseSolver};
 use crate::model::{Discretization, Placement};
 
@@ -19,8 +19,9 @@ impl TangentStiffness {
     /// # Errors
     /// Where the factor does not fit in memory.
     pub(super) fn new(discretization: &Discretization) -> Result<Self, FactorError> {
-        let solver = SparseSolver::new(&couplings(discretization))?;
-        Ok(Self { pattern: Pattern::new(discretization, &solver), solver })
+        let pairs = point_pairs(discretization);
+        let solver = SparseSolver::new(&couplings(discretization, &pairs))?;
+        Ok(Self { pattern: Pattern::new(discretization, &pairs, &solver), solver })
     }
 
     /// The matrix at a point, Tᵀ K T and what the curvature of the supports adds: its symmetric part where loads turn with

@@ -17,8 +17,7 @@ impl Envelope {
         let mut envelope = Self { first: (0..couplings.unknowns).collect(), last: (0..couplings.unknowns).collect() };
         let ends = |group: &Vec<usize>| Some((*group.iter().min()?, *group.iter().max()?));
         let ends: Vec<Option<(usize, usize)>> = couplings.groups.iter().map(ends).collect();
-        let with_itself = (0..couplings.groups.len()).map(|group| [group, group]);
-        for [i, j] in couplings.pairs.iter().copied().chain(with_itself) {
+        for [i, j] in couplings.meetings() {
             let (Some(one), Some(other)) = (ends[i], ends[j]) else { continue };
             envelope.widen(&couplings.groups[i], other);
             envelope.widen(&couplings.groups[j], one);

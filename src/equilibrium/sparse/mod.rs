@@ -73,6 +73,13 @@ pub struct Couplings {
     pub pairs: Vec<[usize; 2]>,
 }
 
+impl Couplings {
+    /// Groups whose unknowns meet, each with itself too.
+    fn meetings(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        self.pairs.iter().copied().chain((0..self.groups.len()).map(|group| [group, group]))
+    }
+}
+
 /// A matrix structure with room for one matrix, in place of which comes its factor. [`Self::place`] says where among the
 /// [`Self::value_count`] numbers of a matrix each entry is.
 #[derive(Debug)]

@@ -38,23 +38,49 @@ pub(super) struct ChainData<'a> {
     pub row: &'a mut [Column],
 }
 
-/// Factors a chain; an error is the place of a pivot that has no inverse.
-pub(super) fn eliminate(build: Build, chain: &Chain, data: &mut ChainData) -> Result<(), usize> {
+/// What is done with a chain, in whatever vectors the machine has.
+trait ChainWork {
+    type Output;
+
+    fn run<V: FourLanes>(self, proof: V::Proof) -> Self::Output;
+}
+
+/// Does it with the instructions of a build.
+fn on<W: ChainWork>(build: Build, work: W) -> W::Output {
     match build {
-        Build::Portable => eliminate_with::<Portable>((), chain, data),
+        Build::Portable => work.run::<Portable>(()),
         #[cfg(target_arch = "x86_64")]
         // SAFETY: `proof` says that the processor has the instructions.
-        Build::Fma(proof) => unsafe { eliminate_fma(proof, chain, data) },
+        Build::Fma(proof) => unsafe { on_fma(proof, work) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: `proof` says that the processor has the instructions.
-        Build::Avx512(proof) => unsafe { eliminate_fma(proof.fma(), chain, data) },
+        Build::Avx512(proof) => unsafe { on_fma(proof.fma(), work) },
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn eliminate_fma(proof: HasFma, chain: &Chain, data: &mut ChainData) -> Result<(), usize> {
-    eliminate_with::<Fma>(proof, chain, data)
+fn on_fma<W: ChainWork>(proof: HasFma, work: W) -> W::Output {
+    work.run::<Fma>(proof)
+}
+
+/// Factors a chain; an error is the place of a pivot that has no inverse.
+pub(super) fn eliminate(build: Build, chain: &Chain, data: &mut ChainData) -> Result<(), usize> {
+    on(build, Eliminate { chain, data })
+}
+
+struct Eliminate<'a, 'd> {
+    chain: &'a Chain,
+    data: &'a mut ChainData<'d>,
+}
+
+impl ChainWork for Eliminate<'_, '_> {
+    type Output = Result<(), usize>;
+
+    #[inline(always)]
+    fn run<V: FourLanes>(self, proof: V::Proof) -> Result<(), usize> {
+        eliminate_with::<V>(proof, self.chain, self.data)
+    }
 }
 
 #[inline(always)]
@@ -257,21 +283,22 @@ pub(super) struct SolveData<'a> {
 
 /// Forward: in the chain's own rows x becomes L⁻¹ x, and the separator's rows lose what these take from them.
 pub(super) fn forward(build: Build, chain: &Chain, data: &SolveData, x: &mut [f64]) {
-    match build {
-        Build::Portable => forward_with::<Portable>((), chain, data, x),
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: `proof` says that the processor has the instructions.
-        Build::Fma(proof) => unsafe { forward_fma(proof, chain, data, x) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: `proof` says that the processor has the instructions.
-        Build::Avx512(proof) => unsafe { forward_fma(proof.fma(), chain, data, x) },
-    }
+    on(build, Forward { chain, data, x })
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn forward_fma(proof: HasFma, chain: &Chain, data: &SolveData, x: &mut [f64]) {
-    forward_with::<Fma>(proof, chain, data, x);
+struct Forward<'a, 'd> {
+    chain: &'a Chain,
+    data: &'a SolveData<'d>,
+    x: &'a mut [f64],
+}
+
+impl ChainWork for Forward<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: FourLanes>(self, proof: V::Proof) {
+        forward_with::<V>(proof, self.chain, self.data, self.x);
+    }
 }
 
 #[inline(always)]
@@ -307,21 +334,22 @@ fn forward_with<V: FourLanes>(proof: V::Proof, chain: &Chain, data: &SolveData, 
 
 /// Backward: x = L⁻ᵀ D⁻¹ x in the chain's own rows; those of the separator are known.
 pub(super) fn backward(build: Build, chain: &Chain, data: &SolveData, x: &mut [f64]) {
-    match build {
-        Build::Portable => backward_with::<Portable>((), chain, data, x),
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: `proof` says that the processor has the instructions.
-        Build::Fma(proof) => unsafe { backward_fma(proof, chain, data, x) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: `proof` says that the processor has the instructions.
-        Build::Avx512(proof) => unsafe { backward_fma(proof.fma(), chain, data, x) },
-    }
+    on(build, Backward { chain, data, x })
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn backward_fma(proof: HasFma, chain: &Chain, data: &SolveData, x: &mut [f64]) {
-    backward_with::<Fma>(proof, chain, data, x);
+struct Backward<'a, 'd> {
+    chain: &'a Chain,
+    data: &'a SolveData<'d>,
+    x: &'a mut [f64],
+}
+
+impl ChainWork for Backward<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: FourLanes>(self, proof: V::Proof) {
+        backward_with::<V>(proof, self.chain, self.data, self.x);
+    }
 }
 
 #[inline(always)]

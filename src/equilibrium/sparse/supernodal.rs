@@ -192,8 +192,7 @@ impl SupernodalSolver {
 /// The lower triangle by columns: starts, and ascending rows.
 fn lower_triangle(couplings: &Couplings) -> (Vec<usize>, Vec<usize>) {
     let mut columns: Vec<Vec<usize>> = (0..couplings.unknowns).map(|unknown| vec![unknown]).collect();
-    let with_itself = (0..couplings.groups.len()).map(|group| [group, group]);
-    for [i, j] in couplings.pairs.iter().copied().chain(with_itself) {
+    for [i, j] in couplings.meetings() {
         for a in &couplings.groups[i] {
             for b in &couplings.groups[j] {
                 columns[*a.min(b)].push(*a.max(b));
