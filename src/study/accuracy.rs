@@ -4,15 +4,13 @@
 //! difference, as a share of the largest value of the reference on that side. Where one has jumped and the other has not they
 //! stand on different branches, and what differs is where they jump.
 
-use std::time::Instant;
-
 use serde::Serialize;
 
 use crate::model::ModelError;
-use crate::pipeline::{Parameter, Record, Run, RunError, Sink, SinkError, Stages};
+use crate::pipeline::{Parameter, RunError};
 use crate::scene::Scene;
-use crate::state::State;
 use crate::study::path::{PathPoint, equilibrium_path, snaps};
+use crate::study::timed_run::timed_run;
 
 /// Parameters closer than this, relatively, are one.
 const SAME: f64 = 1e-9;
@@ -131,17 +129,6 @@ pub fn is_one_structure(scene: &Scene, reference: &Scene) -> Result<(), Accuracy
     }
 }
 
-/// Keeps what was reported, and no states.
-#[derive(Default)]
-struct Records(Vec<Record>);
-
-impl Sink for Records {
-    fn take(&mut self, _: &State, record: &Record) -> Result<(), SinkError> {
-        self.0.push(record.clone());
-        Ok(())
-    }
-}
-
 /// Runs a scene to its end.
 ///
 /// # Errors
@@ -157,13 +144,7 @@ pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
     if Parameter::of(scene) == Parameter::LoadFactor && scene.probes.is_empty() {
         return Err(AccuracyError::NothingMeasured);
     }
-    let stages = Stages::new(scene.clone());
-    let start = stages.start()?;
-    let mut records = Records::default();
-    let begin = Instant::now();
-    Run::new(stages, start, None).to_end(None, &|| false, &mut records).map_err(Box::new)?;
-    let wall_s = begin.elapsed().as_secs_f64();
-    let Records(records) = records;
+    let (records, wall_s) = timed_run::<AccuracyError>(scene)?;
     let last = records.last().map(|record| &record.report);
     Ok(Measured {
         curve: curve(&equilibrium_path(&records), Parameter::of(scene)),

@@ -16,8 +16,9 @@ use serde::Serialize;
 
 use crate::equilibrium::{DenseProduct, Equilibrium, KernelRun, SolveError, Standing, Workspace, WorkspaceError};
 use crate::model::{ModelError, starting_mesh};
-use crate::pipeline::{MemorySink, Run, RunError, Stages};
+use crate::pipeline::RunError;
 use crate::scene::Scene;
+use crate::study::timed_run::timed_run;
 
 /// Size of the dense product.
 const PRODUCT_SIZE: usize = 1024;
@@ -122,18 +123,13 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     Ok(figures.into_iter().map(|figure| Figure { scene: name.to_string(), ..figure }).collect())
 }
 
-/// Times a whole run of a scene, in memory.
+/// Times a whole run of a scene, with nothing logged.
 ///
 /// # Errors
 /// Where the run stops before its end.
 pub fn run_figure(scene: &Scene, name: &str) -> Result<Figure, BenchError> {
-    let stages = Stages::new(scene.clone());
-    let start = stages.start()?;
-    let mut sink = MemorySink::default();
-    let begin = Instant::now();
-    Run::new(stages, start, None).to_end(None, &|| false, &mut sink).map_err(Box::new)?;
-    let seconds = begin.elapsed().as_secs_f64();
-    let last = sink.stages.last().map(|(_, record)| &record.report);
+    let (records, seconds) = timed_run::<BenchError>(scene)?;
+    let last = records.last().map(|record| &record.report);
     Ok(Figure {
         name: "run",
         scene: name.to_string(),

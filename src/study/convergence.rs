@@ -4,11 +4,10 @@
 //! fold. What is compared are the peak of the moment, the two limit points, and the moments at one rotation on the unstable
 //! path and on the fold.
 
-use std::time::Instant;
-
 use crate::model::ModelError;
-use crate::pipeline::{MemorySink, Outcome, Record, Run, RunError, Stages};
+use crate::pipeline::{Outcome, Record, RunError};
 use crate::scene::{ArcLength, ArcLengthWord, Load, Scene, Stage};
+use crate::study::timed_run::timed_run;
 
 /// Points of the path through which its quantities are interpolated.
 const INTERPOLATED: usize = 6;
@@ -57,7 +56,7 @@ pub enum ConvergenceError {
     Model(#[from] ModelError),
     /// A stage failed.
     #[error(transparent)]
-    Run(#[from] RunError),
+    Run(#[from] Box<RunError>),
 }
 
 /// A point of the path.
@@ -85,13 +84,7 @@ pub fn converge(scene: &Scene, unstable_at_deg: f64) -> Result<ConvergenceRow, C
     scene.continuation.get_or_insert(limits);
     scene.solver.snap_tolerance_deg = Some(LOCATED_DEG);
     scene.solver.least_increment_deg = scene.solver.least_increment_deg.map(|least| least.min(LOCATED_DEG));
-    let begin = Instant::now();
-    let stages = Stages::new(scene.clone());
-    let start = stages.start()?;
-    let mut sink = MemorySink::default();
-    Run::new(stages, start, None).to_end(None, &|| false, &mut sink)?;
-    let wall_s = begin.elapsed().as_secs_f64();
-    let records: Vec<Record> = sink.stages.into_iter().map(|(_, record)| record).collect();
+    let (records, wall_s) = timed_run::<ConvergenceError>(&scene)?;
     Ok(read_off(&scene, &records, unstable_at_deg, wall_s))
 }
 

@@ -12,6 +12,7 @@ mod stress_fault;
 mod stress_run;
 mod summary;
 mod summary_text;
+mod timed_run;
 mod wuest;
 
 pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_one_structure, measure};
