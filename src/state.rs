@@ -103,6 +103,26 @@ pub enum Rejection {
 }
 
 impl State {
+    /// Of an undeformed shell, before the first step.
+    pub fn undeformed(mesh: Mesh) -> Self {
+        Self {
+            displacement: vec![[0.0; 3]; mesh.control_points.len()],
+            mesh: Arc::new(mesh),
+            marked: Default::default(),
+            refined: None,
+            step: 0,
+            stage: None,
+            parameter: 0.0,
+            turns: Vec::new(),
+            moment_n_mm: 0.0,
+            strain_energy_n_mm: 0.0,
+            negative_pivots: 0,
+            control: StepControl::default(),
+            path: None,
+            previous: None,
+        }
+    }
+
     /// Content hash over everything that decides the future; independent of how a log encodes the state.
     pub fn hash(&self) -> Hash {
         let mut feed = Feed::new("foldline state");

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::print;
+use super::output::{print, print_json};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
 use crate::scene::Scene;
@@ -74,8 +74,7 @@ impl Arguments {
 
     fn show(&self, figures: &[Figure], head: bool) -> Result<(), Failure> {
         if self.json {
-            let line = |figure: &Figure| serde_json::to_string(figure).unwrap_or_default() + "\n";
-            return print(&figures.iter().map(line).collect::<String>());
+            return figures.iter().try_for_each(print_json);
         }
         let mut text = String::new();
         if head {

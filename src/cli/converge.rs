@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::print;
+use super::output::{print, print_json};
 use super::scene_file::{checked, read_scene};
 use crate::scene::Scene;
 use crate::study::{ConvergenceRow, converge};
@@ -55,7 +55,10 @@ impl Arguments {
                 elements: scene.mesh.elements,
                 source: Box::new(source),
             })?;
-            print(&if self.json { serde_json::to_string(&found).unwrap_or_default() + "\n" } else { row(&found) })?;
+            match self.json {
+                true => print_json(&found)?,
+                false => print(&row(&found))?,
+            }
         }
         Ok(())
     }

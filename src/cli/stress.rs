@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{print, say};
+use super::output::{print, print_json, say};
 use super::scene_file::read_scene;
 use super::session::use_threads;
 use crate::scene::Scene;
@@ -73,7 +73,7 @@ impl Arguments {
         for row in names.iter().filter_map(|name| suite.run(name)) {
             failed += usize::from(!row.as_stated);
             if self.json {
-                print(&(serde_json::to_string(&row).unwrap_or_default() + "\n"))?;
+                print_json(&row)?;
             } else {
                 print(&table.row(&row))?;
             }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{print, say};
+use super::output::{print, print_json, say};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
 use crate::scene::Scene;
@@ -135,10 +135,9 @@ impl Arguments {
     fn show_failure(&self, case: &Case, cause: AccuracyError, width: usize) -> Result<(), Failure> {
         let failure = Failure::Study { case: case.label(), source: Box::new(cause) };
         if self.json {
-            let line = serde_json::json!({
+            return print_json(&serde_json::json!({
                 "scene": case.scene_name, "settings": case.settings, "error": failure.in_full(),
-            });
-            return print(&format!("{line}\n"));
+            }));
         }
         print(&format!("{:<width$}  failed\n", case.label()))?;
         say(&failure.in_full());
@@ -154,7 +153,7 @@ impl Arguments {
                 #[serde(flatten)]
                 row: &'l AccuracyRow,
             }
-            return print(&(serde_json::to_string(&Line { scene, settings, row }).unwrap_or_default() + "\n"));
+            return print_json(&Line { scene, settings, row });
         }
         print(&shown(&label(scene, settings), row, width))
     }

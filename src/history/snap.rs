@@ -3,9 +3,9 @@
 
 use crate::equilibrium::{
     Continuation, Equilibrium, Iterate, Observer, Sense, SoftMode, SolveError, Standing, Workspace, WorkspaceError,
-    soft_mode,
 };
 use crate::history::bisection::LoadBisection;
+use crate::history::stability::mode_of;
 use crate::journal::{Log, StateError};
 use crate::pipeline::{CriticalPoint, Outcome, Parameter, is_jump};
 use crate::scene::Scene;
@@ -134,13 +134,11 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
     let (after, work_done, most_negative) = tries.through(&stable, bracket_deg[1])?;
     let critical = tries.what_is_passed(&stable, bracket_deg);
     let solves = tries.count;
-    let mut mode = soft_mode(&mut work, Standing::of(&stable)).map_err(|source| SnapError::Solve {
+    let (mode, mode_at) = mode_of(scene, &mut work, &stable).map_err(|source| SnapError::Solve {
         from: shown(stable.parameter),
         to: shown(stable.parameter),
         source: Box::new(source),
     })?;
-    mode.eigenvalue *= scene.symmetry.copies() as f64;
-    let [x, y, z, w] = stable.mesh.control_points[mode.largest_at];
     Ok(SnapReport {
         bracket_deg,
         moment_n_mm: [stable.moment_n_mm, after.moment_n_mm],
@@ -148,7 +146,7 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
         negative_pivots: [stable.negative_pivots as usize, most_negative, after.negative_pivots as usize],
         critical,
         mode,
-        mode_at: [x / w, y / w, z / w],
+        mode_at,
         stable,
         solves,
     })

@@ -37,9 +37,15 @@ pub enum StabilityError {
 pub fn stability_at(log: &Log, index: usize, scene: &Scene) -> Result<StabilityReport, StabilityError> {
     let state = log.state(index)?;
     let mut work = Workspace::new(scene, &state.mesh)?;
-    let mut mode = soft_mode(&mut work, Standing::of(&state))?;
-    // Of the whole shell, as energies are.
+    let (mode, mode_at) = mode_of(scene, &mut work, &state)?;
+    Ok(StabilityReport { mode_at, mode, state })
+}
+
+/// The softest mode of a state, with the eigenvalue of the whole shell, as energies are; and the undeformed place of the
+/// control point that moves most in it, mm.
+pub(super) fn mode_of(scene: &Scene, work: &mut Workspace, state: &State) -> Result<(SoftMode, [f64; 3]), SolveError> {
+    let mut mode = soft_mode(work, Standing::of(state))?;
     mode.eigenvalue *= scene.symmetry.copies() as f64;
     let [x, y, z, w] = state.mesh.control_points[mode.largest_at];
-    Ok(StabilityReport { mode_at: [x / w, y / w, z / w], mode, state })
+    Ok((mode, [x / w, y / w, z / w]))
 }

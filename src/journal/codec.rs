@@ -321,20 +321,18 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
             Rejection::SharpTurn => RejectionV1::SharpTurn,
         }),
     };
-    let turns = Cow::from(&state.turns);
+    let after = StateV3 { base, turns: Cow::from(&state.turns), path: state.path.as_ref().map(PathV3::of) };
+    let previous_parameter = state.previous.as_ref().map(|previous| previous.parameter);
     let state = if state.control.halvings < 0 {
-        let after = StateV3 { base, turns, path: state.path.as_ref().map(PathV3::of) };
-        let previous_parameter = state.previous.as_ref().map(|previous| previous.parameter);
         encode(5, &StateV5 { after, previous_parameter, doublings: state.control.halvings.unsigned_abs() })?
-    } else if let Some(previous) = &state.previous {
-        let after = StateV3 { base, turns, path: state.path.as_ref().map(PathV3::of) };
-        encode(4, &StateV4 { after, previous_parameter: previous.parameter })?
+    } else if let Some(previous_parameter) = previous_parameter {
+        encode(4, &StateV4 { after, previous_parameter })?
     } else if state.path.is_some() || state.stage == Some(Stage::SwitchBranch) {
-        encode(3, &StateV3 { base, turns, path: state.path.as_ref().map(PathV3::of) })?
-    } else if !turns.is_empty() {
-        encode(2, &StateV2 { base, turns })?
+        encode(3, &after)?
+    } else if !state.turns.is_empty() {
+        encode(2, &StateV2 { base: after.base, turns: after.turns })?
     } else {
-        encode(1, &base)?
+        encode(1, &after.base)?
     };
     Ok(EncodedState { state, displacement, displacement_hash })
 }

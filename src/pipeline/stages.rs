@@ -43,22 +43,7 @@ impl Stages {
             return Err(ModelError::NothingFree { elements: mesh.element_counts() });
         }
         let turns = if unknowns.turns_are_unknown() { vec![[0.0; 3]; unknowns.sections().len()] } else { vec![] };
-        Ok(State {
-            turns,
-            displacement: vec![[0.0; 3]; mesh.control_points.len()],
-            mesh: Arc::new(mesh),
-            marked: Default::default(),
-            refined: None,
-            step: 0,
-            stage: None,
-            parameter: 0.0,
-            moment_n_mm: 0.0,
-            strain_energy_n_mm: 0.0,
-            negative_pivots: 0,
-            control: StepControl::default(),
-            path: None,
-            previous: None,
-        })
+        Ok(State { turns, ..State::undeformed(mesh) })
     }
 
     /// Runs a stage. `observer` sees every Newton iterate.

@@ -60,7 +60,7 @@ pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
         let located = beyond - here <= tolerance || middle <= here || middle >= beyond;
         return Attempt { target_deg: if located { beyond } else { middle }, may_jump: located };
     }
-    let increment = scene.load.increment() / 2.0_f64.powi(state.control.halvings);
+    let increment = increment_of(scene, state.control.halvings);
     let multiple = ((here / increment + SAME).floor() + 1.0) * increment;
     let last = scene.load.target();
     let mut target_deg = if multiple > last - SAME * increment { last } else { multiple };
@@ -70,6 +70,11 @@ pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
         target_deg = point.map_or(target_deg, |point| point.min(target_deg));
     }
     Attempt { target_deg, may_jump: target_deg - here <= tolerance }
+}
+
+/// The scene's increment, halved (or where negative, doubled) so many times.
+fn increment_of(scene: &Scene, halvings: i32) -> f64 {
+    scene.load.increment() / 2.0_f64.powi(halvings)
 }
 
 /// Whether a rotation is reached, to the rounding of its steps.
@@ -123,7 +128,7 @@ impl Attempt {
 
     /// Step control after the attempt was taken, in so many iterations.
     pub fn control_after_success(&self, scene: &Scene, before: &StepControl, iterations: usize) -> StepControl {
-        let twice = scene.load.increment() * 2.0_f64.powi(1_i32.saturating_sub(before.halvings));
+        let twice = increment_of(scene, before.halvings.saturating_sub(1));
         let may_grow = iterations <= EASY && twice <= scene.load.longest_increment() * (1.0 + SAME);
         let change = if before.jump_seen_at_deg.is_some() {
             // Behind a jump, or a turn that looked like one, an increment that had grown was too large.
@@ -150,10 +155,10 @@ impl Attempt {
         }
         let half = 0.5 * self.increment_deg(state);
         let mut halvings = state.control.halvings;
-        while scene.load.increment() / 2.0_f64.powi(halvings) > half * (1.0 + SAME) {
+        while increment_of(scene, halvings) > half * (1.0 + SAME) {
             halvings += 1;
         }
-        let increment = scene.load.increment() / 2.0_f64.powi(halvings);
+        let increment = increment_of(scene, halvings);
         let rejection = Some(Rejection::NoEquilibrium);
         (increment >= scene.least_increment()).then_some(StepControl { halvings, jump_seen_at_deg: None, rejection })
     }
@@ -171,8 +176,6 @@ pub fn is_jump_on_refinement(released: f64, before: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
     use crate::scene::{EndRotation, Load, parse};
     use crate::spline::Mesh;
@@ -187,22 +190,8 @@ mod tests {
     }
 
     fn at(parameter: f64, control: StepControl) -> State {
-        State {
-            mesh: Arc::new(Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] }),
-            displacement: vec![],
-            marked: Default::default(),
-            refined: None,
-            step: 1,
-            stage: Some(Stage::Solve),
-            parameter,
-            turns: vec![],
-            moment_n_mm: 0.0,
-            strain_energy_n_mm: 0.0,
-            negative_pivots: 0,
-            control,
-            path: None,
-            previous: None,
-        }
+        let mesh = Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] };
+        State { step: 1, stage: Some(Stage::Solve), parameter, control, ..State::undeformed(mesh) }
     }
 
     /// Rotations of a run in which every attempt succeeds.

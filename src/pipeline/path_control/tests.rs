@@ -1,12 +1,9 @@
 //! Each row of the table, and paths made up with a critical point on them.
 
-use std::sync::Arc;
-
 use super::*;
 use crate::equilibrium::{Direction, Effort, Solved};
 use crate::scene::{ArcLengthWord, Stage, parse};
 use crate::spline::Mesh;
-use crate::state::StepControl;
 
 const LIMITS: ArcLength =
     ArcLength { control: ArcLengthWord::ArcLength, longest_step: 4.0, shortest_step: 1e-3, most_steps: 1000 };
@@ -35,22 +32,8 @@ fn memory(parameter_rate: f64) -> PathMemory {
 }
 
 fn standing(negative_pivots: u64) -> State {
-    State {
-        mesh: Arc::new(Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] }),
-        displacement: vec![],
-        marked: Default::default(),
-        refined: None,
-        step: 1,
-        stage: Some(Stage::Solve),
-        parameter: 0.0,
-        turns: vec![],
-        moment_n_mm: 0.0,
-        strain_energy_n_mm: 0.0,
-        negative_pivots,
-        control: StepControl::default(),
-        path: None,
-        previous: None,
-    }
+    let mesh = Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] };
+    State { step: 1, stage: Some(Stage::Solve), negative_pivots, ..State::undeformed(mesh) }
 }
 
 /// A point that a step found after `distance`, where the parameter has this rate and the stiffness these pivots.
