@@ -28,23 +28,7 @@ pub fn mesh(knots: [Vec<f64>; 2]) -> Mesh {
 
 /// The state that a run of `elements` × `elements` elements starts from.
 pub fn start(elements: usize) -> State {
-    let mesh = Arc::new(mesh([uniform_knots(2, elements), uniform_knots(2, elements)]));
-    State {
-        displacement: vec![[0.0; 3]; mesh.control_points.len()],
-        mesh,
-        marked: [Vec::new(), Vec::new()],
-        refined: None,
-        step: 0,
-        stage: None,
-        parameter: 0.0,
-        turns: vec![],
-        moment_n_mm: 0.0,
-        strain_energy_n_mm: 0.0,
-        negative_pivots: 0,
-        control: StepControl::default(),
-        path: None,
-        previous: None,
-    }
+    State::undeformed(mesh([uniform_knots(2, elements), uniform_knots(2, elements)]))
 }
 
 fn moved(state: &State, by: f64) -> Vec<[f64; 3]> {

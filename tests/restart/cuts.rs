@@ -1,29 +1,12 @@
 //! A run cut anywhere and resumed ends with the same chain of hashes as one that was never cut.
 
-use crate::program::{Place, SMALL, Straight, assert_ends_with, small_syncing};
+use crate::program::{Place, SMALL, Straight, assert_ends_with, assert_resumes_from_every_cut, small_syncing};
 
 /// The small run with a policy of syncing, cut after every stage in turn.
 fn every_cut(policy: &str, threads_before: usize, threads_after: usize) {
     let whole = Straight::run(&small_syncing(policy), threads_before);
     assert_eq!(whole.chain, Straight::small().chain, "syncing and threads change no state");
-    every_cut_of(&whole, policy, threads_before, threads_after);
-}
-
-/// Cuts a straight run after every stage in turn and resumes each.
-fn every_cut_of(whole: &Straight, policy: &str, threads_before: usize, threads_after: usize) {
-    let place = Place::new();
-    for stages in 0..=whole.stages {
-        place.write("cut.mcap", whole.cut_after(stages));
-        place.foldline(&format!("resume cut.mcap --quiet --threads {threads_after}")).ends(0);
-        let what = format!("cut after {stages} stages, {policy}, {threads_before} threads and then {threads_after}");
-        let log = place.log("cut.mcap");
-        assert_ends_with(&log, whole.chain, &what);
-        assert_eq!(log.entries().len(), whole.stages, "{what}");
-        assert_eq!(log.manifests().len(), 2, "{what}");
-        let manifest = &log.manifests()[1];
-        assert_eq!((manifest.first_ordinal, manifest.threads), (stages as u64, threads_after), "{what}");
-        assert_eq!(place.logs(), ["cut.mcap"], "{what}: nothing is left beside the log");
-    }
+    assert_resumes_from_every_cut(&whole, policy, threads_before, threads_after);
 }
 
 #[test]
@@ -52,7 +35,7 @@ fn every_cut_of_a_run_whose_increments_grow() {
     let rotations: Vec<f64> = log.entries().iter().map(|entry| entry.record.report.parameter).collect();
     let longest = rotations.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     assert!(longest > 1.9, "the longest step is {longest}°");
-    every_cut_of(&whole, "each-second", 1, 2);
+    assert_resumes_from_every_cut(&whole, "growing", 1, 2);
 }
 
 /// What a resume says: what it found, what it dropped and why, and what it computes first.

@@ -7,7 +7,7 @@ use foldline::journal::Log;
 use foldline::pipeline::{Outcome, Stages};
 use foldline::scene::Stage;
 
-use crate::program::{Place, Straight, assert_ends_with, scene};
+use crate::program::{Place, Straight, assert_resumes_from_every_cut, scene};
 
 /// A roof through its limit points, refined on the way.
 const ROOF: &str = include_str!("path.toml");
@@ -60,19 +60,12 @@ fn the_runs_are_eventful() {
     assert_eq!(switched.len(), 1);
 }
 
-/// Cuts a straight run after every stage in turn and resumes each.
+/// Run on so many threads, cut after every stage in turn.
 fn every_cut(scene: &str, whole: &Straight, threads_before: usize, threads_after: usize) {
     let straight = Straight::run(scene, threads_before);
     assert_eq!(straight.chain, whole.chain, "threads change no state");
-    let place = Place::new();
-    for stages in 0..=straight.stages {
-        place.write("cut.mcap", straight.cut_after(stages));
-        place.foldline(&format!("resume cut.mcap --quiet --threads {threads_after}")).ends(0);
-        let what = format!("cut after {stages} stages, {threads_before} threads and then {threads_after}");
-        let log = place.log("cut.mcap");
-        assert_ends_with(&log, whole.chain, &what);
-        assert_eq!(log.entries().len(), whole.stages, "{what}");
-    }
+    assert_eq!(straight.stages, whole.stages);
+    assert_resumes_from_every_cut(&straight, "a path", threads_before, threads_after);
 }
 
 #[test]

@@ -186,3 +186,20 @@ pub fn assert_ends_with(log: &Log, chain: Hash, what: &str) {
     let faults: Vec<_> = verify_log(log).into_iter().filter(|finding| finding.level > Level::Info).collect();
     assert!(faults.is_empty(), "{what}: {faults:?}");
 }
+
+/// Cuts a straight run after every stage in turn and resumes each.
+pub fn assert_resumes_from_every_cut(whole: &Straight, run: &str, threads_before: usize, threads_after: usize) {
+    let place = Place::new();
+    for stages in 0..=whole.stages {
+        place.write("cut.mcap", whole.cut_after(stages));
+        place.foldline(&format!("resume cut.mcap --quiet --threads {threads_after}")).ends(0);
+        let what = format!("cut after {stages} stages, {run}, {threads_before} threads and then {threads_after}");
+        let log = place.log("cut.mcap");
+        assert_ends_with(&log, whole.chain, &what);
+        assert_eq!(log.entries().len(), whole.stages, "{what}");
+        assert_eq!(log.manifests().len(), 2, "{what}");
+        let manifest = &log.manifests()[1];
+        assert_eq!((manifest.first_ordinal, manifest.threads), (stages as u64, threads_after), "{what}");
+        assert_eq!(place.logs(), ["cut.mcap"], "{what}: nothing is left beside the log");
+    }
+}
