@@ -2,7 +2,7 @@
 
 use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
 use crate::pipeline::stages::{out_of_order, reject, settle};
-use crate::pipeline::step_control::{Attempt, is_jump, is_jump_on_refinement, next_attempt};
+use crate::pipeline::step_control::{Attempt, energy_released, is_jump, is_jump_on_refinement, next_attempt};
 use crate::pipeline::{Outcome, Parameter, Report, StageError, Stages};
 use crate::scene::Stage;
 use crate::shell::{norm, sub};
@@ -59,7 +59,7 @@ impl Stages {
         report.attempted_parameter = attempt.target_deg;
         match solved {
             Ok(solved) => {
-                let released = attempt.energy_released(state, &solved);
+                let released = energy_released(state, &solved);
                 let left = unstable_on_the_way && leaves_path(state, attempt.target_deg, &solved);
                 let jumped = left || is_jump(released, state.strain_energy_n_mm, solved.energy);
                 if jumped && !attempt.may_jump {
@@ -130,7 +130,7 @@ impl Stages {
         let (scene, work) = self.workspace(&state.mesh, step, Stage::ReEquilibrate)?;
         let solved = Equilibrium::new(scene, work).relax(Standing::of(state), &mut watch);
         let solved = solved.map_err(|cause| self.not_re_equilibrated(state, cause))?;
-        let released = state.strain_energy_n_mm + solved.work - solved.energy;
+        let released = energy_released(state, &solved);
         let mut next = settle(state, &solved);
         let mut report = self.report(&next, step);
         report.record(&next, &solved);

@@ -21,7 +21,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::equilibrium::ContinuedPoint;
-use crate::pipeline::step_control::is_jump;
+use crate::pipeline::step_control::{energy_released, is_jump};
 use crate::scene::{ArcLength, Scene};
 use crate::state::{CriticalAhead, PathMemory, State};
 
@@ -125,7 +125,7 @@ impl PathAttempt {
     /// Judges the point that the step found.
     pub fn judge(&self, state: &State, path: &PathMemory, point: &ContinuedPoint) -> Judgement {
         let strays = point.turn < SHARPEST_TURN || point.chord < STRAIGHTEST_CHORD;
-        let released = state.strain_energy_n_mm + point.solved.work - point.solved.energy;
+        let released = energy_released(state, &point.solved);
         let energies = (state.strain_energy_n_mm, point.solved.energy);
         if strays || point.distance > FARTHEST * self.length_mm || is_jump(released, energies.0, energies.1) {
             return Judgement::TooFar;

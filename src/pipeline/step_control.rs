@@ -121,11 +121,6 @@ impl Attempt {
         self.target_deg - state.parameter
     }
 
-    /// Work of loads and given motions (trapezoidal rule) that did not go into strain energy, N·mm.
-    pub fn energy_released(&self, state: &State, solved: &Solved) -> f64 {
-        state.strain_energy_n_mm + solved.work - solved.energy
-    }
-
     /// Step control after the attempt was taken, in so many iterations.
     pub fn control_after_success(&self, scene: &Scene, before: &StepControl, iterations: usize) -> StepControl {
         let twice = increment_of(scene, before.halvings.saturating_sub(1));
@@ -162,6 +157,12 @@ impl Attempt {
         let rejection = Some(Rejection::NoEquilibrium);
         (increment >= scene.least_increment()).then_some(StepControl { halvings, jump_seen_at_deg: None, rejection })
     }
+}
+
+/// Work of loads and given motions (trapezoidal rule) from a state to an equilibrium that did not go into strain energy,
+/// N·mm.
+pub fn energy_released(state: &State, solved: &Solved) -> f64 {
+    state.strain_energy_n_mm + solved.work - solved.energy
 }
 
 /// Whether energy that left the balance says that the shell jumped.
