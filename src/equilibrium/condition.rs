@@ -5,7 +5,7 @@
 //! cent of it are of no interest, and the iterations stop there.
 
 use crate::equilibrium::descent::product;
-use crate::equilibrium::newton::{Effort, Standing, Workspace};
+use crate::equilibrium::newton::{Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 
 /// Relative change of an eigenvalue in one iteration at which it is known well enough.
@@ -31,8 +31,8 @@ impl Condition {
     pub fn at(work: &mut Workspace, at: Standing) -> Result<Self, SolveError> {
         let matrix = work.form_at(at).to_vec();
         let count = work.discretization.unknowns.count();
-        let solver = &mut work.tangent.solver;
-        solver.factorize().map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })?;
+        work.factorize_formed()?;
+        let solver = &work.tangent.solver;
         let largest = magnitude(count, |vector| solver.multiply(&matrix, vector));
         let smallest = magnitude(count, |vector| {
             let mut solved = vector.to_vec();

@@ -12,6 +12,7 @@ use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::descent::{Descent, Ended, largest, length, product};
 use crate::equilibrium::external::{External, subtract, work};
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
+use crate::equilibrium::sparse::NegativePivots;
 use crate::equilibrium::stability::SoftMode;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::model::{Discretization, Unknowns};
@@ -182,13 +183,16 @@ impl Workspace {
         if let Some(known) = self.factored_at.as_ref().filter(|known| exact && known.is_at(&at)) {
             return Ok(known.negative);
         }
-        self.factored_at = None;
         self.form_at(at);
-        let effort = Effort::default();
-        let factored = self.tangent.solver.factorize();
-        let negative = factored.map_err(|cause| SolveError::Factor { cause, effort })?.count;
+        let negative = self.factorize_formed()?.count;
         self.factored_at = Some(Factored::new(at, negative));
         Ok(negative)
+    }
+
+    /// Factors the matrix that was formed or filled in; not counted in the effort of a solve.
+    pub(super) fn factorize_formed(&mut self) -> Result<NegativePivots, SolveError> {
+        let factored = self.tangent.solver.factorize();
+        factored.map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })
     }
 
     /// The matrix on the free unknowns at a state, not factored.

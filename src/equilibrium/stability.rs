@@ -10,7 +10,7 @@
 use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::descent::product;
 use crate::equilibrium::metric::Metric;
-use crate::equilibrium::newton::{Effort, Standing, Workspace};
+use crate::equilibrium::newton::{Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 use crate::shell::dot;
 
@@ -95,8 +95,7 @@ impl Slicing<'_> {
             *value = k - shift * m;
         }
         self.tried += 1;
-        let effort = Effort::default();
-        solver.factorize().map(|negative| negative.count).map_err(|cause| SolveError::Factor { cause, effort })
+        self.work.factorize_formed().map(|negative| negative.count)
     }
 
     /// Puts the shift below the lowest eigenvalue and not far from it, and leaves its factor in the solver.

@@ -2,7 +2,7 @@
 
 use crate::equilibrium::assembly::Want;
 use crate::equilibrium::external::External;
-use crate::equilibrium::newton::{Effort, Standing, Workspace};
+use crate::equilibrium::newton::{Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 
 /// What the pieces have to do.
@@ -82,8 +82,7 @@ impl<'a> KernelRun<'a> {
     /// # Errors
     /// Where it has none.
     pub fn factor(&mut self) -> Result<(), SolveError> {
-        let factored = self.work.tangent.solver.factorize();
-        factored.map(|_| ()).map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })
+        self.work.factorize_formed().map(|_| ())
     }
 
     /// One right-hand side.
