@@ -88,7 +88,7 @@ fn length_limit(scene: &Scene, discretization: &Discretization, rule: LengthLimi
 
 /// Largest principal curvature of the undeformed surface at the quadrature points, 1/mm.
 fn largest_curvature(discretization: &Discretization) -> f64 {
-    discretization.tables.points.iter().map(PointReference::largest_curvature).fold(0.0, f64::max)
+    discretization.tables.points.references.iter().map(PointReference::largest_curvature).fold(0.0, f64::max)
 }
 
 /// max|κ_i| h_i over the quadrature points of an element.
@@ -113,7 +113,7 @@ pub fn element_strains(
     let [p1, p2] = discretization.mesh.degree;
     let n2 = discretization.mesh.control_counts()[1];
     let first = [tables.first[0][element / tables.elements[1]], tables.first[1][element % tables.elements[1]]];
-    let functions = tables.element_functions(element);
+    let functions = tables.points.element_functions(element);
     let at_point = |(q, point): (usize, &PointReference)| {
         let mut u = [[0.0; 3]; 5];
         for k in 0..5 {
@@ -125,5 +125,5 @@ pub fn element_strains(
         }
         (point.strains(&u), point.tangent_lengths())
     };
-    tables.element_points(element).iter().enumerate().map(at_point).collect()
+    tables.points.element_points(element).iter().enumerate().map(at_point).collect()
 }

@@ -11,6 +11,9 @@
 //! order, whatever the width of the vectors: builds that round alike agree bit for bit.
 //!
 //! The structure of H (rank one in the second derivatives) saves nothing: 66 products for 75 in P, and as many in K.
+//!
+//! Where stretching has points of its own, its energy depends on the first two derivatives alone, and H is 6 × 6: 18 products
+//! for 45 at each point and pair of functions.
 
 mod build;
 mod contraction;
@@ -18,15 +21,15 @@ mod contraction;
 pub(crate) use build::Build;
 use contraction::{Block, add_residual, contract};
 
-use crate::model::{BATCH, LANES, Tables};
+use crate::model::{BATCH, LANES, PointTable, Tables};
 use crate::shell::lanes::{FourLanes, Lanes, Portable};
 #[cfg(target_arch = "x86_64")]
 use crate::shell::lanes_x86::{Avx512, Fma, HasAvx512, HasFma};
-use crate::shell::{BatchGradient, BatchHessian, PointBatch};
+use crate::shell::{BatchGradient, BatchHessian, PointBatch, PointKernel, StretchingBatch};
 
 /// Batches of points that the stiffness takes before it is stored: 16 points, all of a cubic element.
 const BLOCK: usize = 4;
-/// Numbers of P(l, d) for one (a, c): `3 l + d`.
+/// Numbers of P(l, d) for one (a, c) at most: `3 l + d`.
 const HALF_LEN: usize = 15;
 
 /// Local arrays of one element.
@@ -41,8 +44,20 @@ pub(super) struct ElementBuffers {
     pub energy: f64,
     /// P of a vector of functions at each point of a block.
     half: Vec<f64>,
-    gradients: [BatchGradient; BLOCK],
-    hessians: Vec<BatchHessian>,
+    whole: Derivatives<5, 15>,
+    stretching: Derivatives<2, 6>,
+}
+
+/// Gradients and Hessians of a block of points.
+struct Derivatives<const ROWS: usize, const SIZE: usize> {
+    gradients: [BatchGradient<ROWS>; BLOCK],
+    hessians: Vec<BatchHessian<SIZE>>,
+}
+
+impl<const ROWS: usize, const SIZE: usize> Derivatives<ROWS, SIZE> {
+    fn new() -> Self {
+        Self { gradients: [[[[0.0; BATCH]; 3]; ROWS]; BLOCK], hessians: vec![[[[0.0; BATCH]; SIZE]; SIZE]; BLOCK] }
+    }
 }
 
 impl ElementBuffers {
@@ -54,8 +69,8 @@ impl ElementBuffers {
             stiffness: vec![0.0; 9 * padded * padded],
             energy: 0.0,
             half: vec![0.0; BLOCK * BATCH * HALF_LEN * LANES],
-            gradients: [[[[0.0; BATCH]; 3]; 5]; BLOCK],
-            hessians: vec![[[[0.0; BATCH]; 15]; 15]; BLOCK],
+            whole: Derivatives::new(),
+            stretching: Derivatives::new(),
         }
     }
 }
@@ -79,7 +94,7 @@ pub(super) fn integrate_element(
     build: Build,
     buffers: &mut ElementBuffers,
 ) {
-    let points = Points::of(tables, element);
+    let points = ElementPoints::of(tables, element);
     match build {
         Build::Portable => integrate::<Portable, Portable>((), (), &points, want, buffers),
         #[cfg(target_arch = "x86_64")]
@@ -93,31 +108,45 @@ pub(super) fn integrate_element(
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn integrate_fma(proof: HasFma, points: &Points, want: Want, buffers: &mut ElementBuffers) {
+fn integrate_fma(proof: HasFma, points: &ElementPoints, want: Want, buffers: &mut ElementBuffers) {
     integrate::<Fma, Fma>(proof, proof, points, want, buffers);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
-fn integrate_avx512(proof: HasAvx512, points: &Points, want: Want, buffers: &mut ElementBuffers) {
+fn integrate_avx512(proof: HasAvx512, points: &ElementPoints, want: Want, buffers: &mut ElementBuffers) {
     integrate::<Fma, Avx512>(proof.fma(), proof, points, want, buffers);
 }
 
 /// What an element is integrated over.
-struct Points<'a> {
-    /// As in [`Tables::functions`].
-    functions: &'a [f64],
-    batches: &'a [PointBatch],
+struct ElementPoints<'a> {
+    /// Of the energy: all of it, or of bending.
+    whole: Points<'a, PointBatch, 5>,
+    /// Of stretching, where it has its own.
+    stretching: Option<Points<'a, StretchingBatch, 2>>,
     /// Basis functions without the padding.
     used: usize,
     padded: usize,
 }
 
-impl<'a> Points<'a> {
+/// Quadrature points of an element, and the first `ROWS` derivatives of its functions there.
+struct Points<'a, Batch, const ROWS: usize> {
+    /// As in [`PointTable::functions`].
+    functions: &'a [f64],
+    batches: &'a [Batch],
+}
+
+impl<'a, Batch, const ROWS: usize> Points<'a, Batch, ROWS> {
+    fn of(table: &'a PointTable<Batch, ROWS>, element: usize) -> Self {
+        Self { functions: table.element_functions(element), batches: table.element_batches(element) }
+    }
+}
+
+impl<'a> ElementPoints<'a> {
     fn of(tables: &'a Tables, element: usize) -> Self {
         Self {
-            functions: tables.element_functions(element),
-            batches: tables.element_batches(element),
+            whole: Points::of(&tables.points, element),
+            stretching: tables.stretching.as_ref().map(|table| Points::of(table, element)),
             used: tables.functions_per_element,
             padded: tables.padded,
         }
@@ -129,74 +158,109 @@ impl<'a> Points<'a> {
 fn integrate<V: FourLanes, W: Lanes>(
     points_proof: V::Proof,
     rows_proof: W::Proof,
-    points: &Points,
+    points: &ElementPoints,
     want: Want,
     buffers: &mut ElementBuffers,
 ) {
-    let ElementBuffers { displacement, residual, stiffness, energy, half, gradients, hessians } = buffers;
-    let Points { used, padded, .. } = *points;
-    let mut sum = V::splat(points_proof, 0.0);
-    let blocks = points.batches.chunks(BLOCK).zip(points.functions.chunks(BLOCK * BATCH * 5 * padded));
-    for (block, (batches, functions)) in blocks.enumerate() {
-        let of_batch = functions.chunks(BATCH * 5 * padded);
-        for (i, (points, functions)) in batches.iter().zip(of_batch).enumerate() {
-            let u = displacement_derivatives::<V>(points_proof, functions, padded, used, displacement);
-            let energies = match want {
-                Want::Energy => points.energy(points_proof, &u),
-                Want::Residual => points.gradient(points_proof, &u, &mut gradients[i]),
-                Want::Stiffness => points.hessian(points_proof, &u, &mut gradients[i], &mut hessians[i]),
-            };
-            sum = sum + energies;
-        }
-        if want == Want::Energy {
-            continue;
-        }
-        let block = Block::<W> { proof: rows_proof, functions, used, padded, first: block == 0 };
-        add_residual(&block, gradients, residual);
-        if want == Want::Stiffness {
-            contract(&block, hessians, W::chunks_mut(half).as_chunks_mut().0, stiffness);
-        }
+    let ElementBuffers { displacement, residual, stiffness, energy, half, whole, stretching } = buffers;
+    let ElementPoints { used, padded, .. } = *points;
+    let mut sums = Sums { used, padded, want, displacement, residual, stiffness, half, begun: false };
+    let mut sum = sums.add::<V, W, _, 5, 15>(points_proof, rows_proof, &points.whole, whole);
+    if let Some(points) = &points.stretching {
+        sum = sum + sums.add::<V, W, _, 2, 6>(points_proof, rows_proof, points, stretching);
     }
     let mut energies = [0.0; BATCH];
     sum.store(&mut energies);
     *energy = (energies[0] + energies[1]) + (energies[2] + energies[3]);
 }
 
-/// u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂ at the points of a batch; zero where a batch has fewer than four.
+/// The sums of an element under way.
+struct Sums<'a> {
+    used: usize,
+    padded: usize,
+    want: Want,
+    displacement: &'a [f64],
+    residual: &'a mut [f64],
+    stiffness: &'a mut [f64],
+    half: &'a mut [f64],
+    /// Whether residual and stiffness hold sums, and not what an element before left in them.
+    begun: bool,
+}
+
+impl Sums<'_> {
+    /// Adds points; returns their energies, in four lanes.
+    #[inline(always)]
+    fn add<V: FourLanes, W: Lanes, B: PointKernel<ROWS, SIZE>, const ROWS: usize, const SIZE: usize>(
+        &mut self,
+        points_proof: V::Proof,
+        rows_proof: W::Proof,
+        points: &Points<B, ROWS>,
+        derivatives: &mut Derivatives<ROWS, SIZE>,
+    ) -> V {
+        let Derivatives { gradients, hessians } = derivatives;
+        let (used, padded) = (self.used, self.padded);
+        let mut sum = V::splat(points_proof, 0.0);
+        let blocks = points.batches.chunks(BLOCK).zip(points.functions.chunks(BLOCK * BATCH * ROWS * padded));
+        for (batches, functions) in blocks {
+            let of_batch = functions.chunks(BATCH * ROWS * padded);
+            for (i, (points, functions)) in batches.iter().zip(of_batch).enumerate() {
+                let u = displacement_derivatives::<V, ROWS>(points_proof, functions, padded, used, self.displacement);
+                let energies = match self.want {
+                    Want::Energy => points.energy(points_proof, &u),
+                    Want::Residual => points.gradient(points_proof, &u, &mut gradients[i]),
+                    Want::Stiffness => points.hessian(points_proof, &u, &mut gradients[i], &mut hessians[i]),
+                };
+                sum = sum + energies;
+            }
+            if self.want == Want::Energy {
+                continue;
+            }
+            let block = Block::<W, ROWS> { proof: rows_proof, functions, used, padded, first: !self.begun };
+            self.begun = true;
+            add_residual(&block, gradients, self.residual);
+            if self.want == Want::Stiffness {
+                contract(&block, hessians, W::chunks_mut(self.half).as_chunks_mut::<SIZE>().0, self.stiffness);
+            }
+        }
+        sum
+    }
+}
+
+/// The first `ROWS` of u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂ at the points of a batch; zero where a batch has fewer than four.
 #[inline(always)]
-fn displacement_derivatives<V: FourLanes>(
+fn displacement_derivatives<V: FourLanes, const ROWS: usize>(
     proof: V::Proof,
     functions: &[f64],
     padded: usize,
     used: usize,
     displacement: &[f64],
-) -> [[V; 3]; 5] {
-    match functions.len() / (5 * padded) {
-        1 => derivatives_of::<V, 1>(proof, functions, padded, used, displacement),
-        2 => derivatives_of::<V, 2>(proof, functions, padded, used, displacement),
-        3 => derivatives_of::<V, 3>(proof, functions, padded, used, displacement),
-        _ => derivatives_of::<V, 4>(proof, functions, padded, used, displacement),
+) -> [[V; 3]; ROWS] {
+    match functions.len() / (ROWS * padded) {
+        1 => derivatives_of::<V, ROWS, 1>(proof, functions, padded, used, displacement),
+        2 => derivatives_of::<V, ROWS, 2>(proof, functions, padded, used, displacement),
+        3 => derivatives_of::<V, ROWS, 3>(proof, functions, padded, used, displacement),
+        _ => derivatives_of::<V, ROWS, 4>(proof, functions, padded, used, displacement),
     }
 }
 
 #[inline(always)]
-fn derivatives_of<V: FourLanes, const COUNT: usize>(
+fn derivatives_of<V: FourLanes, const ROWS: usize, const COUNT: usize>(
     proof: V::Proof,
     functions: &[f64],
     padded: usize,
     used: usize,
     displacement: &[f64],
-) -> [[V; 3]; 5] {
+) -> [[V; 3]; ROWS] {
     let zero = V::splat(proof, 0.0);
     let vectors = used.div_ceil(V::WIDTH);
-    let mut u = [[zero; 3]; 5];
+    let mut u = [[zero; 3]; ROWS];
     let x = &V::chunks(displacement)[..vectors];
     let y = &V::chunks(&displacement[padded..])[..vectors];
     let z = &V::chunks(&displacement[2 * padded..])[..vectors];
-    for k in 0..5 {
+    for k in 0..ROWS {
         let mut rows = [V::chunks(&[]); COUNT];
         for (q, row) in rows.iter_mut().enumerate() {
-            *row = &V::chunks(&functions[(q * 5 + k) * padded..])[..vectors];
+            *row = &V::chunks(&functions[(q * ROWS + k) * padded..])[..vectors];
         }
         let mut sums = [[zero; 4]; 3];
         for m in 0..vectors {

@@ -7,7 +7,7 @@
 
 use crate::equilibrium::assembly::{Assembled, Want};
 use crate::equilibrium::newton::{Standing, Workspace};
-use crate::model::Discretization;
+use crate::model::{Discretization, PointTable, Tables};
 use crate::shell::{Hessian, PointReference, dot};
 
 /// Errors of the stiffness of the shell at a state, relative to |x| |K y|.
@@ -47,29 +47,50 @@ fn measure(
 ) -> SymmetryError {
     let count = displacement.len();
     let (x, y) = (field(count, 0.618_033_988_75), field(count, 0.414_213_562_37));
-    let mut hessian: Hessian = [[0.0; 16]; 15];
-    let (mut forward, mut backward) = (0.0, 0.0);
     let tables = &discretization.tables;
-    for element in 0..tables.elements[0] * tables.elements[1] {
-        let points = element_control_points(discretization, element);
-        for (q, point) in tables.element_points(element).iter().enumerate() {
-            let functions = &tables.element_functions(element)[q * 5 * tables.padded..][..5 * tables.padded];
-            let derivatives = |field: &[[f64; 3]]| -> Derivatives {
-                [0, 1, 2, 3, 4].map(|k| {
-                    let shares = points.iter().zip(&functions[k * tables.padded..]);
-                    shares.fold([0.0; 3], |sum, (i, share)| [0, 1, 2].map(|c| sum[c] + share * field[*i][c]))
-                })
-            };
-            hessian_of(point, &derivatives(displacement), &mut hessian);
-            let (dx, dy) = (derivatives(&x), derivatives(&y));
-            forward += form(&dx, &hessian, &dy);
-            backward += form(&dy, &hessian, &dx);
-        }
+    let fields = [displacement, &x[..], &y[..]];
+    let [mut forward, mut backward] = forms(discretization, &tables.points, fields, &hessian_of);
+    if let Some(stretching) = &tables.stretching {
+        let [more_forward, more_backward] = forms(discretization, stretching, fields, &hessian_of);
+        forward += more_forward;
+        backward += more_backward;
     }
     let stiff = half.multiply(discretization, &y);
     let stored: f64 = x.iter().zip(&stiff).map(|(a, b)| dot(*a, *b)).sum();
     let size = length(&x) * length(&stiff);
     SymmetryError { hessians: (forward - backward).abs() / size, assembled: (forward - stored).abs() / size }
+}
+
+/// x·(K y) and y·(K x) of the points of a table, for the fields displacement, x, y.
+fn forms<Batch, const ROWS: usize>(
+    discretization: &Discretization,
+    table: &PointTable<Batch, ROWS>,
+    [displacement, x, y]: [&[[f64; 3]]; 3],
+    hessian_of: &impl Fn(&PointReference, &Derivatives, &mut Hessian),
+) -> [f64; 2] {
+    let Tables { elements, padded, .. } = discretization.tables;
+    let mut hessian: Hessian = [[0.0; 16]; 15];
+    let mut forms = [0.0; 2];
+    for element in 0..elements[0] * elements[1] {
+        let points = element_control_points(discretization, element);
+        for (q, point) in table.element_points(element).iter().enumerate() {
+            let functions = &table.element_functions(element)[q * ROWS * padded..][..ROWS * padded];
+            let derivatives = |field: &[[f64; 3]]| -> Derivatives {
+                let mut derivatives = [[0.0; 3]; 5];
+                for (k, row) in functions.chunks(padded).enumerate() {
+                    let shares = points.iter().zip(row);
+                    derivatives[k] =
+                        shares.fold([0.0; 3], |sum, (i, share)| [0, 1, 2].map(|c| sum[c] + share * field[*i][c]));
+                }
+                derivatives
+            };
+            hessian_of(point, &derivatives(displacement), &mut hessian);
+            let (dx, dy) = (derivatives(x), derivatives(y));
+            forms[0] += form(&dx, &hessian, &dy);
+            forms[1] += form(&dy, &hessian, &dx);
+        }
+    }
+    forms
 }
 
 /// Control points of an element's functions, in their order.

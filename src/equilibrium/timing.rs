@@ -4,6 +4,7 @@ use crate::equilibrium::assembly::Want;
 use crate::equilibrium::external::External;
 use crate::equilibrium::newton::{Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
+use crate::model::PointTable;
 
 /// What the pieces have to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,11 +49,16 @@ impl<'a> KernelRun<'a> {
         let tables = &self.work.discretization.tables;
         let [p1, p2] = self.work.discretization.mesh.degree;
         let functions = (p1 + 1) * (p2 + 1);
-        let points = tables.points.len() as f64;
-        let per_point: f64 = (0..functions).map(|a| 2.0 * (225.0 + 45.0 * (functions - a) as f64)).sum();
+        // For each function a, with r derivatives: 9 r² products for P, and 9 r with each function b ≥ a.
+        let flops = |points: usize, rows: usize| -> f64 {
+            let of_function = |a: usize| 18 * rows * (rows + functions - a);
+            (points * (0..functions).map(of_function).sum::<usize>()) as f64
+        };
+        let stretching = tables.stretching.as_ref();
         KernelCost {
-            assembly_flops: points * per_point,
-            table_bytes: (size_of_val(&tables.functions[..]) + size_of_val(&tables.batches[..])) as f64,
+            assembly_flops: flops(tables.points.references.len(), 5)
+                + stretching.map_or(0.0, |table| flops(table.references.len(), 2)),
+            table_bytes: (tables.points.bytes() + stretching.map_or(0, PointTable::bytes)) as f64,
             factor_flops: self.work.tangent.solver.flops(),
             factor_bytes: 8.0 * self.work.tangent.solver.factor_len() as f64,
             factor_threads: self.work.tangent.solver.most_threads(),

@@ -2,11 +2,13 @@
 
 mod edge;
 mod elimination;
+mod imbalance;
 mod joint;
 mod loads;
 mod patch;
 mod place;
 mod placement;
+mod quadrature;
 mod reactions;
 mod rigid_motion;
 mod rotation;
@@ -23,7 +25,7 @@ pub use reactions::{Exerted, PointForces};
 pub(crate) use rigid_motion::free_motion;
 pub use supports::Supports;
 pub(crate) use supports::control_expressions;
-pub use tables::Tables;
+pub use tables::{PointTable, Tables};
 pub(crate) use tables::{BATCH, LANES};
 pub use unknowns::{Entry, Unknowns};
 

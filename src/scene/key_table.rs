@@ -234,17 +234,23 @@ pub(super) static QUADRATURE: Key = Key {
     name: "quadrature",
     unit: None,
     kind: Kind::Word(&[
+        choice(
+            "balanced",
+            "as patch, and for stretching as many more as leave constant membrane forces in balance on the mesh in hand",
+        ),
         choice("full", "Gauss-Legendre with degree + 1 points each way"),
+        choice("full+1", "degree + 2 points each way, to judge others by"),
+        choice("full+2", "degree + 3 points each way"),
         choice("reduced", "Gauss-Legendre with degree points each way"),
         choice(
             "patch",
             "degree - 1 points each way (at least 2) where the spline is smooth, degree next to edges and repeated knots",
         ),
     ]),
-    presence: Default("\"patch\""),
+    presence: Default("\"balanced\""),
     reach: Everything,
     meaning: "Integration rule on an element.",
-    example: "\"patch\"",
+    example: "\"balanced\"",
     aliases: &["integration", "rule"],
 };
 

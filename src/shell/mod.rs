@@ -8,11 +8,13 @@ mod material;
 mod point;
 mod point_batch;
 mod quadrature;
+mod stretching_batch;
 mod vector;
 
 pub use material::{ShellStiffness, shell_stiffness};
 pub use point::{Hessian, PointReference, Strains};
 pub use point_batch::PointBatch;
-pub(crate) use point_batch::{BatchGradient, BatchHessian};
+pub(crate) use point_batch::{BatchGradient, BatchHessian, PointKernel};
 pub use quadrature::gauss_legendre;
+pub use stretching_batch::StretchingBatch;
 pub(crate) use vector::{add, cross, dot, norm, scaled, sub};

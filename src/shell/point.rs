@@ -76,6 +76,16 @@ impl PointReference {
         }
     }
 
+    /// The same point without stiffness against stretching.
+    pub fn bending_alone(self) -> Self {
+        Self { membrane: [[0.0; 3]; 3], ..self }
+    }
+
+    /// The same point without stiffness against bending.
+    pub fn stretching_alone(self) -> Self {
+        Self { bending: [[0.0; 3]; 3], ..self }
+    }
+
     /// |A₁|, |A₂|: lengths per parameter.
     pub fn tangent_lengths(&self) -> [f64; 2] {
         [norm(self.derivatives[0]), norm(self.derivatives[1])]

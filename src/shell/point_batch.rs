@@ -15,13 +15,31 @@ use super::lanes::FourLanes;
 use super::point::PointReference;
 
 /// Numbers of the four points.
-type Four = [f64; 4];
+pub(crate) type Four = [f64; 4];
 
-/// Gradients: `[k][c][point]`, k and c as in `Gradient` of `point`.
-pub(crate) type BatchGradient = [[Four; 3]; 5];
+/// Gradients: `[k][c][point]`, k over the vectors that the energy depends on, c over x, y, z.
+pub(crate) type BatchGradient<const ROWS: usize> = [[Four; 3]; ROWS];
 
-/// Hessians: `[3 k + c][3 l + d][point]`, symmetric.
-pub(crate) type BatchHessian = [[Four; 15]; 15];
+/// Hessians: `[3 k + c][3 l + d][point]`, symmetric; `SIZE` is 3 `ROWS`.
+pub(crate) type BatchHessian<const SIZE: usize> = [[Four; SIZE]; SIZE];
+
+/// Four points whose energy depends on the first `ROWS` of u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂; `SIZE` is 3 `ROWS`.
+pub(crate) trait PointKernel<const ROWS: usize, const SIZE: usize> {
+    /// Energies for derivatives of the displacement.
+    fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; ROWS]) -> V;
+
+    /// Energies, and their gradients.
+    fn gradient<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; ROWS], gradient: &mut BatchGradient<ROWS>) -> V;
+
+    /// Energies, gradients and Hessians.
+    fn hessian<V: FourLanes>(
+        &self,
+        proof: V::Proof,
+        u: &[[V; 3]; ROWS],
+        gradient: &mut BatchGradient<ROWS>,
+        hessian: &mut BatchHessian<SIZE>,
+    ) -> V;
+}
 
 /// The undeformed shell at four quadrature points; where fewer are left, the last stands for the rest, without
 /// stiffness.
@@ -40,12 +58,8 @@ pub struct PointBatch {
 impl PointBatch {
     /// One to four points.
     pub fn new(points: &[PointReference]) -> Self {
-        let gather = |number: &dyn Fn(&PointReference) -> f64| -> Four {
-            std::array::from_fn(|lane| number(&points[lane.min(points.len() - 1)]))
-        };
-        let stiffness = |number: &dyn Fn(&PointReference) -> f64| -> Four {
-            std::array::from_fn(|lane| points.get(lane).map_or(0.0, number))
-        };
+        let gather = |number: &dyn Fn(&PointReference) -> f64| lanes_of(points, number);
+        let stiffness = |number: &dyn Fn(&PointReference) -> f64| stiffness_of(points, number);
         let doubled = |i: usize| if i == 2 { 2.0 } else { 1.0 };
         let matrix = |number: &dyn Fn(&PointReference, usize, usize) -> f64| -> [[Four; 3]; 3] {
             std::array::from_fn(|i| std::array::from_fn(|j| stiffness(&|point| number(point, i, j))))
@@ -61,38 +75,6 @@ impl PointBatch {
                 .any(|point| point.coupled)
                 .then(|| Box::new(matrix(&|point, i, j| doubled(j) * point.coupling[i][j]))),
         }
-    }
-
-    /// Energies for derivatives u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂ of the displacement.
-    #[inline(always)]
-    pub(crate) fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 5]) -> V {
-        let deformed = self.deform(proof, u);
-        self.resultants(proof, &deformed).energy
-    }
-
-    /// Energies, and their gradients.
-    #[inline(always)]
-    pub(crate) fn gradient<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 5], gradient: &mut BatchGradient) -> V {
-        let deformed = self.deform(proof, u);
-        let resultants = self.resultants(proof, &deformed);
-        gradient_of(proof, &deformed, &resultants, gradient);
-        resultants.energy
-    }
-
-    /// Energies, gradients and Hessians.
-    #[inline(always)]
-    pub(crate) fn hessian<V: FourLanes>(
-        &self,
-        proof: V::Proof,
-        u: &[[V; 3]; 5],
-        gradient: &mut BatchGradient,
-        hessian: &mut BatchHessian,
-    ) -> V {
-        let deformed = self.deform(proof, u);
-        let resultants = self.resultants(proof, &deformed);
-        gradient_of(proof, &deformed, &resultants, gradient);
-        self.hessian_of(proof, &deformed, &resultants, hessian);
-        resultants.energy
     }
 
     #[inline(always)]
@@ -164,7 +146,7 @@ impl PointBatch {
         proof: V::Proof,
         d: &Deformed<V>,
         r: &Resultants<V>,
-        hessian: &mut BatchHessian,
+        hessian: &mut BatchHessian<15>,
     ) {
         let zero = V::splat(proof, 0.0);
         let [a1, a2, ..] = d.a;
@@ -258,9 +240,55 @@ impl PointBatch {
     }
 }
 
+impl PointKernel<5, 15> for PointBatch {
+    #[inline(always)]
+    fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 5]) -> V {
+        let deformed = self.deform(proof, u);
+        self.resultants(proof, &deformed).energy
+    }
+
+    #[inline(always)]
+    fn gradient<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 5], gradient: &mut BatchGradient<5>) -> V {
+        let deformed = self.deform(proof, u);
+        let resultants = self.resultants(proof, &deformed);
+        gradient_of(proof, &deformed, &resultants, gradient);
+        resultants.energy
+    }
+
+    #[inline(always)]
+    fn hessian<V: FourLanes>(
+        &self,
+        proof: V::Proof,
+        u: &[[V; 3]; 5],
+        gradient: &mut BatchGradient<5>,
+        hessian: &mut BatchHessian<15>,
+    ) -> V {
+        let deformed = self.deform(proof, u);
+        let resultants = self.resultants(proof, &deformed);
+        gradient_of(proof, &deformed, &resultants, gradient);
+        self.hessian_of(proof, &deformed, &resultants, hessian);
+        resultants.energy
+    }
+}
+
+/// A number of each point; the last stands for those that are missing.
+pub(super) fn lanes_of(points: &[PointReference], number: impl Fn(&PointReference) -> f64) -> Four {
+    std::array::from_fn(|lane| number(&points[lane.min(points.len() - 1)]))
+}
+
+/// A stiffness of each point; those that are missing have none.
+pub(super) fn stiffness_of(points: &[PointReference], number: impl Fn(&PointReference) -> f64) -> Four {
+    std::array::from_fn(|lane| points.get(lane).map_or(0.0, &number))
+}
+
 /// a_i·a_j − A_i·A_j.
 #[inline(always)]
-fn stretch<V: FourLanes>(reference: &[[V; 3]; 5], u: &[[V; 3]; 5], i: usize, j: usize) -> V {
+pub(super) fn stretch<V: FourLanes, const ROWS: usize>(
+    reference: &[[V; 3]; ROWS],
+    u: &[[V; 3]; ROWS],
+    i: usize,
+    j: usize,
+) -> V {
     dot(reference[i], u[j]) + dot(u[i], reference[j]) + dot(u[i], u[j])
 }
 
@@ -298,7 +326,7 @@ struct Resultants<V> {
 }
 
 #[inline(always)]
-fn gradient_of<V: FourLanes>(proof: V::Proof, d: &Deformed<V>, r: &Resultants<V>, gradient: &mut BatchGradient) {
+fn gradient_of<V: FourLanes>(proof: V::Proof, d: &Deformed<V>, r: &Resultants<V>, gradient: &mut BatchGradient<5>) {
     let [a1, a2, ..] = d.a;
     let [f11, f22, f12] = r.forces;
     store3(sub(add(scaled(f11, a1), scaled(f12, a2)), cross(a2, r.tilt)), &mut gradient[0]);
@@ -316,7 +344,7 @@ fn add_coupling<V: FourLanes>(
     d: &Deformed<V>,
     coupling: &[[Four; 3]; 3],
     x: &[[[V; 3]; 3]; 2],
-    hessian: &mut BatchHessian,
+    hessian: &mut BatchHessian<15>,
 ) {
     let zero = V::splat(proof, 0.0);
     let [a1, a2, ..] = d.a;
@@ -341,7 +369,7 @@ fn add_coupling<V: FourLanes>(
 
 /// Adds a block and its mirror image.
 #[inline(always)]
-fn add_both<V: FourLanes>(proof: V::Proof, hessian: &mut BatchHessian, k: usize, l: usize, block: &[[V; 3]; 3]) {
+fn add_both<V: FourLanes>(proof: V::Proof, hessian: &mut BatchHessian<15>, k: usize, l: usize, block: &[[V; 3]; 3]) {
     for c in 0..3 {
         for d in 0..3 {
             for [row, column] in [[3 * k + c, 3 * l + d], [3 * l + d, 3 * k + c]] {
@@ -354,7 +382,12 @@ fn add_both<V: FourLanes>(proof: V::Proof, hessian: &mut BatchHessian, k: usize,
 
 /// Stores a block and its mirror image.
 #[inline(always)]
-fn put<V: FourLanes>(hessian: &mut BatchHessian, k: usize, l: usize, block: &[[V; 3]; 3]) {
+pub(super) fn put<V: FourLanes, const SIZE: usize>(
+    hessian: &mut BatchHessian<SIZE>,
+    k: usize,
+    l: usize,
+    block: &[[V; 3]; 3],
+) {
     for c in 0..3 {
         for d in 0..3 {
             block[c][d].store(&mut hessian[3 * k + c][3 * l + d]);
@@ -366,12 +399,12 @@ fn put<V: FourLanes>(hessian: &mut BatchHessian, k: usize, l: usize, block: &[[V
 }
 
 #[inline(always)]
-fn load3<V: FourLanes>(proof: V::Proof, from: &[Four; 3]) -> [V; 3] {
+pub(super) fn load3<V: FourLanes>(proof: V::Proof, from: &[Four; 3]) -> [V; 3] {
     [V::load(proof, &from[0]), V::load(proof, &from[1]), V::load(proof, &from[2])]
 }
 
 #[inline(always)]
-fn store3<V: FourLanes>(x: [V; 3], to: &mut [Four; 3]) {
+pub(super) fn store3<V: FourLanes>(x: [V; 3], to: &mut [Four; 3]) {
     for c in 0..3 {
         x[c].store(&mut to[c]);
     }

@@ -108,8 +108,8 @@ fn too_few_points_would_show() {
     let mut poor = Discretization::new(&scene, &mesh).unwrap();
     // All points of the elements next to one edge lose their stiffness, as if none were there.
     let elements = poor.tables.elements[1];
-    let lost: usize = (0..elements).map(|element| poor.tables.element_points(element).len()).sum();
-    poor.tables.functions[..lost * 5 * poor.tables.padded].fill(0.0);
+    let lost: usize = (0..elements).map(|element| poor.tables.points.element_points(element).len()).sum();
+    poor.tables.points.functions[..lost * 5 * poor.tables.padded].fill(0.0);
     let mut assembled = Assembled::new(&poor);
     assembled.assemble(&poor, &still, Want::Stiffness);
     let mut corner = still.clone();

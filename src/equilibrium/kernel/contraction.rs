@@ -4,13 +4,13 @@
 //! Loops over arrays, not `map`: a closure is a function of its own without the vector instructions, and where it is not
 //! inlined its vectors go through memory (the residual took twice as long).
 
-use super::{BLOCK, HALF_LEN};
+use super::BLOCK;
 use crate::model::BATCH;
 use crate::shell::lanes::Lanes;
 use crate::shell::{BatchGradient, BatchHessian};
 
-/// A block of points, which adds to the sums of an element.
-pub(super) struct Block<'a, W: Lanes> {
+/// A block of points, which adds to the sums of an element; `ROWS` derivatives of the functions at each.
+pub(super) struct Block<'a, W: Lanes, const ROWS: usize> {
     /// For the vectors.
     pub proof: W::Proof,
     /// Functions at the points of the block.
@@ -23,31 +23,35 @@ pub(super) struct Block<'a, W: Lanes> {
     pub first: bool,
 }
 
-impl<W: Lanes> Block<'_, W> {
+impl<W: Lanes, const ROWS: usize> Block<'_, W, ROWS> {
     /// Whole vectors in a table row.
     #[inline(always)]
     fn stride(&self) -> usize {
         self.padded / W::WIDTH
     }
 
-    /// Functions at each point: five rows of `padded`.
+    /// Functions at each point: `ROWS` rows of `padded`.
     #[inline(always)]
     fn points(&self) -> std::slice::ChunksExact<'_, f64> {
-        self.functions.chunks_exact(5 * self.padded)
+        self.functions.chunks_exact(ROWS * self.padded)
     }
 }
 
 /// Adds Σ F g over the points of a block.
 #[inline(always)]
-pub(super) fn add_residual<W: Lanes>(block: &Block<W>, gradients: &[BatchGradient; BLOCK], residual: &mut [f64]) {
+pub(super) fn add_residual<W: Lanes, const ROWS: usize>(
+    block: &Block<W, ROWS>,
+    gradients: &[BatchGradient<ROWS>; BLOCK],
+    residual: &mut [f64],
+) {
     let vectors = block.used.div_ceil(W::WIDTH);
     let mut m = 0;
     while m < vectors {
         match vectors - m {
-            1 => residual_tile::<W, 1>(block, m, gradients, residual),
-            2 => residual_tile::<W, 2>(block, m, gradients, residual),
-            3 => residual_tile::<W, 3>(block, m, gradients, residual),
-            _ => residual_tile::<W, 4>(block, m, gradients, residual),
+            1 => residual_tile::<W, ROWS, 1>(block, m, gradients, residual),
+            2 => residual_tile::<W, ROWS, 2>(block, m, gradients, residual),
+            3 => residual_tile::<W, ROWS, 3>(block, m, gradients, residual),
+            _ => residual_tile::<W, ROWS, 4>(block, m, gradients, residual),
         }
         m += 4;
     }
@@ -55,10 +59,10 @@ pub(super) fn add_residual<W: Lanes>(block: &Block<W>, gradients: &[BatchGradien
 
 /// `WIDTH` vectors of functions from vector `m` on.
 #[inline(always)]
-fn residual_tile<W: Lanes, const WIDTH: usize>(
-    block: &Block<W>,
+fn residual_tile<W: Lanes, const ROWS: usize, const WIDTH: usize>(
+    block: &Block<W, ROWS>,
     m: usize,
-    gradients: &[BatchGradient; BLOCK],
+    gradients: &[BatchGradient<ROWS>; BLOCK],
     residual: &mut [f64],
 ) {
     let (proof, stride) = (block.proof, block.stride());
@@ -74,7 +78,7 @@ fn residual_tile<W: Lanes, const WIDTH: usize>(
     }
     for (q, rows) in block.points().enumerate() {
         let gradient = &gradients[q / BATCH];
-        for k in 0..5 {
+        for k in 0..ROWS {
             let from = &W::chunks(rows)[k * stride + m..][..WIDTH];
             let mut g = [W::splat(proof, 0.0); 3];
             for c in 0..3 {
@@ -98,10 +102,10 @@ fn residual_tile<W: Lanes, const WIDTH: usize>(
 
 /// Adds Σ Fᵀ H F over the points of a block.
 #[inline(always)]
-pub(super) fn contract<W: Lanes>(
-    block: &Block<W>,
-    hessians: &[BatchHessian],
-    half: &mut [[W::Array; HALF_LEN]],
+pub(super) fn contract<W: Lanes, const ROWS: usize, const SIZE: usize>(
+    block: &Block<W, ROWS>,
+    hessians: &[BatchHessian<SIZE>],
+    half: &mut [[W::Array; SIZE]],
     stiffness: &mut [f64],
 ) {
     for c in 0..3 {
@@ -112,10 +116,10 @@ pub(super) fn contract<W: Lanes>(
             let mut b = group * W::WIDTH;
             while b < block.used {
                 match block.used - b {
-                    1 => stiffness_tile::<W, 1>(block, half, [group, c, b], stiffness),
-                    2 => stiffness_tile::<W, 2>(block, half, [group, c, b], stiffness),
-                    3 => stiffness_tile::<W, 3>(block, half, [group, c, b], stiffness),
-                    _ => stiffness_tile::<W, 4>(block, half, [group, c, b], stiffness),
+                    1 => stiffness_tile::<W, ROWS, SIZE, 1>(block, half, [group, c, b], stiffness),
+                    2 => stiffness_tile::<W, ROWS, SIZE, 2>(block, half, [group, c, b], stiffness),
+                    3 => stiffness_tile::<W, ROWS, SIZE, 3>(block, half, [group, c, b], stiffness),
+                    _ => stiffness_tile::<W, ROWS, SIZE, 4>(block, half, [group, c, b], stiffness),
                 }
                 b += 4;
             }
@@ -125,9 +129,9 @@ pub(super) fn contract<W: Lanes>(
 
 /// Rows (b, d) for `WIDTH` functions from b on, columns (a, c) for the functions of a vector.
 #[inline(always)]
-fn stiffness_tile<W: Lanes, const WIDTH: usize>(
-    block: &Block<W>,
-    half: &[[W::Array; HALF_LEN]],
+fn stiffness_tile<W: Lanes, const ROWS: usize, const SIZE: usize, const WIDTH: usize>(
+    block: &Block<W, ROWS>,
+    half: &[[W::Array; SIZE]],
     [group, c, b]: [usize; 3],
     stiffness: &mut [f64],
 ) {
@@ -143,7 +147,7 @@ fn stiffness_tile<W: Lanes, const WIDTH: usize>(
         }
     }
     for (rows, half) in block.points().zip(half) {
-        for l in 0..5 {
+        for l in 0..ROWS {
             let mut p = [W::splat(proof, 0.0); 3];
             for d in 0..3 {
                 p[d] = W::load(proof, &half[3 * l + d]);
@@ -166,21 +170,21 @@ fn stiffness_tile<W: Lanes, const WIDTH: usize>(
 
 /// P of the functions of a vector, component c and a lane of the Hessians.
 #[inline(always)]
-fn half_product<W: Lanes>(
-    block: &Block<W>,
+fn half_product<W: Lanes, const ROWS: usize, const SIZE: usize>(
+    block: &Block<W, ROWS>,
     functions: &[W::Array],
     group: usize,
-    hessian: &BatchHessian,
+    hessian: &BatchHessian<SIZE>,
     [c, lane]: [usize; 2],
-    half: &mut [W::Array; HALF_LEN],
+    half: &mut [W::Array; SIZE],
 ) {
-    let mut f = [W::splat(block.proof, 0.0); 5];
-    for k in 0..5 {
+    let mut f = [W::splat(block.proof, 0.0); ROWS];
+    for k in 0..ROWS {
         f[k] = W::load(block.proof, &functions[k * block.stride() + group]);
     }
-    for column in 0..HALF_LEN {
+    for column in 0..SIZE {
         let mut sum = f[0] * W::splat(block.proof, hessian[c][column][lane]);
-        for k in 1..5 {
+        for k in 1..ROWS {
             sum = f[k].mul_add(W::splat(block.proof, hessian[3 * k + c][column][lane]), sum);
         }
         sum.store(&mut half[column]);

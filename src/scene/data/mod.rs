@@ -70,11 +70,19 @@ pub struct MeshSpec {
 pub enum Quadrature {
     /// Gauss–Legendre with degree + 1 points each way.
     Full,
+    /// Gauss–Legendre with degree + 2 points each way.
+    #[serde(rename = "full+1")]
+    FullPlusOne,
+    /// Gauss–Legendre with degree + 3 points each way.
+    #[serde(rename = "full+2")]
+    FullPlusTwo,
     /// Gauss–Legendre with degree points each way; degree + 1 in a direction that has one element.
     Reduced,
     /// Gauss–Legendre with degree − 1 points (at least 2) where the spline is smooth, degree next to edges and repeated
     /// knots; degree + 1 in a direction that has one element.
     Patch,
+    /// As `Patch`, with as many points more for stretching as leave constant membrane forces in balance on the mesh in hand.
+    Balanced,
 }
 
 impl Quadrature {
@@ -82,8 +90,11 @@ impl Quadrature {
     pub fn name(self) -> &'static str {
         match self {
             Quadrature::Full => "full",
+            Quadrature::FullPlusOne => "full+1",
+            Quadrature::FullPlusTwo => "full+2",
             Quadrature::Reduced => "reduced",
             Quadrature::Patch => "patch",
+            Quadrature::Balanced => "balanced",
         }
     }
 }

@@ -1,0 +1,111 @@
+//! How many Gauss points each element has, each way: for bending, and for stretching where that needs more.
+//!
+//! Reduced integration that knows where splines are smooth (Adam, Hughes, Bouabdallah, Zarroug & Maitournam 2015, *Selective
+//! and reduced numerical integrations for NURBS-based isogeometric analysis*) takes p − 1 points where a spline is C^(p−1)
+//! across both ends of an element, and p next to the ends of the patch and to knots of higher multiplicity ([`patch`]). The
+//! counts are empirical, held by eigenvalues (`tests/verification/quadrature.rs`): with p points each way a single element has
+//! a field without energy beside the rigid motions, in every degree, and degree 2 with one point inside is four times too
+//! soft on graded meshes.
+//!
+//! Bending is content with them. Membrane forces are not: see [`crate::model::imbalance`]. So [`Quadrature::Balanced`] takes
+//! the cheapest rule for stretching, each way on its own, that leaves constant membrane forces in balance on the mesh in
+//! hand. Where stretching and bending act on each other (layers that are not symmetric) both have its points.
+
+use crate::model::imbalance::imbalance;
+use crate::scene::{Quadrature, Scene};
+use crate::shell::{ShellStiffness, shell_stiffness};
+use crate::spline::{Mesh, Spans};
+
+/// Imbalance that stretching may be left with: the error of a displacement, relative to that of the membrane alone.
+///
+/// What it bounds was measured on tubes under pressure, R/t from 30 to 3000, degrees 2 to 5, 4 to 64 elements a quarter turn,
+/// uniform and graded by 1 : 2 (`tests/verification/balance.rs`).
+const MOST_IMBALANCE: f64 = 5e-3;
+/// Points beyond the degree that [`Quadrature::Balanced`] goes up to.
+const MOST_MORE: usize = 3;
+
+/// Gauss points of each element, `[direction][element]`.
+pub(super) type Counts = [Vec<usize>; 2];
+
+/// The points of a mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct PointCounts {
+    /// For bending, and for stretching where `stretching` has none of its own.
+    pub bending: Counts,
+    /// For stretching alone.
+    pub stretching: Option<Counts>,
+}
+
+impl PointCounts {
+    /// Points on the elements of `mesh` for the scene's rule.
+    pub fn of(scene: &Scene, mesh: &Mesh) -> Self {
+        let both = |count: &dyn Fn(usize) -> Vec<usize>| [count(0), count(1)];
+        let common = |bending: Counts| Self { bending, stretching: None };
+        match scene.mesh.quadrature {
+            Quadrature::Full => common(both(&|k| everywhere(mesh, k, mesh.degree[k] + 1))),
+            Quadrature::FullPlusOne => common(both(&|k| everywhere(mesh, k, mesh.degree[k] + 2))),
+            Quadrature::FullPlusTwo => common(both(&|k| everywhere(mesh, k, mesh.degree[k] + 3))),
+            Quadrature::Reduced => common(both(&|k| reduced(mesh, k))),
+            Quadrature::Patch => common(both(&|k| patch(mesh, k))),
+            Quadrature::Balanced => {
+                let stiffness = shell_stiffness(&scene.material, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+                let ratio = stretching_over_bending(&stiffness);
+                let bending = both(&|k| patch(mesh, k));
+                let stretching = both(&|k| balanced(mesh, k, &bending[k], ratio));
+                match stretching == bending {
+                    true => common(bending),
+                    false if stiffness.coupling.is_some() => common(stretching),
+                    false => Self { bending, stretching: Some(stretching) },
+                }
+            }
+        }
+    }
+
+    /// The larger of both counts.
+    pub fn most(&self) -> &Counts {
+        self.stretching.as_ref().unwrap_or(&self.bending)
+    }
+}
+
+fn everywhere(mesh: &Mesh, direction: usize, count: usize) -> Vec<usize> {
+    vec![count; mesh.element_counts()[direction]]
+}
+
+/// Degree points; degree + 1 on a single element.
+fn reduced(mesh: &Mesh, direction: usize) -> Vec<usize> {
+    let single = usize::from(mesh.element_counts()[direction] == 1);
+    everywhere(mesh, direction, mesh.degree[direction] + single)
+}
+
+/// Degree − 1 points (at least 2) where the spline is smooth, degree next to the ends and to repeated knots; degree + 1 on a
+/// single element.
+fn patch(mesh: &Mesh, direction: usize) -> Vec<usize> {
+    let (degree, knots) = (mesh.degree[direction], &mesh.knots[direction]);
+    let bounds = Spans::of(knots, degree).bounds;
+    let is_smooth = |knot: f64| {
+        let first = knots.partition_point(|other| *other < knot);
+        knots.get(first + 1).is_some_and(|next| *next > knot)
+    };
+    let count = |[from, to]: &[f64; 2]| match bounds.len() {
+        1 => degree + 1,
+        _ if is_smooth(*from) && is_smooth(*to) => (degree - 1).max(2),
+        _ => degree,
+    };
+    bounds.iter().map(count).collect()
+}
+
+/// The cheapest of `least` and degree, degree + 1, … points that leaves constant membrane forces in balance.
+fn balanced(mesh: &Mesh, direction: usize, least: &[usize], stretching_over_bending: f64) -> Vec<usize> {
+    let degree = mesh.degree[direction];
+    let at_least = |count: usize| -> Vec<usize> { least.iter().map(|least| count.max(*least)).collect() };
+    let candidates = std::iter::once(least.to_vec()).chain((0..MOST_MORE).map(|more| at_least(degree + more)));
+    let mut candidates = candidates.filter(|counts| imbalance(mesh, direction, counts, stretching_over_bending) <= MOST_IMBALANCE);
+    candidates.next().unwrap_or_else(|| at_least(degree + MOST_MORE))
+}
+
+/// The larger stiffness against stretching, along the surface's axes, over the smaller against bending, 1/mm²; 12/t² where
+/// the shell is isotropic.
+fn stretching_over_bending(stiffness: &ShellStiffness) -> f64 {
+    let ShellStiffness { membrane, bending, .. } = stiffness;
+    membrane[0][0].max(membrane[1][1]) / bending[0][0].min(bending[1][1])
+}

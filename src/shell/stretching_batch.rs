@@ -1,0 +1,140 @@
+//! Energy of stretching alone, of four points at once, with gradient and Hessian with respect to a₁ and a₂: the membrane part
+//! of [`super::PointBatch`], for the points that only stretching has.
+//!
+//! With f the membrane forces and C their stiffness: ∂w/∂a_α = f^{αβ} a_β and H_αβ = f^{αβ} I + Σ C^{αγβδ} a_γ a_δᵀ.
+
+use super::lane_vector::{accumulate, add, dot, outer, scaled};
+use super::lanes::FourLanes;
+use super::point::PointReference;
+use super::point_batch::{Four, PointKernel, lanes_of, load3, put, stiffness_of, store3, stretch};
+
+/// The undeformed shell at four quadrature points; where fewer are left, the last stands for the rest, without
+/// stiffness.
+#[derive(Clone, Debug)]
+pub struct StretchingBatch {
+    tangents: [[Four; 3]; 2],
+    membrane: [[Four; 3]; 3],
+}
+
+impl StretchingBatch {
+    /// One to four points.
+    pub fn new(points: &[PointReference]) -> Self {
+        Self {
+            tangents: std::array::from_fn(|k| {
+                std::array::from_fn(|c| lanes_of(points, |point| point.derivatives[k][c]))
+            }),
+            membrane: std::array::from_fn(|i| {
+                std::array::from_fn(|j| stiffness_of(points, |point| point.membrane[i][j]))
+            }),
+        }
+    }
+
+    #[inline(always)]
+    fn deform<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 2]) -> Stretched<V> {
+        let reference = [load3(proof, &self.tangents[0]), load3(proof, &self.tangents[1])];
+        let half = V::splat(proof, 0.5);
+        let strains = [
+            half * stretch(&reference, u, 0, 0),
+            half * stretch(&reference, u, 1, 1),
+            stretch(&reference, u, 0, 1),
+        ];
+        let mut forces = strains;
+        for i in 0..3 {
+            forces[i] = dot(load3(proof, &self.membrane[i]), strains);
+        }
+        let tangents = [add(reference[0], u[0]), add(reference[1], u[1])];
+        Stretched { tangents, forces, energy: half * dot(forces, strains) }
+    }
+}
+
+/// The deformed points.
+struct Stretched<V> {
+    /// a₁, a₂.
+    tangents: [[V; 3]; 2],
+    /// Derivatives of the energy by ε₁₁, ε₂₂, 2ε₁₂.
+    forces: [V; 3],
+    energy: V,
+}
+
+impl<V: FourLanes> Stretched<V> {
+    #[inline(always)]
+    fn store_gradient(&self, gradient: &mut [[Four; 3]; 2]) {
+        let ([a1, a2], [f11, f22, f12]) = (self.tangents, self.forces);
+        store3(add(scaled(f11, a1), scaled(f12, a2)), &mut gradient[0]);
+        store3(add(scaled(f22, a2), scaled(f12, a1)), &mut gradient[1]);
+    }
+}
+
+impl PointKernel<2, 6> for StretchingBatch {
+    #[inline(always)]
+    fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 2]) -> V {
+        self.deform(proof, u).energy
+    }
+
+    #[inline(always)]
+    fn gradient<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 2], gradient: &mut [[Four; 3]; 2]) -> V {
+        let stretched = self.deform(proof, u);
+        stretched.store_gradient(gradient);
+        stretched.energy
+    }
+
+    #[inline(always)]
+    fn hessian<V: FourLanes>(
+        &self,
+        proof: V::Proof,
+        u: &[[V; 3]; 2],
+        gradient: &mut [[Four; 3]; 2],
+        hessian: &mut [[Four; 6]; 6],
+    ) -> V {
+        let stretched = self.deform(proof, u);
+        stretched.store_gradient(gradient);
+        let ([a1, a2], [f11, f22, f12]) = (stretched.tangents, stretched.forces);
+        let c = [load3(proof, &self.membrane[0]), load3(proof, &self.membrane[1]), load3(proof, &self.membrane[2])];
+        let blocks = [
+            (0, 0, add(scaled(c[0][0], a1), scaled(c[0][2], a2)), add(scaled(c[0][2], a1), scaled(c[2][2], a2)), f11),
+            (0, 1, add(scaled(c[0][1], a2), scaled(c[0][2], a1)), add(scaled(c[1][2], a2), scaled(c[2][2], a1)), f12),
+            (1, 1, add(scaled(c[1][2], a2), scaled(c[2][2], a1)), add(scaled(c[1][1], a2), scaled(c[1][2], a1)), f22),
+        ];
+        for (alpha, beta, with_a1, with_a2, force) in blocks {
+            let mut block = outer(a1, with_a1);
+            accumulate(&mut block, a2, with_a2);
+            for e in 0..3 {
+                block[e][e] = block[e][e] + force;
+            }
+            put(hessian, alpha, beta, &block);
+        }
+        stretched.energy
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shell::Hessian;
+    use crate::shell::lanes::{Lanes, Portable};
+    use crate::shell::point::tests::{laminate, sample_of};
+
+    /// Three points against the slow way, whose bending is taken away.
+    #[test]
+    fn a_batch_is_the_stretching_of_its_points() {
+        let (whole, u) = sample_of(&laminate());
+        let point = whole.stretching_alone();
+        let batch = StretchingBatch::new(&[point; 3]);
+        let mut hessian: Hessian = [[0.0; 16]; 15];
+        let (energy, gradient) = point.hessian(&u, &mut hessian);
+        let lanes = [0, 1].map(|k| u[k].map(|value| Portable::splat((), value)));
+        let (mut found_gradient, mut found) = ([[[0.0; 4]; 3]; 2], [[[0.0; 4]; 6]; 6]);
+        let mut energies = [0.0; 4];
+        batch.hessian((), &lanes, &mut found_gradient, &mut found).store(&mut energies);
+        for lane in 0..3 {
+            assert!((energies[lane] / energy - 1.0).abs() < 1e-13);
+            for i in 0..6 {
+                assert!((found_gradient[i / 3][i % 3][lane] - gradient[i / 3][i % 3]).abs() < 1e-12 * energy);
+                for j in 0..6 {
+                    assert!((found[i][j][lane] - hessian[i][j]).abs() < 1e-12 * energy, "{i} {j}");
+                }
+            }
+        }
+        assert_eq!(energies[3], 0.0);
+    }
+}
