@@ -81,9 +81,10 @@ impl<'a> Section<'a> {
         let positions: Vec<[f64; 3]> = self.line.iter().map(|[x, y, z, w]| [x / w, y / w, z / w]).collect();
         let size = half_diagonal(&positions);
         let moment = |found: &Pulls, exact: &Pulls| {
-            let errors = found.iter().zip(exact).map(|(found, exact)| {
-                found.iter().zip(exact).map(|(f, e)| sub(*f, *e)).collect::<Vec<[f64; 3]>>()
-            });
+            let errors = found
+                .iter()
+                .zip(exact)
+                .map(|(found, exact)| found.iter().zip(exact).map(|(f, e)| sub(*f, *e)).collect::<Vec<[f64; 3]>>());
             errors.map(|forces| largest_moment(&positions, &forces)).fold(0.0, f64::max)
         };
         let moments = moment(&found_along, &along) + moment(&found_across, &across) / size;
@@ -102,7 +103,14 @@ impl<'a> Section<'a> {
                 let half = 0.5 * (to - from);
                 basis_derivatives(self.knots, self.degree, *span, from + half * (1.0 + node), &mut basis);
                 let (values, slopes) = basis.split_at(self.degree + 1);
-                self.add_point(span - self.degree, values, &slopes[..=self.degree], half * weight, &mut along, &mut across);
+                self.add_point(
+                    span - self.degree,
+                    values,
+                    &slopes[..=self.degree],
+                    half * weight,
+                    &mut along,
+                    &mut across,
+                );
             }
         }
         (along, across)

@@ -25,8 +25,8 @@ pub use reactions::{Exerted, PointForces};
 pub(crate) use rigid_motion::free_motion;
 pub use supports::Supports;
 pub(crate) use supports::control_expressions;
-pub use tables::{PointTable, Tables};
 pub(crate) use tables::{BATCH, LANES};
+pub use tables::{PointTable, Tables};
 pub use unknowns::{Entry, Unknowns};
 
 use std::sync::Arc;

@@ -99,7 +99,8 @@ fn balanced(mesh: &Mesh, direction: usize, least: &[usize], stretching_over_bend
     let degree = mesh.degree[direction];
     let at_least = |count: usize| -> Vec<usize> { least.iter().map(|least| count.max(*least)).collect() };
     let candidates = std::iter::once(least.to_vec()).chain((0..MOST_MORE).map(|more| at_least(degree + more)));
-    let mut candidates = candidates.filter(|counts| imbalance(mesh, direction, counts, stretching_over_bending) <= MOST_IMBALANCE);
+    let mut candidates =
+        candidates.filter(|counts| imbalance(mesh, direction, counts, stretching_over_bending) <= MOST_IMBALANCE);
     candidates.next().unwrap_or_else(|| at_least(degree + MOST_MORE))
 }
 

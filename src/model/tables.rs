@@ -90,7 +90,8 @@ impl<Batch, const ROWS: usize> PointTable<Batch, ROWS> {
                 (references, batches, made)
             })
             .collect();
-        let mut table = Self { point_start, batch_start, padded, functions, references: Vec::new(), batches: Vec::new() };
+        let mut table =
+            Self { point_start, batch_start, padded, functions, references: Vec::new(), batches: Vec::new() };
         let mut all_made = Vec::with_capacity(count);
         for (references, batches, made) in built {
             table.references.extend(references);

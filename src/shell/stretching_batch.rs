@@ -33,11 +33,8 @@ impl StretchingBatch {
     fn deform<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 2]) -> Stretched<V> {
         let reference = [load3(proof, &self.tangents[0]), load3(proof, &self.tangents[1])];
         let half = V::splat(proof, 0.5);
-        let strains = [
-            half * stretch(&reference, u, 0, 0),
-            half * stretch(&reference, u, 1, 1),
-            stretch(&reference, u, 0, 1),
-        ];
+        let strains =
+            [half * stretch(&reference, u, 0, 0), half * stretch(&reference, u, 1, 1), stretch(&reference, u, 0, 1)];
         let mut forces = strains;
         for i in 0..3 {
             forces[i] = dot(load3(proof, &self.membrane[i]), strains);

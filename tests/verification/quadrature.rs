@@ -11,6 +11,10 @@ use nalgebra::DMatrix;
 
 /// A short panel, so thick that bending and stretching are not far apart: what has no energy stands out.
 fn panel(degree: usize, elements: [usize; 2], quadrature: Quadrature) -> Scene {
+    panel_of(1.0, degree, elements, quadrature)
+}
+
+fn panel_of(thickness: f64, degree: usize, elements: [usize; 2], quadrature: Quadrature) -> Scene {
     let text = format!(
         r#"
         [geometry]
@@ -22,7 +26,7 @@ fn panel(degree: usize, elements: [usize; 2], quadrature: Quadrature) -> Scene {
         kind = "isotropic"
         youngs_modulus_mpa = 1.0
         poissons_ratio = 0.3
-        thickness_mm = 1.0
+        thickness_mm = {thickness:?}
         [mesh]
         degree = [{degree}, {degree}]
         elements = [{}, {}]
@@ -68,11 +72,22 @@ fn eigenvalues(scene: &Scene, mesh: &Arc<Mesh>, displacement: &[[f64; 3]]) -> Ve
 
 /// Six eigenvalues vanish, and the seventh is that of full quadrature but for its error.
 fn check(degree: usize, quadrature: Quadrature, mesh: &Arc<Mesh>, what: &str) {
+    check_against(Quadrature::Full, 1.0, degree, quadrature, mesh, what);
+}
+
+fn check_against(
+    reference: Quadrature,
+    thickness: f64,
+    degree: usize,
+    quadrature: Quadrature,
+    mesh: &Arc<Mesh>,
+    what: &str,
+) {
     let still = vec![[0.0; 3]; mesh.control_points.len()];
-    let values = |quadrature| eigenvalues(&panel(degree, [1, 1], quadrature), mesh, &still);
-    let (found, full) = (values(quadrature), values(Quadrature::Full));
+    let values = |quadrature| eigenvalues(&panel_of(thickness, degree, [1, 1], quadrature), mesh, &still);
+    let (found, full) = (values(quadrature), values(reference));
     let rounding = 1e-12 * full[full.len() - 1];
-    let what = format!("degree {degree}, {}, {what}", quadrature.name());
+    let what = format!("degree {degree}, {}, thickness {thickness}, {what}", quadrature.name());
     assert!(found[0] > -rounding && found[5] < rounding, "{what}: six rigid motions, {:?}", &found[..7]);
     assert!(found[6] > 0.5 * full[6], "{what}: {:e} where full quadrature has {:e}", found[6], full[6]);
 }
@@ -95,6 +110,42 @@ fn no_field_but_rigid_motions_is_without_energy() {
             let refined =
                 mesh.with_knots(&[vec![0.5], vec![0.25, 0.5, 0.75]]).with_knots(&[vec![0.75, 0.875], vec![0.125]]);
             check(degree, quadrature, &Arc::new(refined), "refined twice");
+        }
+    }
+}
+
+/// The default against degree + 3 points: on patches of all small sizes and on strips, thick, where its points are few, and
+/// thin, where they are many.
+#[test]
+fn the_default_is_nowhere_half_as_stiff() {
+    let quadrature = Quadrature::Balanced;
+    for degree in 2..=5 {
+        for thickness in [1.0, 0.1] {
+            let check = |mesh: Mesh, what: &str| {
+                check_against(Quadrature::FullPlusTwo, thickness, degree, quadrature, &Arc::new(mesh), what);
+            };
+            for elements in [[1, 1], [1, 2], [2, 2], [3, 2], [8, 1], [1, 8], [4, 4]] {
+                let mesh = starting_mesh(&panel(degree, elements, quadrature)).unwrap();
+                check(mesh, &format!("{elements:?} elements"));
+            }
+            let single = starting_mesh(&panel(degree, [1, 1], quadrature)).unwrap();
+            check(single.with_knots(&[vec![], vec![0.4, 0.6, 0.7]]), "graded strip");
+            check(single.with_knots(&[vec![0.5, 0.75, 0.9], vec![0.4, 0.6, 0.7]]), "graded");
+            check(single.with_knots(&[vec![0.5], vec![0.5; degree - 1]]), "repeated knot");
+        }
+    }
+}
+
+#[test]
+#[ignore = "minutes"]
+fn the_default_is_nowhere_half_as_stiff_on_any_small_patch() {
+    for degree in 2..=5 {
+        for thickness in [1.0, 0.1] {
+            for elements in (1..=8).flat_map(|u| (1..=8).map(move |v| [u, v])) {
+                let mesh = Arc::new(starting_mesh(&panel(degree, elements, Quadrature::Balanced)).unwrap());
+                let what = format!("{elements:?} elements");
+                check_against(Quadrature::FullPlusTwo, thickness, degree, Quadrature::Balanced, &mesh, &what);
+            }
         }
     }
 }
