@@ -1,7 +1,7 @@
 //! Physics against closed forms, published tables, independent solvers and finite differences.
 
 mod assembly;
-mod balance;
+
 mod baseline;
 mod benchmarks;
 mod buckling;
@@ -9,6 +9,7 @@ mod extreme;
 mod house;
 mod path;
 mod quadrature;
+mod quadrature_balance;
 mod reactions;
 mod refinement;
 mod roofs;
