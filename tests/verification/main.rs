@@ -1,5 +1,6 @@
 //! Physics against closed forms, published tables, independent solvers and finite differences.
 
+mod actions;
 mod assembly;
 mod baseline;
 mod benchmarks;
