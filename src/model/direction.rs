@@ -19,7 +19,7 @@ pub fn direction_at(geometry: &Geometry, site: &Site, direction: SurfaceDirectio
     let [a1, a2] = site.tangents;
     let vector = match direction {
         SurfaceDirection::Normal => cross(a1, a2),
-        SurfaceDirection::Radial => geometry.from_centre(site.position).unwrap_or_default(),
+        SurfaceDirection::Radial => geometry.away_from_centre(site.position).unwrap_or_default(),
         SurfaceDirection::Outward => site.edge.map_or([0.0; 3], |edge| outward(site.tangents, edge)),
     };
     let length = norm(vector);

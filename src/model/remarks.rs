@@ -10,12 +10,15 @@ use crate::units::rounded;
 /// A sentence for each support of rigid motions (what it holds) and for each action along the normal (which side that is).
 pub fn remarks(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Vec<String> {
     let supports = unknowns.supports().held_motions.iter().map(|held| {
-        let each = held.displacements.iter().map(|([u, v], axis)| {
-            let name = ["x", "y", "z"][*axis];
-            format!("{name} at u {u}, v {v}")
-        });
         let name = &unknowns.supports().traces[held.support].name;
-        format!("support \"{name}\" holds {}, and carries nothing while the loads are in balance", join(each.collect()))
+        let motions = match held.free.basis.ncols() {
+            6 => "all six rigid motions".into(),
+            count => format!("{count} of the six rigid motions"),
+        };
+        format!(
+            "support \"{name}\" holds {motions} on the mean of points at thirds of u and v, and carries nothing while the loads \
+             are in balance"
+        )
     });
     let actions = scene.actions.iter().filter_map(|action| of_action(scene, mesh, action));
     supports.chain(actions).collect()
@@ -53,13 +56,5 @@ fn side(scene: &Scene, mesh: &Mesh, sense: f64) -> String {
             let unit = scaled(if out { 1.0 } else { -1.0 } / norm(normal), normal).map(rounded);
             format!("along ({}, {}, {}) at u 0.5, v 0.5", unit[0], unit[1], unit[2])
         }
-    }
-}
-
-fn join(items: Vec<String>) -> String {
-    match items.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
-        Some((last, _)) => last.clone(),
-        None => String::new(),
     }
 }

@@ -21,7 +21,8 @@ pub fn free_motion(unknowns: &Unknowns) -> Option<String> {
 /// by 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
-    middle: [f64; 3],
+    /// Mean of its points, mm.
+    pub middle: [f64; 3],
     /// Distance of the farthest point from the middle, mm.
     size: f64,
 }

@@ -1,12 +1,12 @@
 //! A support that holds rigid motions and nothing else.
 //!
-//! Where the other supports leave n rigid motions free, n displacements of points are held on which those motions are
-//! independent. A motion r that meets all other constraints does no work in the shell, so that Σ_k λ_k (row_k · r) = −f · r for the
-//! reactions λ under loads f: the matrix of the rows on the free motions is square and regular, and where f does no work on
-//! any of them all reactions are zero. The shell is held as it is free.
+//! Where the other supports leave the rigid motions r_1 … r_n free, the displacement u is held orthogonal to each of them
+//! over some points x_k of the surface: Σ_k r_m(x_k) · u(x_k) = 0; with all six free, the shell neither moves nor turns on
+//! the mean. The free motions meet all other constraints and do no work in the shell, so that the reactions λ under loads f
+//! follow from Σ_m λ_m Σ_k r_m(x_k) · r_l(x_k) = −f · r_l. The matrix is their Gram matrix, regular where the points do not lie on one
+//! line: loads that do no work on rigid motions leave no reaction, and the shell deforms as if it were free.
 //!
-//! Points and components are chosen greedily, each with the largest share of the motions that those before it leave free:
-//! elimination with full pivoting, on points of the surface at fixed fractions, so that a refined mesh holds the same.
+//! The points stand at fixed fractions of the surface, so that a refined mesh holds the same.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -17,18 +17,17 @@ use crate::model::rigid_motion::{Body, FreeMotions};
 use crate::model::supports::Supports;
 use crate::model::{Loads, ModelError, Unknowns};
 use crate::scene::{Place, Scene};
-use crate::shell::norm;
+use crate::shell::{norm, sub};
 use crate::spline::{Mesh, mid_surface_point};
 
-/// Fractions of u and v at which points may be held: corners, middles of the edges, and between them.
-const FRACTIONS: [f64; 5] = [0.0, 1.0, 0.5, 0.25, 0.75];
-/// A candidate is better only by more than rounding, so that equal ones are told apart by their order on every mesh.
-const BETTER: f64 = 1.0 + 1e-6;
-/// A share of the free motions below which a component holds none of them.
-const HOLDS: f64 = 1e-6;
-/// Work of the loads on a free motion, relative to all their forces, that is rounding and quadrature. A force that a point
-/// has to carry bends a thin free shell without stretching it: on a tube, (R/t)² times as far as pressure of the same sum
-/// widens it.
+/// Fractions of u and v of the points. Three remain on a closed turn, evenly spaced and never on one line; so few that
+/// they couple few control points.
+const FRACTIONS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+/// Points nearer to each other than this share of the largest distance are one: a turn meets itself.
+const SAME: f64 = 1e-6;
+/// Work of the loads on a free motion, relative to all their forces, that is rounding and quadrature. A force that these
+/// few points have to carry bends a thin free shell without stretching it: on a tube, (R/t)² times as far as pressure of
+/// the same sum widens it.
 const BALANCE: f64 = 1e-9;
 
 /// What such a support holds.
@@ -37,16 +36,14 @@ pub struct HeldMotions {
     /// Index of the support.
     pub support: usize,
     /// What the others leave free.
-    free: FreeMotions,
-    /// Fractions (u, v) of points, and which component of their displacement is held.
-    pub displacements: Vec<([f64; 2], usize)>,
+    pub free: FreeMotions,
 }
 
-struct Candidate {
-    fractions: [f64; 2],
-    axis: usize,
+/// A point whose displacement counts.
+struct Point {
     position: [f64; 3],
-    expression: Expression,
+    /// Its displacement in those of control points.
+    sum: Vec<(usize, f64)>,
 }
 
 impl Supports {
@@ -58,67 +55,51 @@ impl Supports {
         mesh: &Mesh,
         points: &[[f64; 3]],
     ) -> Result<(), ModelError> {
-        let candidates = self.candidates(scene, mesh)?;
-        let body = Body::around(&candidates.iter().map(|candidate| candidate.position).collect::<Vec<_>>());
+        let spread = self.spread_points(scene, mesh)?;
+        let body = Body::around(&spread.iter().map(|point| point.position).collect::<Vec<_>>());
         let free = FreeMotions::new(body, self, points);
         if free.basis.ncols() == 0 {
             return Err(ModelError::NoFreeMotion { support: self.traces[index].name.clone() });
         }
-        let chosen = choose(&candidates, &free);
-        for candidate in &chosen {
-            self.push(Some(index), candidate.expression.clone());
+        for motion in free.basis.column_iter() {
+            let mut expression = Expression::new();
+            for point in &spread {
+                let fields = body.fields(point.position);
+                let moved = [0, 1, 2].map(|c| (0..6).map(|k| motion[k] * fields[k][c]).sum::<f64>());
+                for (control, factor) in &point.sum {
+                    let of_axis = |c: usize| (3 * control + c, factor * moved[c]);
+                    expression.extend((0..3).map(of_axis).filter(|(_, factor)| *factor != 0.0));
+                }
+            }
+            self.push(Some(index), expression);
         }
-        let held = chosen.iter().flat_map(|candidate| &candidate.expression).map(|(component, _)| component / 3);
-        self.traces[index].points = held.collect();
-        let count = chosen.len() as f64;
-        for candidate in &chosen {
-            (0..3).for_each(|c| self.traces[index].pole[c] += candidate.position[c] / count);
-        }
-        let displacements = chosen.iter().map(|candidate| (candidate.fractions, candidate.axis)).collect();
-        self.held_motions = Some(HeldMotions { support: index, free, displacements });
+        let trace = &mut self.traces[index];
+        trace.points = spread.iter().flat_map(|point| &point.sum).map(|(control, _)| *control).collect();
+        trace.pole = body.middle;
+        self.held_motions = Some(HeldMotions { support: index, free });
         Ok(())
     }
 
-    /// Components of points that no moving section carries.
-    fn candidates(&self, scene: &Scene, mesh: &Mesh) -> Result<Vec<Candidate>, ModelError> {
-        let mut candidates = Vec::new();
-        for u in FRACTIONS {
-            for v in FRACTIONS {
-                let fractions = [u, v];
-                let position = mid_surface_point(mesh, &[], parameters_of(&scene.geometry, fractions)).position;
-                let sum = control_expressions(scene, mesh, Place::Point(fractions))?.swap_remove(0);
-                if sum.iter().any(|(point, _)| self.section_of[*point].is_some()) {
-                    continue;
-                }
-                for axis in 0..3 {
-                    let expression = sum.iter().map(|(point, factor)| (3 * point + axis, *factor)).collect();
-                    candidates.push(Candidate { fractions, axis, position, expression });
-                }
+    /// Points that no moving section carries, each once.
+    fn spread_points(&self, scene: &Scene, mesh: &Mesh) -> Result<Vec<Point>, ModelError> {
+        let mut spread: Vec<Point> = Vec::new();
+        for fractions in FRACTIONS.iter().flat_map(|u| FRACTIONS.map(|v| [*u, v])) {
+            let position = mid_surface_point(mesh, &[], parameters_of(&scene.geometry, fractions)).position;
+            let sum = control_expressions(scene, mesh, Place::Point(fractions))?.swap_remove(0);
+            if sum.iter().all(|(control, _)| self.section_of[*control].is_none()) {
+                spread.push(Point { position, sum });
             }
         }
-        Ok(candidates)
-    }
-}
-
-/// As many of the candidates as there are free motions, independent on them.
-fn choose<'a>(candidates: &'a [Candidate], free: &FreeMotions) -> Vec<&'a Candidate> {
-    let row = |candidate: &Candidate| {
-        let fields = free.body.fields(candidate.position);
-        free.basis.tr_mul(&DVector::from_fn(6, |k, _| fields[k][candidate.axis]))
-    };
-    let mut rows: Vec<DVector<f64>> = candidates.iter().map(row).collect();
-    let mut chosen = Vec::new();
-    for _ in 0..free.basis.ncols() {
-        let lengths: Vec<f64> = rows.iter().map(|row| row.norm()).collect();
-        let best = (0..rows.len()).fold(0, |best, k| if lengths[k] > BETTER * lengths[best] { k } else { best });
-        if rows.is_empty() || lengths[best] < HOLDS {
-            break;
+        let distance = |one: &Point, other: &Point| norm(sub(one.position, other.position));
+        let largest = spread.iter().map(|point| distance(point, &spread[0])).fold(0.0, f64::max);
+        let mut once: Vec<Point> = Vec::new();
+        for point in spread {
+            if once.iter().all(|other| distance(&point, other) > SAME * largest) {
+                once.push(point);
+            }
         }
-        let pivot = &rows[best] / lengths[best];
-        rows.iter_mut().for_each(|row| *row -= &pivot * pivot.dot(row));
-        chosen.push(&candidates[best]);
+        Ok(once)
     }
-    chosen
 }
 
 /// Refuses loads that push along a motion that only a support of rigid motions holds.
@@ -140,7 +121,7 @@ pub fn check_balance(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<
         let on_free = &held.free.basis * held.free.basis.tr_mul(&work);
         let all: f64 = forces.iter().map(|force| norm(*force)).sum();
         if on_free.norm() > BALANCE * all {
-            let motion = DMatrix::from_column_slice(6, 1, (on_free.clone() / on_free.norm()).as_slice());
+            let motion = DMatrix::from_column_slice(6, 1, (&on_free / on_free.norm()).as_slice());
             return Err(ModelError::Unbalanced {
                 support: unknowns.supports().traces[held.support].name.clone(),
                 motion: held.free.body.words(&motion),

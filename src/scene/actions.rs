@@ -110,7 +110,7 @@ fn vector(table: &Table<'_, '_>, name: &'static str, geometry: &Geometry) -> Che
 
 /// Refuses the word `radial` where the shape has neither axis nor centre.
 pub(super) fn has_centre(table: &Table<'_, '_>, key: &str, geometry: &Geometry) -> Checked<()> {
-    if geometry.from_centre([0.0; 3]).is_some() {
+    if geometry.away_from_centre([0.0; 3]).is_some() {
         return Ok(());
     }
     let shape = if matches!(geometry, Geometry::Plate { .. }) { "a plate" } else { "a nurbs surface" };

@@ -76,7 +76,10 @@ fn weight_of_the_roof_by_its_density() {
     let by_area = probe(&solve(roof.clone()), "edge");
     let text = roof.to_toml();
     let weighing = text
-        .replace("thickness_mm = 0.25\n", &format!("thickness_mm = 0.25\ndensity_kg_m3 = {:?}\n", 90.0 / (0.25 * 9.81) * 1e9))
+        .replace(
+            "thickness_mm = 0.25\n",
+            &format!("thickness_mm = 0.25\ndensity_kg_m3 = {:?}\n", 90.0 / (0.25 * 9.81) * 1e9),
+        )
         .replace("kind = \"area-force\"\nforce_n_per_mm2 = [0.0, 0.0, -90.0]", "kind = \"gravity\"");
     assert_ne!(weighing, text);
     roof = parse(&weighing, "roof.toml").unwrap_or_else(|error| panic!("{error}"));
@@ -86,15 +89,14 @@ fn weight_of_the_roof_by_its_density() {
 /// A strip that hangs from one end: the support carries ρ g over the volume, and the end sinks by ρ g L²/(2 E).
 #[test]
 fn a_hanging_strip() {
-    let tables = "[[support]]\nname = \"top\"\non = \"u-start\"\nkind = \"fixed\"\nhold = [\"x\"]\n\
-         [[support]]\non = \"v=0.5\"\nkind = \"fixed\"\nhold = [\"y\", \"z\"]\n\
+    let tables = "[[support]]\nname = \"top\"\non = \"u-start\"\nkind = \"fixed\"\nhold = [\"x\", \"z\"]\n\
+         [[support]]\non = \"u-end\"\nkind = \"fixed\"\nhold = [\"z\"]\n[[support]]\non = \"v=0.5\"\nkind = \"fixed\"\nhold = [\"y\"]\n\
          [[action]]\nkind = \"gravity\"\nacceleration_m_s2 = [9.81, 0.0, 0.0]\n";
     let probes = reaction_probes("top") + &displacement_probe("end", [1.0, 0.5], "x");
     let plate = "kind = \"plate\"\nlength_mm = 2000.0\nwidth_mm = 50.0";
     let report = solve(shell(plate, 0.5, [8, 2], &format!("{tables}{probes}")));
     let weight_per_mm3 = 7800.0 * 9.81 * 1e-9;
     assert_close("weight", -probe(&report, "force-x"), weight_per_mm3 * 2000.0 * 50.0 * 0.5, 1e-10);
-    // The upper end cannot narrow freely over about a width.
     assert_close("end", probe(&report, "end"), weight_per_mm3 * 2000.0_f64.powi(2) / (2.0 * 70000.0), 2e-4);
 }
 
@@ -103,10 +105,13 @@ fn a_hanging_strip() {
 fn a_laminate_weighs_what_its_plies_do() {
     let text = include_str!("../../pipelines/verification/laminated-plate.toml");
     let kind = text.find("kind = \"pressure\"").unwrap();
-    let line_end = text[kind..].find("pressure_mpa").unwrap() + kind;
-    let pressure_end = text[line_end..].find('\n').unwrap() + line_end;
-    let mut weighing = format!("{}kind = \"gravity\"{}", &text[..kind], &text[pressure_end..]);
-    weighing = weighing.replacen("shear_modulus_12_mpa = 3500.0\n", "shear_modulus_12_mpa = 3500.0\ndensity_kg_m3 = 1600.0\n", 1);
+    let behind = text[kind..].find("\n\n").unwrap() + kind;
+    let mut weighing = format!("{}kind = \"gravity\"{}", &text[..kind], &text[behind..]);
+    weighing = weighing.replacen(
+        "shear_modulus_12_mpa = 3500.0\n",
+        "shear_modulus_12_mpa = 3500.0\ndensity_kg_m3 = 1600.0\n",
+        1,
+    );
     weighing = weighing.replacen("[[ply]]\n", "[[ply]]\ndensity_kg_m3 = 8000.0\n", 1);
     let scene = parse(&weighing, "plate.toml").unwrap_or_else(|error| panic!("{error}\n{weighing}"));
     let expected = (8000.0 * 0.25 + 1600.0 * 0.75) * 1e-9;
@@ -133,15 +138,15 @@ fn a_force_by_the_projected_area() {
 /// The zone of a sphere in its membrane state, all of it free.
 #[test]
 fn a_zone_of_a_sphere_under_pressure() {
-    for elements in [[12, 4], [24, 8]] {
+    for elements in [[24, 8], [32, 12]] {
         let mut zone = scene("verification/sphere-zone-pressure.toml");
         zone.mesh.elements = elements;
         zone.mesh.quadrature = Quadrature::Full;
         let report = solve(zone);
-        let radial = 0.001 * 100.0_f64.powi(2) * (1.0 - 0.3) / (2.0 * 70000.0);
-        // A free shell is only held in place: radial everywhere but for a rigid motion, which is none along its axis here.
-        assert_close("edge", probe(&report, "edge"), radial, 1e-3);
-        assert_close("inside", probe(&report, "inside"), radial, 1e-3);
+        let radial = 1e-4 * 100.0_f64.powi(2) * (1.0 - 0.3) / (2.0 * 70000.0 * 0.1);
+        // Along its axis the zone moves as its support has it; across the axis nothing but the pressure moves it.
+        assert_close("equator", probe(&report, "equator"), radial, 1e-3);
+        assert_close("upper edge", probe(&report, "upper edge"), radial * (PI / 3.0).cos(), 1e-3);
     }
 }
 
@@ -159,7 +164,8 @@ const TUBE: &str = "kind = \"cylinder-panel\"\nlength_mm = 80.0\nradius_mm = 50.
 const FREE: &str = "[[support]]\nname = \"free\"\nkind = \"rigid-motions\"\n";
 
 /// A free tube widens by p R²/(E t) everywhere, along its normal and away from its axis, and its support carries nothing;
-/// pressure, force along the normal and radial force per area are one load.
+/// pressure, force along the normal and radial force per area are one load. At a free edge the moment that widening leaves
+/// there, ν D/R per unit of strain, vanishes within √(R t), and widens the edge by a share of about 0.07 t/R.
 #[test]
 fn a_free_tube_under_pressure() {
     let loads = [
@@ -168,20 +174,24 @@ fn a_free_tube_under_pressure() {
         "kind = \"area-force\"\nforce_n_per_mm2 = 1e-4\nalong = \"normal\"",
         "kind = \"area-force\"\nforce_n_per_mm2 = 1e-4\nalong = \"radial\"",
     ];
-    let expected = 1e-4 * 50.0 * 50.0 / (70000.0 * 0.5);
+    let expected = 1e-4 * 50.0 * 50.0 / (70000.0 * 0.05);
     for load in loads {
         let mut probes = reaction_probes("free");
         for (name, on) in [("a", [0.0, 0.0]), ("b", [0.5, 0.3]), ("c", [1.0, 0.8])] {
             probes += &displacement_probe(&format!("{name} normal"), on, "normal");
             probes += &displacement_probe(&format!("{name} radial"), on, "radial");
         }
-        let report = solve(shell(TUBE, 0.5, [4, 16], &format!("{FREE}[[action]]\n{load}\n{probes}")));
+        let report = solve(shell(TUBE, 0.05, [4, 16], &format!("{FREE}[[action]]\n{load}\n{probes}")));
         for name in ["a normal", "a radial", "b normal", "b radial", "c normal", "c radial"] {
             assert_close(name, probe(&report, name), expected, 1e-4);
         }
         let force = 1e-4 * 2.0 * PI * 50.0 * 80.0;
         for component in REACTIONS {
-            assert!(probe(&report, component).abs() < 1e-8 * force, "{load}: {component} {}", probe(&report, component));
+            assert!(
+                probe(&report, component).abs() < 1e-8 * force,
+                "{load}: {component} {}",
+                probe(&report, component)
+            );
         }
     }
 }
@@ -191,7 +201,8 @@ fn a_free_tube_under_pressure() {
 fn a_ring_pulled_outward() {
     let (a, b, q) = (30.0_f64, 50.0_f64, 1e-3);
     let expected = q * b * (0.7 * b * b + 1.3 * a * a) / (70000.0 * 0.5 * (b * b - a * a));
-    let planes = "[[support]]\non = \"v-start\"\nkind = \"symmetric\"\n[[support]]\non = \"v-end\"\nkind = \"symmetric\"\n";
+    let planes =
+        "[[support]]\non = \"v-start\"\nkind = \"symmetric\"\n[[support]]\non = \"v-end\"\nkind = \"symmetric\"\n";
     // On two oblique planes of symmetry, the motion along their common line is all that is free.
     for (arc, held) in [("arc_deg = 360.0\nseam = \"smooth\"", ""), ("arc_deg = 60.0\nfrom_deg = 17.0", planes)] {
         for along in ["radial", "outward"] {
@@ -227,11 +238,14 @@ fn rigid_motions_of_any_shell_are_held() {
             format!("[[action]]\non = {on:?}\nkind = \"force\"\nforce_n = {:?}\n", force.map(|x| sign * x))
         };
         let tables = [FREE.into(), pull(from, -1.0), pull(to, 1.0), reaction_probes("free")].concat();
-        let report = solve(shell(shape, 0.5, [4, 4], &tables));
+        let mut scene = shell(shape, 0.5, [4, 4], &tables);
+        scene.solver.tolerance = 1e-8;
+        let report = solve(scene);
         assert!(report.strain_energy_n_mm > 0.0 && report.negative_pivots == 0);
-        for component in REACTIONS {
+        // The forces keep their direction and the shell is not to turn: a moment is left of their displacements.
+        for (component, most) in REACTIONS.into_iter().zip([1e-9, 1e-9, 1e-9, 1e-6, 1e-6, 1e-6]) {
             let value = probe(&report, component);
-            assert!(value.abs() < 1e-5 * 1e-4 * 100.0, "{shape}: {component} {value:e}");
+            assert!(value.abs() < most, "{shape}: {component} {value:e}");
         }
     }
 }
@@ -271,8 +285,8 @@ fn an_arc_starts_where_it_is_told_to() {
         let (plain, same, turned) = (solve(shell(shape, 0.5, [3, 3], &tables)), from(default), from(123.0));
         assert_eq!(plain.probes, same.probes);
         assert_close(shape, probe(&turned, "normal"), probe(&plain, "normal"), 1e-8);
-        let in_plane = shape.contains("annulus");
-        assert_eq!(in_plane, (probe(&turned, "z") / probe(&plain, "z") - 1.0).abs() < 1e-8, "{shape}");
+        let about_z = !shape.contains("panel");
+        assert_eq!(about_z, (probe(&turned, "z") / probe(&plain, "z") - 1.0).abs() < 1e-8, "{shape}");
     }
 }
 
@@ -283,7 +297,8 @@ const ARCH: &str = "kind = \"cylinder-panel\"\nlength_mm = 60.0\nradius_mm = 20.
 #[test]
 fn symmetric_lines_inside_a_symmetric_shell_change_nothing() {
     let clamps = "[[support]]\nname = \"one\"\non = \"u-start\"\nkind = \"clamped\"\n[[support]]\non = \"u-end\"\nkind = \"clamped\"\n";
-    let lines = "[[support]]\non = \"v=0.5\"\nkind = \"symmetric\"\n[[support]]\non = \"u=0.5\"\nkind = \"symmetric\"\n";
+    let lines =
+        "[[support]]\non = \"v=0.5\"\nkind = \"symmetric\"\n[[support]]\non = \"u=0.5\"\nkind = \"symmetric\"\n";
     let push = "[[action]]\non = [0.5, 0.5]\nkind = \"force\"\nforce_n = [0.0, 0.0, -2.0]\n";
     let probes = displacement_probe("w", [0.5, 0.5], "z") + &reaction_probes("one");
     for elements in [[5, 5], [6, 4]] {
@@ -298,12 +313,13 @@ fn symmetric_lines_inside_a_symmetric_shell_change_nothing() {
         }
     }
     let fine = [12, 16];
+    let push = "[[action]]\nkind = \"area-force\"\nforce_n_per_mm2 = [0.0, 0.0, -1e-4]\n";
     let whole = solve(shell(ARCH, 0.5, fine, &format!("{lines}{clamps}{push}{probes}")));
     let half = ARCH.replace("arc_deg = 120.0", "arc_deg = 60.0\nfrom_deg = 0.0");
     let tables = format!("[[support]]\non = \"v-start\"\nkind = \"symmetric\"\n{clamps}{push}{probes}");
-    let tables = tables.replace("[0.5, 0.5]", "[0.5, 0.0]").replace("-2.0", "-1.0");
-    let half = solve(shell(&half, 0.5, [fine[0], fine[1] / 2], &tables));
+    let half = solve(shell(&half, 0.5, [fine[0], fine[1] / 2], &tables.replace("[0.5, 0.5]", "[0.5, 0.0]")));
     assert_close("half", probe(&half, "w"), probe(&whole, "w"), 1e-3);
+    assert_close("energy", 2.0 * half.strain_energy_n_mm, whole.strain_energy_n_mm, 1e-3);
 }
 
 /// A hinged strip under a force at a quarter of its length that may not turn in the middle: the force is half an even pair on
@@ -316,23 +332,27 @@ fn a_symmetric_line_holds_the_turn() {
             "{hinges}[[support]]\nname = \"middle\"\non = \"u={line:?}\"\nkind = \"symmetric\"\n[[action]]\non = \"u=0.25\"\nkind = \"line-force\"\n\
              force_n_per_mm = [0.0, 0.0, 1e-6]\n{}{}",
             displacement_probe("w", [0.25, 0.5], "z"),
-            displacement_probe("slope", [line, 0.5], "x")
+            displacement_probe("across", [line, 0.5], "x")
         );
-        let mut strip = shell("kind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 2.0", 0.5, [20, 1], &tables);
+        let mut strip = shell("kind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 2.0", 0.5, [64, 1], &tables);
+        // The moment jumps at the line, which splines of degree 2 can show at a knot.
+        strip.mesh.degree = [2, 2];
         let foldline::scene::Material::Isotropic { poissons_ratio, .. } = &mut strip.material else { panic!() };
         *poissons_ratio = 0.0;
+        strip.solver.tolerance = 1e-8;
         let report = solve(strip);
         let rigidity = 70000.0 * 0.125 / 12.0;
         if line == 0.5 {
             assert_close("w", probe(&report, "w"), 1e-6 * 1e6 / rigidity * (1.0 / 96.0 + 7.0 / 12288.0), 1e-3);
         }
-        assert!(probe(&report, "slope").abs() < 1e-12);
+        assert!(probe(&report, "across").abs() < 1e-12);
     }
 }
 
 #[test]
 fn lines_that_are_no_planes_of_symmetry_are_refused() {
-    let clamp = "[[support]]\non = \"v-start\"\nkind = \"clamped\"\n[[support]]\non = \"v=0.3\"\nkind = \"symmetric\"\n";
+    let clamp =
+        "[[support]]\non = \"v-start\"\nkind = \"clamped\"\n[[support]]\non = \"v=0.3\"\nkind = \"symmetric\"\n";
     let push = "[[action]]\nkind = \"area-force\"\nforce_n_per_mm2 = [0.0, 0.0, 1e-6]\n";
     let zone = "kind = \"sphere-zone\"\nradius_mm = 30.0\nlatitude_deg = [0.0, 60.0]\narc_deg = 60.0";
     let error = refused(shell(zone, 0.5, [3, 3], &format!("{clamp}{push}")));

@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 
 use foldline::pipeline::{MemorySink, Report, Run, Stages};
 use foldline::scene::{
-    Edge, Geometry, Hold, Load, LoadSteps, Motion, NurbsPatch, Place, Probe, ProbeKind, Reaction, Scene,
-    parse,
+    Edge, Geometry, Hold, Load, LoadSteps, Motion, NurbsPatch, Place, Probe, ProbeKind, Reaction, Scene, parse,
 };
 use foldline::state::State;
 

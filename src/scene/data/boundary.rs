@@ -81,8 +81,8 @@ pub enum Hold {
     /// The edge, or a line inside, lies in a plane of symmetry: displacements across the plane and turns about the edge
     /// or line are zero. It must be plane, and the surface must cross the plane at right angles. Edges and lines only.
     Symmetric,
-    /// The rigid motions that the other supports leave free are held, and nothing else: as many displacements of
-    /// points as there are such motions. Loads in balance leave no reaction. [`Place::Whole`] only.
+    /// The rigid motions that the other supports leave free are held, and nothing else: the shell takes no part in them
+    /// on the mean of points spread over it. Loads in balance leave no reaction. [`Place::Whole`] only.
     RigidMotions,
     /// The edge is a rigid section with a pose of its own. `clamped` in a scene is one with all six motions held. The
     /// membrane strain at the edge stays free. Edges only.
@@ -206,7 +206,7 @@ impl From<[f64; 3]> for ForceVector {
 pub enum SurfaceDirection {
     /// Along the normal.
     Normal,
-    /// Away from the axis or the centre ([`super::Geometry::from_centre`]).
+    /// Away from the axis or the centre ([`super::Geometry::away_from_centre`]).
     Radial,
     /// In the surface, square to an edge, out of the shell. Edges only.
     Outward,

@@ -77,7 +77,7 @@ pub enum Geometry {
 impl Geometry {
     /// Vector to a point from the axis of a cylinder or an annulus, or from the centre of a sphere, mm; `None` for shapes
     /// that have neither.
-    pub fn from_centre(&self, [x, y, z]: [f64; 3]) -> Option<[f64; 3]> {
+    pub fn away_from_centre(&self, [x, y, z]: [f64; 3]) -> Option<[f64; 3]> {
         match self {
             Geometry::TapeSpring { .. } | Geometry::CylinderPanel { .. } => Some([0.0, y, z]),
             Geometry::Annulus { .. } => Some([x, y, 0.0]),

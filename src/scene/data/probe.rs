@@ -63,7 +63,7 @@ pub enum Component {
     Magnitude,
     /// Along the normal of the undeformed surface at the point.
     Normal,
-    /// Away from the axis or the centre of the undeformed shell ([`super::Geometry::from_centre`]).
+    /// Away from the axis or the centre of the undeformed shell ([`super::Geometry::away_from_centre`]).
     Radial,
 }
 
