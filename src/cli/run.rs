@@ -95,6 +95,7 @@ impl Job {
                 Parameter::LoadFactor => format!("load factor {}", rounded(to)),
             };
             say(&format!("to {to} → {}", options.log.display()));
+            stages.remarks(&start)?.iter().for_each(|remark| say(remark));
         }
         if options.is_shown() && scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
             say(

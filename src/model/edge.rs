@@ -19,18 +19,23 @@ pub struct EdgeRows {
     pub centroid: [f64; 3],
 }
 
-/// Why an edge is no plane of symmetry.
+/// Why an edge or a line is no plane of symmetry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoPlane {
     /// It is not plane.
-    #[error("the edge does not lie in a plane")]
+    #[error("it does not lie in a plane")]
     NotPlane,
     /// The surface leaves the plane at another angle.
-    #[error("the surface does not cross the plane of the edge at right angles")]
+    #[error("the surface does not cross its plane at right angles")]
     NotAtRightAngles,
     /// The lines of control points leave the plane at another angle.
-    #[error("the parametric lines of the surface do not cross the plane of the edge at right angles")]
+    #[error("the parametric lines of the surface do not cross its plane at right angles")]
     Skewed,
+    /// The weights across a line inside are shared out differently along it.
+    #[error(
+        "the weights of the surface change across the line in shares that differ along it, so that no spline keeps its slope: model the half, whose edge lies there"
+    )]
+    UnevenWeights,
 }
 
 /// Newton steps to the nearest point; quadratic from a start within the span.
@@ -38,7 +43,7 @@ const NEWTON_STEPS: usize = 30;
 /// Gauss points a span for the centroid.
 const CENTROID_POINTS: usize = 8;
 /// Deviation from a plane, relative to the size of the edge, that is rounding.
-const PLANE: f64 = 1e-9;
+pub(super) const PLANE: f64 = 1e-9;
 
 /// Rows of an edge.
 ///

@@ -5,7 +5,7 @@
 //!
 //! | action | h |
 //! |---|---|
-//! | force, line force, dead pressure | h₀ constant |
+//! | force, line force, area force, weight, dead pressure | h₀ constant |
 //! | follower pressure p | h₀ = p a₁ × a₂ |
 //! | edge moment m about the tangent τ of the edge | −m α₁ w/J² on δa₁ and m α₂ w/J² on δa₂, w = a₁ × a₂, J = abs(w) |
 //!
@@ -18,10 +18,10 @@
 //! otherwise solved for as it is ([`crate::equilibrium`]).
 
 use crate::model::ModelError;
+use crate::model::direction::{Site, direction_at};
 use crate::model::place::parameters_of;
 use crate::model::quadrature::PointCounts;
-use crate::model::supports::control_expressions;
-use crate::scene::{Action, ActionKind, Edge, History, ParametricDirection, Place, Scene};
+use crate::scene::{Action, ActionKind, Edge, ForceVector, History, LoadedArea, ParametricDirection, Place, Scene};
 use crate::shell::{add, cross, dot, gauss_legendre, norm, scaled};
 use crate::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};
 
@@ -63,8 +63,8 @@ struct LoadPoint {
     first: [usize; 2],
     /// Values, derivatives ,1 and ,2 of the functions.
     functions: [Vec<f64>; 3],
-    /// A₁, A₂.
-    tangents: [[f64; 3]; 2],
+    /// Where it is.
+    site: Site,
     /// Load times quadrature weight at factor 1.
     weight: f64,
 }
@@ -104,9 +104,8 @@ impl Loads {
         let history = action.history.clone();
         match &action.kind {
             ActionKind::Force { on, force_n } => {
-                let places = control_expressions(scene, mesh, Place::Point(*on))?;
-                let forces = places[0].iter().map(|(point, factor)| (*point, scaled(*factor, *force_n))).collect();
-                self.dead.push(Dead { history, forces });
+                let point = LoadPoint::new(mesh, parameters_of(&scene.geometry, *on), 1.0);
+                self.push_dead(scene, mesh, history, &[point], *force_n);
             }
             ActionKind::LineForce { on, force_n_per_mm } => {
                 let points = match on {
@@ -115,9 +114,24 @@ impl Loads {
                         let way = way_of(*direction);
                         line_points(mesh, way, parameters_of(&scene.geometry, [*fraction; 2])[way])
                     }
-                    Place::Point(_) => return Err(ModelError::NotALine { action: action.name.clone() }),
+                    Place::Point(_) | Place::Whole => {
+                        return Err(ModelError::NotALine { action: action.name.clone() });
+                    }
                 };
-                self.dead.push(Dead { history, forces: dead_forces(mesh, &points, |_| *force_n_per_mm) });
+                self.push_dead(scene, mesh, history, &points, *force_n_per_mm);
+            }
+            ActionKind::AreaForce { force_n_per_mm2, per } => {
+                let mut points = area_points(scene, mesh);
+                points.iter_mut().for_each(|point| point.weight *= point.area(*per, *force_n_per_mm2));
+                self.push_dead(scene, mesh, history, &points, *force_n_per_mm2);
+            }
+            ActionKind::Gravity { acceleration_m_s2 } => {
+                // kg/mm² times m/s² is N/mm². A scene without density has no gravity.
+                let weight = scaled(scene.material.mass_kg_per_mm2().unwrap_or(0.0), *acceleration_m_s2);
+                let mut points = area_points(scene, mesh);
+                let force = ForceVector::Components(weight);
+                points.iter_mut().for_each(|point| point.weight *= point.area(LoadedArea::Undeformed, force));
+                self.push_dead(scene, mesh, history, &points, force);
             }
             ActionKind::EdgeMoment { on, moment_n } => {
                 let mut points = edge_points(mesh, *on);
@@ -131,12 +145,20 @@ impl Loads {
                 if *follower {
                     self.following.push(Following { history, kind: Kind::Pressure, points });
                 } else {
-                    let along_normal = |point: &LoadPoint| cross(point.tangents[0], point.tangents[1]);
+                    let along_normal = |point: &LoadPoint| cross(point.site.tangents[0], point.site.tangents[1]);
                     self.dead.push(Dead { history, forces: dead_forces(mesh, &points, along_normal) });
                 }
             }
         }
         Ok(())
+    }
+
+    fn push_dead(&mut self, scene: &Scene, mesh: &Mesh, history: History, points: &[LoadPoint], force: ForceVector) {
+        let at = |point: &LoadPoint| match force {
+            ForceVector::Components(components) => components,
+            ForceVector::Along(size, direction) => scaled(size, direction_at(&scene.geometry, &point.site, direction)),
+        };
+        self.dead.push(Dead { history, forces: dead_forces(mesh, points, at) });
     }
 
     /// Forces on the control points, N.
@@ -287,7 +309,19 @@ impl LoadPoint {
         let (first, [value, one, two, ..]) = evaluate_surface(mesh, at);
         let surface = mid_surface_point(mesh, &[], at);
         let tangents = [surface.derivatives[0], surface.derivatives[1]];
-        Self { first, functions: [value, one, two], tangents, weight }
+        let site = Site { position: surface.position, tangents, edge: None };
+        Self { first, functions: [value, one, two], site, weight }
+    }
+
+    /// Area per parameter area, that of the surface or of its projection along a force.
+    fn area(&self, per: LoadedArea, force: ForceVector) -> f64 {
+        let normal = cross(self.site.tangents[0], self.site.tangents[1]);
+        match (per, force) {
+            (LoadedArea::Projected, ForceVector::Components(force)) if norm(force) > 0.0 => {
+                (dot(normal, force) / norm(force)).abs()
+            }
+            _ => norm(normal),
+        }
     }
 
     fn controls(&self, mesh: &Mesh) -> impl Iterator<Item = usize> + use<> {
@@ -299,7 +333,7 @@ impl LoadPoint {
 
     /// a₁, a₂.
     fn deformed(&self, mesh: &Mesh, displacement: &[[f64; 3]]) -> [[f64; 3]; 2] {
-        let mut tangents = self.tangents;
+        let mut tangents = self.site.tangents;
         for (a, control) in self.controls(mesh).enumerate() {
             for k in 0..2 {
                 tangents[k] = add(tangents[k], scaled(self.functions[1 + k][a], displacement[control]));
@@ -327,7 +361,9 @@ fn way_of(direction: ParametricDirection) -> usize {
 
 fn edge_points(mesh: &Mesh, edge: Edge) -> Vec<LoadPoint> {
     let (direction, at_end) = edge.side();
-    line_points(mesh, way_of(direction), if at_end { 1.0 } else { 0.0 })
+    let mut points = line_points(mesh, way_of(direction), if at_end { 1.0 } else { 0.0 });
+    points.iter_mut().for_each(|point| point.site.edge = Some(edge));
+    points
 }
 
 /// Gauss points of a line on which parameter `way` is `at`; weights are undeformed lengths, mm.
@@ -338,7 +374,7 @@ fn line_points(mesh: &Mesh, way: usize, at: f64) -> Vec<LoadPoint> {
     for (parameter, weight) in gauss_points(mesh, running, &vec![0; spans]) {
         let place = if way == 0 { [at, parameter] } else { [parameter, at] };
         let mut point = LoadPoint::new(mesh, place, weight);
-        point.weight *= norm(point.tangents[running]);
+        point.weight *= norm(point.site.tangents[running]);
         points.push(point);
     }
     points
@@ -381,8 +417,13 @@ mod tests {
     /// A panel with a follower pressure and an edge moment, displaced at random.
     fn loaded(clamped: bool) -> (Discretization, Vec<[f64; 3]>) {
         let mut scene = parse(include_str!("../../pipelines/verification/rolled-cantilever.toml"), "x.toml").unwrap();
-        scene.geometry =
-            crate::scene::Geometry::CylinderPanel { length_mm: 9.0, radius_mm: 5.0, arc_deg: 80.0, seam: None };
+        scene.geometry = crate::scene::Geometry::CylinderPanel {
+            length_mm: 9.0,
+            radius_mm: 5.0,
+            arc_deg: 80.0,
+            from_deg: None,
+            seam: None,
+        };
         scene.mesh.elements = [3, 2];
         let kind = ActionKind::Pressure { pressure_mpa: 0.7, follower: true };
         let pressure = Action { name: "p".into(), kind, history: History::default() };

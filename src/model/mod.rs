@@ -1,7 +1,9 @@
 //! A scene made discrete: the patch that it starts from, and for a mesh its tables, supports and free unknowns.
 
+mod direction;
 mod edge;
 mod elimination;
+mod expressions;
 mod imbalance;
 mod joint;
 mod loads;
@@ -10,21 +12,27 @@ mod place;
 mod placement;
 mod quadrature;
 mod reactions;
+mod remarks;
 mod rigid_motion;
+mod rigid_support;
 mod rotation;
 mod shape;
 mod supports;
+mod symmetric_line;
 mod tables;
 mod unknowns;
 
+pub(crate) use direction::{Site, direction_at};
+pub(crate) use expressions::control_expressions;
 pub use loads::Loads;
 pub use patch::{MOST_CONTROL_POINTS, ModelError, starting_mesh};
 pub(crate) use place::{line_index, parameters_of};
 pub use placement::Placement;
 pub use reactions::{Exerted, PointForces};
+pub(crate) use remarks::remarks;
 pub(crate) use rigid_motion::free_motion;
+pub(crate) use rigid_support::check_balance;
 pub use supports::Supports;
-pub(crate) use supports::control_expressions;
 pub(crate) use tables::{BATCH, LANES};
 pub use tables::{PointTable, Tables};
 pub use unknowns::{Entry, Unknowns};

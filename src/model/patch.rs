@@ -22,9 +22,9 @@ pub enum ModelError {
         /// Elements along the length that suffice.
         least: usize,
     },
-    /// A symmetric support that is not on an edge.
+    /// A symmetric support that is neither on an edge nor on a line.
     #[error(
-        "support \"{support}\" is a plane of symmetry, which only an edge can lie in: write one of the edges in `on`"
+        "support \"{support}\" is a plane of symmetry, which only an edge or a line can lie in: write one of them in `on`"
     )]
     NotAnEdge {
         /// Name of the support.
@@ -115,6 +115,29 @@ pub enum ModelError {
     FreeMotion {
         /// The motion, in words.
         motion: String,
+    },
+    /// A support that holds rigid motions where none is free.
+    #[error(
+        "support \"{support}\" holds rigid motions alone, and the other supports leave none free: take it out, or hold less in them"
+    )]
+    NoFreeMotion {
+        /// Name of the support.
+        support: String,
+    },
+    /// Loads push along a motion that only such a support holds.
+    #[error(
+        "the loads are not in balance, and support \"{support}\" holds rigid motions alone: {motion}, where they push by {share:.1e} of all \
+         that acts at load factor {load_factor}; balance them (numbers of few digits leave that much), or hold the shell where its force goes"
+    )]
+    Unbalanced {
+        /// Name of the support.
+        support: String,
+        /// The motion that they push along, in words.
+        motion: String,
+        /// Their work on it, of the sum of all forces at their arms.
+        share: f64,
+        /// Where.
+        load_factor: f64,
     },
     /// The supports leave nothing free.
     #[error(

@@ -16,7 +16,8 @@
 //!    edge follow those beside it, where the whole shell has its own; in degree 2, where both have the same functions,
 //!    reactions of a part and of the whole agree to rounding;
 //! 2. other supports, in the order of the scene;
-//! 3. joints. Their forces have neither resultant nor moment.
+//! 3. planes of symmetry through lines inside: where the shell is what they say, they carry nothing;
+//! 4. joints. Their forces have neither resultant nor moment.
 
 use std::collections::BTreeMap;
 
@@ -70,8 +71,9 @@ fn in_turn(supports: &Supports) -> Vec<usize> {
     let key = |index: &usize| {
         let class = match supports.owner[*index] {
             Some(support) if !supports.traces[support].mirrored.is_empty() => 0,
+            Some(support) if supports.traces[support].is_inner_mirror => 2,
             Some(_) => 1,
-            None => 2,
+            None => 3,
         };
         let points = supports.constraints[*index].iter().map(|(component, _)| component / 3);
         let followers = points.filter_map(|point| mirrors.get(point)).max().copied().unwrap_or(0);

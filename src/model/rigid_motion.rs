@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, Matrix3xX, SMatrix};
 
 use crate::model::Unknowns;
+use crate::model::supports::Supports;
 use crate::shell::{cross, dot, norm, scaled, sub};
 
 /// Squares of how much a motion is held, relative to the most held one, below which it is free. A lever of a millionth of
@@ -12,53 +13,87 @@ const HELD: f64 = 1e-12;
 /// A free rigid motion in words, if there is one.
 pub fn free_motion(unknowns: &Unknowns) -> Option<String> {
     let points = &unknowns.points;
-    let count = points.len() as f64;
-    let middle = points.iter().fold([0.0; 3], |sum, x| [0, 1, 2].map(|c| sum[c] + x[c] / count));
-    let size = points.iter().map(|x| norm(sub(*x, middle))).fold(0.0, f64::max);
-    let mut gram = SMatrix::<f64, 6, 6>::zeros();
-    for row in rows(unknowns, middle, size) {
-        let row = SMatrix::<f64, 6, 1>::from(row);
-        let length = row.norm();
-        if length > 0.0 {
-            gram += (row / length) * (row / length).transpose();
-        }
-    }
-    let eigen = gram.symmetric_eigen();
-    let most = eigen.eigenvalues.max();
-    let free: Vec<usize> = (0..6).filter(|k| eigen.eigenvalues[*k] <= HELD * most.max(1.0)).collect();
-    if free.is_empty() {
-        return None;
-    }
-    let basis = DMatrix::from_fn(6, free.len(), |row, column| eigen.eigenvectors[(row, free[column])]);
-    Some(words(&basis, middle, size))
+    let free = FreeMotions::new(Body::around(points), unknowns.supports(), points);
+    (free.basis.ncols() > 0).then(|| free.body.words(&free.basis))
 }
 
-/// What each constraint makes of the six rigid motions: translations, and turns about axes through `middle` that move the
-/// farthest point by 1.
-fn rows(unknowns: &Unknowns, middle: [f64; 3], size: f64) -> Vec<[f64; 6]> {
-    let supports = unknowns.supports();
-    let field = |point: [f64; 3]| {
-        let arm = scaled(1.0 / size, sub(point, middle));
+/// A rigid body. It has six motions: translations, and turns about axes through its middle that move its farthest point
+/// by 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Body {
+    /// Mean of its points, mm.
+    pub middle: [f64; 3],
+    /// Distance of the farthest point from the middle, mm.
+    size: f64,
+}
+
+/// Rigid motions of a body that its supports leave free.
+#[derive(Clone, Debug)]
+pub struct FreeMotions {
+    /// The body.
+    pub body: Body,
+    /// One in each column, orthonormal, as shares of the body's six.
+    pub basis: DMatrix<f64>,
+}
+
+impl Body {
+    /// The body of some points.
+    pub fn around(points: &[[f64; 3]]) -> Self {
+        let count = points.len() as f64;
+        let middle = points.iter().fold([0.0; 3], |sum, x| [0, 1, 2].map(|c| sum[c] + x[c] / count));
+        Self { middle, size: points.iter().map(|x| norm(sub(*x, middle))).fold(0.0, f64::max) }
+    }
+
+    /// What each motion does to a point.
+    pub fn fields(&self, point: [f64; 3]) -> [[f64; 3]; 6] {
+        let arm = scaled(1.0 / self.size, sub(point, self.middle));
         let unit = |k: usize| [0, 1, 2].map(|c| f64::from(u8::from(c == k)));
         [unit(0), unit(1), unit(2), cross(unit(0), arm), cross(unit(1), arm), cross(unit(2), arm)]
-    };
-    let in_space =
-        |component: usize| component >= 3 * unknowns.points.len() || supports.section_of[component / 3].is_none();
+    }
+
+    /// One of the motions that the columns of a basis span: a translation if there is one, or else a turn.
+    pub fn words(&self, basis: &DMatrix<f64>) -> String {
+        words(basis, self.middle, self.size)
+    }
+}
+
+impl FreeMotions {
+    /// What supports on some control points (undeformed, mm) leave free.
+    pub fn new(body: Body, supports: &Supports, points: &[[f64; 3]]) -> Self {
+        let mut gram = SMatrix::<f64, 6, 6>::zeros();
+        for row in rows(body, supports, points) {
+            let row = SMatrix::<f64, 6, 1>::from(row);
+            let length = row.norm();
+            if length > 0.0 {
+                gram += (row / length) * (row / length).transpose();
+            }
+        }
+        let eigen = gram.symmetric_eigen();
+        let most = eigen.eigenvalues.max();
+        let free: Vec<usize> = (0..6).filter(|k| eigen.eigenvalues[*k] <= HELD * most.max(1.0)).collect();
+        let basis = DMatrix::from_fn(6, free.len(), |row, column| eigen.eigenvectors[(row, free[column])]);
+        Self { body, basis }
+    }
+}
+
+/// What each constraint makes of the six rigid motions.
+fn rows(body: Body, supports: &Supports, points: &[[f64; 3]]) -> Vec<[f64; 6]> {
+    let in_space = |component: usize| component >= 3 * points.len() || supports.section_of[component / 3].is_none();
     let mut rows: Vec<[f64; 6]> = supports
         .constraints
         .iter()
         .filter(|expression| expression.iter().all(|(component, _)| in_space(*component)))
         .map(|expression| {
             let mut row = [0.0; 6];
-            for (component, factor) in expression.iter().filter(|(c, _)| *c < 3 * unknowns.points.len()) {
-                let fields = field(unknowns.points[component / 3]);
+            for (component, factor) in expression.iter().filter(|(c, _)| *c < 3 * points.len()) {
+                let fields = body.fields(points[component / 3]);
                 (0..6).for_each(|k| row[k] += factor * fields[k][component % 3]);
             }
             row
         })
         .collect();
     for section in &supports.sections {
-        let fields = field(section.centre);
+        let fields = body.fields(section.centre);
         for (motion, law) in section.motions.iter().enumerate().filter(|(_, law)| law.is_some()) {
             let _ = law;
             rows.push([0, 1, 2, 3, 4, 5].map(|k| match motion {

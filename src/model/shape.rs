@@ -28,32 +28,40 @@ pub(super) fn shape(scene: &Scene) -> Result<Shape, ModelError> {
         Geometry::TapeSpring { length_mm, radius_mm, arc_deg } => {
             return Ok(tape_spring(scene, *length_mm, *radius_mm, *arc_deg));
         }
-        Geometry::CylinderPanel { length_mm, radius_mm, arc_deg, .. } => {
-            let half = arc_deg.to_radians() / 2.0;
-            translated(&straight_line(*length_mm, p), &circular_arc(*radius_mm, -half, half, q))
+        Geometry::CylinderPanel { length_mm, radius_mm, arc_deg, from_deg, .. } => {
+            let [from, to] = arc(*arc_deg, *from_deg, -arc_deg / 2.0);
+            translated(&straight_line(*length_mm, p), &circular_arc(*radius_mm, from, to, q))
         }
         Geometry::Plate { length_mm, width_mm } => {
             product(&straight_line(*length_mm, p), &straight_line(*width_mm, q), |u, v| {
                 [u[0] * v[2], v[0] * u[2], 0.0, u[2] * v[2]]
             })
         }
-        Geometry::Annulus { inner_radius_mm, outer_radius_mm, arc_deg, .. } => {
+        Geometry::Annulus { inner_radius_mm, outer_radius_mm, arc_deg, from_deg, .. } => {
             let mut radius = straight_line(outer_radius_mm - inner_radius_mm, p);
             radius.points.iter_mut().for_each(|point| point[0] += inner_radius_mm * point[2]);
             // The arc runs from the second axis towards the first: (sin, cos) at its angle.
-            product(&radius, &circular_arc(1.0, 0.0, arc_deg.to_radians(), q), |r, turn| {
+            let [from, to] = arc(*arc_deg, *from_deg, 0.0);
+            product(&radius, &circular_arc(1.0, from, to, q), |r, turn| {
                 [r[0] * turn[1], r[0] * turn[0], 0.0, r[2] * turn[2]]
             })
         }
-        Geometry::SphereZone { radius_mm, latitude_deg: [from, to], arc_deg, .. } => {
-            let profile = circular_arc(*radius_mm, from.to_radians(), to.to_radians(), q);
-            product(&circular_arc(1.0, 0.0, arc_deg.to_radians(), p), &profile, |turn, profile| {
+        Geometry::SphereZone { radius_mm, latitude_deg: [south, north], arc_deg, from_deg, .. } => {
+            let profile = circular_arc(*radius_mm, south.to_radians(), north.to_radians(), q);
+            let [from, to] = arc(*arc_deg, *from_deg, 0.0);
+            product(&circular_arc(1.0, from, to, p), &profile, |turn, profile| {
                 [profile[1] * turn[1], profile[1] * turn[0], profile[0] * turn[2], profile[2] * turn[2]]
             })
         }
         Geometry::Nurbs(patch) => nurbs(patch, scene.mesh.degree)?,
     };
     Ok(Shape { mesh, elements })
+}
+
+/// Angles at which an arc starts and ends, radians.
+fn arc(arc_deg: f64, from_deg: Option<f64>, default_deg: f64) -> [f64; 2] {
+    let from = from_deg.unwrap_or(default_deg);
+    [from.to_radians(), (from + arc_deg).to_radians()]
 }
 
 fn tape_spring(scene: &Scene, length_mm: f64, radius_mm: f64, arc_deg: f64) -> Shape {
@@ -189,12 +197,13 @@ mod tests {
         for degree in [[2, 2], [3, 4], [5, 3]] {
             for arc_deg in [20.0, 170.0, 360.0] {
                 let seam = (arc_deg == 360.0).then_some(Seam::Smooth);
-                let panel = Geometry::CylinderPanel { length_mm: 4.0, radius_mm: 3.0, arc_deg, seam };
+                let from_deg = (arc_deg != 170.0).then_some(-70.0);
+                let panel = Geometry::CylinderPanel { length_mm: 4.0, radius_mm: 3.0, arc_deg, from_deg, seam };
                 check(&meshed(panel, degree), |[_, y, z]| y.hypot(z) - 3.0, |[_, y, z]| [0.0, y, z]);
-                let ring = Geometry::Annulus { inner_radius_mm: 1.0, outer_radius_mm: 2.5, arc_deg, seam };
+                let ring = Geometry::Annulus { inner_radius_mm: 1.0, outer_radius_mm: 2.5, arc_deg, from_deg, seam };
                 check(&meshed(ring, degree), |[_, _, z]| z, |_| [0.0, 0.0, 1.0]);
                 let latitude_deg = [-20.0, 50.0];
-                let zone = Geometry::SphereZone { radius_mm: 2.0, latitude_deg, arc_deg, seam };
+                let zone = Geometry::SphereZone { radius_mm: 2.0, latitude_deg, arc_deg, from_deg, seam };
                 check(&meshed(zone, degree), |x| norm(x) - 2.0, |x| x);
             }
             let plate = Geometry::Plate { length_mm: 4.0, width_mm: 3.0 };

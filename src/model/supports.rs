@@ -6,13 +6,14 @@
 use crate::model::ModelError;
 use crate::model::edge::{EdgeRows, edge_rows, symmetry_plane};
 use crate::model::elimination::Expression;
+use crate::model::expressions::control_expressions;
 use crate::model::joint::{Joint, joints, seam};
-use crate::model::place::parameters_of;
+use crate::model::rigid_support::HeldMotions;
 use crate::scene::{
     Edge, Geometry, History, Hold, Load, Motion, ParametricDirection, Place, Scene, Seam, Sense, Support,
 };
 use crate::shell::{dot, norm, sub};
-use crate::spline::{Mesh, evaluate_surface};
+use crate::spline::Mesh;
 
 /// A given motion as a function of the scene's parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +57,8 @@ pub struct Trace {
     pub points: Vec<usize>,
     /// Of a plane of symmetry, the control points of its edge; empty for other supports.
     pub mirrored: Vec<usize>,
+    /// Whether it is a plane of symmetry through a line inside the shell.
+    pub is_inner_mirror: bool,
     /// The point that moments are about, undeformed, mm.
     pub pole: [f64; 3],
     /// The section that the pole moves with.
@@ -78,6 +81,8 @@ pub struct Supports {
     pub traces: Vec<Trace>,
     /// For each constraint, the support that it comes from; `None` for a joint.
     pub(super) owner: Vec<Option<usize>>,
+    /// What a support that holds rigid motions alone holds.
+    pub(super) held_motions: Option<HeldMotions>,
 }
 
 impl Supports {
@@ -94,6 +99,7 @@ impl Supports {
             displacements: Vec::new(),
             traces: Vec::new(),
             owner: Vec::new(),
+            held_motions: None,
         };
         let all = supports_of(scene);
         let ties = Ties::new(scene, mesh, &all)?;
@@ -104,6 +110,7 @@ impl Supports {
                 name: support.name.clone(),
                 points: vec![],
                 mirrored: vec![],
+                is_inner_mirror: false,
                 pole: [0.0; 3],
                 section: None,
             });
@@ -113,8 +120,11 @@ impl Supports {
         }
         for (index, support) in all.iter().enumerate() {
             match (&support.hold, support.on) {
-                (Hold::Rigid { .. }, _) => {}
+                (Hold::Rigid { .. } | Hold::RigidMotions, _) => {}
                 (Hold::Symmetric, Place::Edge(edge)) => supports.mirror(index, mesh, edge)?,
+                (Hold::Symmetric, Place::Line(direction, fraction)) => {
+                    supports.mirror_line(index, scene, mesh, direction, fraction)?;
+                }
                 (Hold::Displacement { displacement_mm }, on) => {
                     let places = control_expressions(scene, mesh, on)?;
                     supports.displace(index, support, *displacement_mm, &places, &points)?;
@@ -123,6 +133,10 @@ impl Supports {
             }
         }
         supports.tie(&ties, mesh);
+        // What the others leave free is known last.
+        for (index, _) in all.iter().enumerate().filter(|(_, support)| support.hold == Hold::RigidMotions) {
+            supports.hold_rigid_motions(index, scene, mesh, &points)?;
+        }
         supports.check_frames()?;
         Ok(supports)
     }
@@ -138,7 +152,7 @@ impl Supports {
         ModelError::Contradiction { support, other: other.map(|trace| trace.name.clone()) }
     }
 
-    fn push(&mut self, owner: Option<usize>, expression: Expression) {
+    pub(super) fn push(&mut self, owner: Option<usize>, expression: Expression) {
         self.constraints.push(expression);
         self.owner.push(owner);
     }
@@ -205,13 +219,7 @@ impl Supports {
         let name = &self.traces[index].name;
         let normal = symmetry_plane(mesh, edge)
             .map_err(|reason| ModelError::NotASymmetryPlane { support: name.clone(), reason: reason.to_string() })?;
-        for point in &rows.outer {
-            if let Some(section) = self.section_of[*point]
-                && !self.sections[section].keeps_plane(normal)
-            {
-                return Err(self.overlap(index, section));
-            }
-        }
+        self.check_sections_keep(index, &rows.outer, normal)?;
         let [first, second] = in_plane(normal);
         for (outer, inner) in rows.outer.iter().zip(&rows.inner) {
             self.push(Some(index), along(*outer, normal));
@@ -225,6 +233,18 @@ impl Supports {
         self.traces[index].pole = rows.centroid;
         self.traces[index].mirrored = rows.outer;
         Ok(())
+    }
+
+    /// Refuses a plane of symmetry that a section could leave.
+    pub(super) fn check_sections_keep(
+        &self,
+        index: usize,
+        points: &[usize],
+        normal: [f64; 3],
+    ) -> Result<(), ModelError> {
+        let mut sections = points.iter().filter_map(|point| self.section_of[*point]);
+        let leaving = sections.find(|section| !self.sections[*section].keeps_plane(normal));
+        leaving.map_or(Ok(()), |section| Err(self.overlap(index, section)))
     }
 
     /// Given components of a displacement, for each of some weighted sums of control points.
@@ -431,60 +451,13 @@ impl Ties {
     }
 }
 
-/// Displacements of a place as weighted sums of control points (weights of 1 in all): each control point of an edge, the
-/// point, each control point of a line.
-pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Result<Vec<Vec<(usize, f64)>>, ModelError> {
-    let [_, n2] = mesh.control_counts();
-    Ok(match on {
-        Place::Edge(edge) => edge_rows(mesh, edge)?.outer.into_iter().map(|point| vec![(point, 1.0)]).collect(),
-        Place::Point(fractions) => {
-            let (first, functions) = evaluate_surface(mesh, parameters_of(&scene.geometry, fractions));
-            let columns = mesh.degree[1] + 1;
-            let control = |a: usize| (first[0] + a / columns) * n2 + first[1] + a % columns;
-            vec![nonzero(functions[0].iter().enumerate().map(|(a, value)| (control(a), *value)).collect())]
-        }
-        Place::Line(direction, fraction) => line_expressions(scene, mesh, direction, fraction),
-    })
-}
-
-/// Σ_i N_i w_ij u_ij / Σ_i N_i w_ij for each j: the control points of the line as a curve.
-fn line_expressions(
-    scene: &Scene,
-    mesh: &Mesh,
-    direction: ParametricDirection,
-    fraction: f64,
-) -> Vec<Vec<(usize, f64)>> {
-    let way = if direction == ParametricDirection::U { 0 } else { 1 };
-    let parameter = parameters_of(&scene.geometry, [fraction; 2])[way];
-    let [n1, n2] = mesh.control_counts();
-    let degree = mesh.degree[way];
-    let span = crate::spline::find_span(&mesh.knots[way], degree, parameter);
-    let mut basis = vec![0.0; crate::spline::basis_derivatives_len(degree)];
-    crate::spline::basis_derivatives(&mesh.knots[way], degree, span, parameter, &mut basis);
-    let running = if way == 0 { n2 } else { n1 };
-    (0..running)
-        .map(|j| {
-            let control = |a: usize| if way == 0 { (span - degree + a) * n2 + j } else { j * n2 + span - degree + a };
-            let weighted: Vec<(usize, f64)> =
-                (0..=degree).map(|a| (control(a), basis[a] * mesh.control_points[control(a)][3])).collect();
-            let total: f64 = weighted.iter().map(|(_, value)| value).sum();
-            nonzero(weighted.into_iter().map(|(point, value)| (point, value / total)).collect())
-        })
-        .collect()
-}
-
-fn nonzero(mut sum: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
-    sum.retain(|(_, factor)| *factor != 0.0);
-    sum
-}
-
 /// The component of a control point along a direction.
-fn along(point: usize, direction: [f64; 3]) -> Expression {
+pub(super) fn along(point: usize, direction: [f64; 3]) -> Expression {
     (0..3).map(|c| (3 * point + c, direction[c])).filter(|(_, factor)| *factor != 0.0).collect()
 }
 
 /// Two unit vectors that span the plane with this normal; axes where the normal is one.
-fn in_plane(normal: [f64; 3]) -> [[f64; 3]; 2] {
+pub(super) fn in_plane(normal: [f64; 3]) -> [[f64; 3]; 2] {
     let largest = (0..3).fold(0, |best, c| if normal[c].abs() > normal[best].abs() { c } else { best });
     [1, 2].map(|step| {
         let axis = (largest + step) % 3;

@@ -2,10 +2,12 @@
 
 use crate::adapt::element_strains;
 use crate::equilibrium::{Standing, Workspace};
-use crate::model::{Discretization, Exerted, Placement, control_expressions, line_index, parameters_of};
+use crate::model::{
+    Discretization, Exerted, Placement, Site, control_expressions, direction_at, line_index, parameters_of,
+};
 use crate::pipeline::Reading;
-use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene};
-use crate::shell::{add, cross, norm, scaled, sub};
+use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene, SurfaceDirection};
+use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::{Spans, mid_surface_point};
 
 /// Reads every probe of a scene at an equilibrium; `energy` is the strain energy of the model.
@@ -55,13 +57,20 @@ impl Reader<'_> {
     fn displacement(&self, on: [f64; 2], component: Component) -> f64 {
         let mesh = &self.discretization.mesh;
         let place = parameters_of(&self.scene.geometry, on);
-        let [after, before] = [self.at.displacement, &[]].map(|u| mid_surface_point(mesh, u, place).position);
-        let moved = sub(after, before);
+        let [after, before] = [self.at.displacement, &[]].map(|u| mid_surface_point(mesh, u, place));
+        let moved = sub(after.position, before.position);
+        let along = |direction: SurfaceDirection| {
+            let tangents = [before.derivatives[0], before.derivatives[1]];
+            let site = Site { position: before.position, tangents, edge: None };
+            dot(moved, direction_at(&self.scene.geometry, &site, direction))
+        };
         match component {
             Component::X => moved[0],
             Component::Y => moved[1],
             Component::Z => moved[2],
             Component::Magnitude => norm(moved),
+            Component::Normal => along(SurfaceDirection::Normal),
+            Component::Radial => along(SurfaceDirection::Radial),
         }
     }
 

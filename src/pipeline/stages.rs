@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use crate::adapt::{evaluate_indicators, project_displacements};
 use crate::equilibrium::{Effort, Iterate, SolveError, Solved, Standing, Workspace, WorkspaceError, strain_energy};
-use crate::model::{MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, free_motion, starting_mesh};
+use crate::model::{
+    MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, check_balance, free_motion, remarks, starting_mesh,
+};
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::{Outcome, Parameter, Reading, Report, StageError};
 use crate::scene::{Scene, Stage};
@@ -32,18 +34,28 @@ impl Stages {
     /// The state that the scene starts from: undeformed, before the first step.
     ///
     /// # Errors
-    /// Where the scene cannot be made discrete, or its supports leave a rigid motion free.
+    /// Where the scene cannot be made discrete, its supports leave a rigid motion free, or its loads push one that is
+    /// only held so.
     pub fn start(&self) -> Result<State, ModelError> {
         let mesh = starting_mesh(&self.scene)?;
         let unknowns = Unknowns::new(&self.scene, &mesh)?;
         if let Some(motion) = free_motion(&unknowns) {
             return Err(ModelError::FreeMotion { motion });
         }
+        check_balance(&self.scene, &mesh, &unknowns)?;
         if unknowns.count() == 0 {
             return Err(ModelError::NothingFree { elements: mesh.element_counts() });
         }
         let turns = if unknowns.turns_are_unknown() { vec![[0.0; 3]; unknowns.sections().len()] } else { vec![] };
         Ok(State { turns, ..State::undeformed(mesh) })
+    }
+
+    /// What supports and actions of the scene come to where its words leave it open: a sentence each.
+    ///
+    /// # Errors
+    /// Where the supports do not fit the mesh of the state.
+    pub fn remarks(&self, state: &State) -> Result<Vec<String>, ModelError> {
+        Ok(remarks(&self.scene, &state.mesh, &Unknowns::new(&self.scene, &state.mesh)?))
     }
 
     /// Runs a stage. `observer` sees every Newton iterate.

@@ -8,7 +8,7 @@ use super::document::Document;
 use super::error::{Checked, Direction, Fault, Place, Problem, SceneError, Source};
 use super::key_table as keys;
 use super::read::{Found, Reader};
-use super::{general, names, stage_order};
+use super::{actions, general, names, stage_order};
 
 /// Reads a scene from TOML. `file_name` is only what errors call the text.
 ///
@@ -45,7 +45,7 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
     let material = material(reader, &geometry)?;
     let (mesh, symmetry) = mesh(reader)?;
     let (load, increments) = load(reader, &geometry)?;
-    let (supports, actions, probes) = structure(reader, &load)?;
+    let (supports, actions, probes) = structure(reader, &load, (&geometry, &material))?;
     let pipeline = stages(reader)?;
     let adapt = adapt(reader, &pipeline, &geometry)?;
     let solver = solver(reader, increments.as_ref().map(|increments| &increments.first))?;
@@ -78,7 +78,11 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
 }
 
 /// Supports, actions and probes, and whether they make a problem.
-fn structure(reader: &Reader<'_, '_>, load: &Load) -> Checked<(Vec<Support>, Vec<Action>, Vec<Probe>)> {
+fn structure(
+    reader: &Reader<'_, '_>,
+    load: &Load,
+    shell: (&Geometry, &Material),
+) -> Checked<(Vec<Support>, Vec<Action>, Vec<Probe>)> {
     let document = reader.document;
     let tables = document.tables("support");
     let supports: Vec<Support> =
@@ -87,13 +91,13 @@ fn structure(reader: &Reader<'_, '_>, load: &Load) -> Checked<(Vec<Support>, Vec
         .tables("action")
         .into_iter()
         .enumerate()
-        .map(|(k, table)| general::action(table, k + 1))
+        .map(|(k, table)| actions::action(table, k + 1, shell))
         .collect::<Checked<_>>()?;
     let mut probes: Vec<Probe> = Vec::new();
     for table in document.tables("probe") {
         let name = table.place_of("name");
         let other = table.wrong(name.as_ref(), "another probe has the same name", "reports need a name for each");
-        let probe = general::probe(table, &supports)?;
+        let probe = general::probe(table, &supports, shell.0)?;
         if probes.iter().any(|known| known.name == probe.name) {
             return Err(other);
         }
@@ -158,7 +162,7 @@ fn check_steps(reader: &Reader<'_, '_>, supports: &[Support], actions: &[Action]
         Hold::Rigid { motions, .. } => {
             motions.iter().any(|motion| matches!(motion, Motion::Given(value) if *value != 0.0))
         }
-        Hold::Symmetric => false,
+        Hold::Symmetric | Hold::RigidMotions => false,
     };
     if actions.is_empty() && !supports.iter().any(moves) {
         return Err(load.wrong(
@@ -211,8 +215,14 @@ fn material(reader: &Reader<'_, '_>, geometry: &Geometry) -> Checked<Material> {
         let youngs_modulus_mpa = reader.number(&keys::YOUNGS_MODULUS)?.value;
         let poissons_ratio = reader.number(&keys::POISSONS_RATIO)?.value;
         let thickness = reader.number(&keys::THICKNESS)?;
+        let density_kg_m3 = match reader.entry(&keys::DENSITY) {
+            Some(_) => Some(reader.number(&keys::DENSITY)?.value),
+            None => None,
+        };
         general::no_plies(plies)?;
-        (Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm: thickness.value }, thickness.place)
+        let thickness_mm = thickness.value;
+        let material = Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm, density_kg_m3 };
+        (material, thickness.place)
     };
     let thickness_mm = material.thickness_mm();
     if let Some(radius_mm) = radius(geometry).filter(|radius| thickness_mm >= *radius) {

@@ -19,7 +19,7 @@ const fn foreign(spellings: &'static [&'static str], words: &'static str, unit: 
     ForeignUnit { spellings, words, unit, factor }
 }
 
-static FOREIGN_UNITS: [ForeignUnit; 21] = [
+static FOREIGN_UNITS: [ForeignUnit; 25] = [
     foreign(&["mm", "millimetre", "millimetres", "millimeter", "millimeters"], "mm", Unit::Millimetre, 1.0),
     foreign(&["cm", "centimetre", "centimetres", "centimeter", "centimeters"], "cm", Unit::Millimetre, 10.0),
     foreign(&["m", "metre", "metres", "meter", "meters"], "m", Unit::Millimetre, 1000.0),
@@ -46,6 +46,10 @@ static FOREIGN_UNITS: [ForeignUnit; 21] = [
     foreign(&["bar"], "bar", Unit::Megapascal, 0.1),
     foreign(&["psi"], "psi", Unit::Megapascal, 0.006_894_757_293_168_361),
     foreign(&["ksi"], "ksi", Unit::Megapascal, 6.894_757_293_168_361),
+    foreign(&["kg_m3", "kg_per_m3", "kg/m3", "kg/m³"], "kg/m3", Unit::KilogramPerCubicMetre, 1.0),
+    foreign(&["g_cm3", "g_per_cm3", "g/cm3", "g/cm³"], "g/cm3", Unit::KilogramPerCubicMetre, 1e3),
+    foreign(&["kg_mm3", "kg_per_mm3", "kg/mm3", "kg/mm³"], "kg/mm3", Unit::KilogramPerCubicMetre, 1e9),
+    foreign(&["t_mm3", "t_per_mm3", "t/mm3", "t/mm³"], "t/mm3", Unit::KilogramPerCubicMetre, 1e12),
 ];
 
 /// Significant digits that a converted value keeps, so that 0.007 m is 7 mm and not 7.000000000000001.

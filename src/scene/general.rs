@@ -1,9 +1,10 @@
 //! Tables of scenes other than the tape spring with turning ends: geometry, material and load of other kinds, and the
-//! arrays of tables `[[ply]]`, `[[support]]`, `[[action]]` and `[[probe]]`.
+//! arrays of tables `[[ply]]`, `[[support]]` and `[[probe]]`.
 
+use super::actions::has_centre;
 use super::data::{
-    Action, ActionKind, Axis, Component, Edge, Geometry, History, Hold, Load, LoadSteps, Material, Motion, NurbsPatch,
-    OrthotropicLaw, ParametricDirection, Place, Ply, Probe, ProbeKind, Reaction, Seam, Support,
+    Axis, Component, Edge, Geometry, History, Hold, Load, LoadSteps, Material, Motion, NurbsPatch, OrthotropicLaw,
+    ParametricDirection, Place, Ply, Probe, ProbeKind, Reaction, Seam, Support,
 };
 use super::error::Checked;
 use super::table::{ANY, LENGTH, Range, Table};
@@ -18,6 +19,8 @@ pub(super) const LOADS: [&str; 1] = ["steps"];
 pub(super) const ARRAYS: [&str; 4] = ["ply", "support", "action", "probe"];
 
 const ARC: Range = Range { above: 0.0, most: 360.0, reason: "an arc is more than 0 and at most 360 degrees" };
+const FROM: Range = Range { above: -360.0, most: 360.0, reason: "an arc starts between -360 and 360 degrees" };
+const DENSITY: Range = Range { above: 0.0, most: 1e12, reason: "densities are positive, in kg/m3 (steel: 7850)" };
 const MODULUS: Range = Range { above: 0.0, most: 1e13, reason: "moduli are positive, in MPa" };
 
 /// A geometry of one of [`GEOMETRIES`].
@@ -35,6 +38,7 @@ pub(super) fn geometry(table: Table<'_, '_>, folder: &std::path::Path) -> Checke
                 length_mm: table.number("length_mm", LENGTH, "100.0")?,
                 radius_mm: table.number("radius_mm", LENGTH, "50.0")?,
                 arc_deg,
+                from_deg: table.maybe_number("from_deg", FROM)?,
                 seam: seam(&table, arc_deg)?,
             }
         }
@@ -47,7 +51,8 @@ pub(super) fn geometry(table: Table<'_, '_>, folder: &std::path::Path) -> Checke
                     format!("the inner radius, {inner_radius_mm} mm, is not below the outer, {outer_radius_mm} mm");
                 return Err(table.wrong(table.place_of("inner_radius_mm").as_ref(), problem, "exchange them"));
             }
-            Geometry::Annulus { inner_radius_mm, outer_radius_mm, arc_deg, seam: seam(&table, arc_deg)? }
+            let from_deg = table.maybe_number("from_deg", FROM)?;
+            Geometry::Annulus { inner_radius_mm, outer_radius_mm, arc_deg, from_deg, seam: seam(&table, arc_deg)? }
         }
         "sphere-zone" => {
             let arc_deg = table.number("arc_deg", ARC, "90.0")?;
@@ -59,7 +64,8 @@ pub(super) fn geometry(table: Table<'_, '_>, folder: &std::path::Path) -> Checke
                 return Err(table.wrong(table.place_of("latitude_deg").as_ref(), problem, remedy));
             }
             let radius_mm = table.number("radius_mm", LENGTH, "10.0")?;
-            Geometry::SphereZone { radius_mm, latitude_deg, arc_deg, seam: seam(&table, arc_deg)? }
+            let from_deg = table.maybe_number("from_deg", FROM)?;
+            Geometry::SphereZone { radius_mm, latitude_deg, arc_deg, from_deg, seam: seam(&table, arc_deg)? }
         }
         _ => Geometry::Nurbs(nurbs(&table, folder)?),
     };
@@ -247,12 +253,14 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
             law: law(&table, None)?,
             angle_deg: table.number_or("angle_deg", ANY, 0.0)?,
             thickness_mm: table.number("thickness_mm", LENGTH, "0.1")?,
+            density_kg_m3: table.maybe_number("density_kg_m3", DENSITY)?,
         };
         table.finish()?;
         return no_plies(plies).map(|()| material);
     }
     let any = ["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa"];
     let default = if any.iter().any(|name| table.entry(name).is_some()) { Some(law(&table, None)?) } else { None };
+    let density_kg_m3 = table.maybe_number("density_kg_m3", DENSITY)?;
     if plies.is_empty() {
         return Err(table.wrong(
             None,
@@ -267,6 +275,7 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
             thickness_mm: ply.number("thickness_mm", LENGTH, "0.05")?,
             angle_deg: ply.number_or("angle_deg", ANY, 0.0)?,
             law: law(&ply, default)?,
+            density_kg_m3: ply.maybe_number("density_kg_m3", DENSITY)?.or(density_kg_m3),
         });
         ply.finish()?;
     }
@@ -324,7 +333,7 @@ pub(super) fn steps(table: Table<'_, '_>) -> Checked<Load> {
 }
 
 /// Where something is: an edge, a point or a line.
-fn place(table: &Table<'_, '_>) -> Checked<Place> {
+pub(super) fn place(table: &Table<'_, '_>) -> Checked<Place> {
     let remedy = "write an edge (\"u-start\", \"u-end\", \"v-start\", \"v-end\"), a point (`on = [1.0, 0.5]`, fractions of u and v), or a line (`on = \"u=0.5\"`)";
     let Some(entry) = table.entry("on") else { return Err(table.wrong(None, "`on` is missing", remedy)) };
     let at = entry.value_place();
@@ -353,7 +362,7 @@ fn place(table: &Table<'_, '_>) -> Checked<Place> {
     Err(table.wrong(Some(&at), format!("`on` cannot be \"{text}\""), remedy))
 }
 
-fn point(table: &Table<'_, '_>) -> Checked<[f64; 2]> {
+pub(super) fn point(table: &Table<'_, '_>) -> Checked<[f64; 2]> {
     let at: [f64; 2] = table.tuple("on", "[1.0, 0.5]")?;
     if at.iter().any(|fraction| !(0.0..=1.0).contains(fraction)) {
         let problem = format!("there is no point ({}, {})", at[0], at[1]);
@@ -362,7 +371,7 @@ fn point(table: &Table<'_, '_>) -> Checked<[f64; 2]> {
     Ok(at)
 }
 
-fn edge(table: &Table<'_, '_>, what: &str) -> Checked<Edge> {
+pub(super) fn edge(table: &Table<'_, '_>, what: &str) -> Checked<Edge> {
     match place(table)? {
         Place::Edge(edge) => Ok(edge),
         _ => Err(table.wrong(
@@ -373,7 +382,7 @@ fn edge(table: &Table<'_, '_>, what: &str) -> Checked<Edge> {
     }
 }
 
-fn history(table: &Table<'_, '_>) -> Checked<History> {
+pub(super) fn history(table: &Table<'_, '_>) -> Checked<History> {
     let rows: Vec<[f64; 2]> = table.maybe_rows("history", "[[0.0, 0.0], [1.0, 1.0]]")?.unwrap_or_default();
     if rows.windows(2).any(|pair| pair[1][0] <= pair[0][0]) || rows.first().is_some_and(|row| row[0] < 0.0) {
         let remedy = "each row is [load factor, factor]; load factors start at 0 or later and grow from row to row";
@@ -393,7 +402,7 @@ fn history(table: &Table<'_, '_>) -> Checked<History> {
 /// One `[[support]]`.
 pub(super) fn support(table: Table<'_, '_>, ordinal: usize) -> Checked<Support> {
     let name = table.maybe_text("name")?.unwrap_or_else(|| format!("support {ordinal}"));
-    let kinds = ["hinged", "fixed", "displacement", "symmetric", "clamped", "rigid"];
+    let kinds = ["hinged", "fixed", "displacement", "symmetric", "clamped", "rigid", "rigid-motions"];
     let kind = table.word("kind", &kinds.map(|kind| (kind, kind)))?;
     let zero = Some(0.0);
     let (on, hold) = match kind {
@@ -411,7 +420,8 @@ pub(super) fn support(table: Table<'_, '_>, ordinal: usize) -> Checked<Support> 
             }
             (place(&table)?, Hold::Displacement { displacement_mm })
         }
-        "symmetric" => (Place::Edge(edge(&table, "a plane of symmetry")?), Hold::Symmetric),
+        "symmetric" => (edge_or_line(&table)?, Hold::Symmetric),
+        "rigid-motions" => (Place::Whole, Hold::RigidMotions),
         "clamped" => {
             let motions = [Motion::Given(0.0); 6];
             let hold = Hold::Rigid { motions, reference_mm: None, normals_turn: true };
@@ -422,6 +432,18 @@ pub(super) fn support(table: Table<'_, '_>, ordinal: usize) -> Checked<Support> 
     let history = if ["displacement", "rigid"].contains(&kind) { history(&table)? } else { History::default() };
     table.finish()?;
     Ok(Support { name, on, hold, history })
+}
+
+/// Where a plane of symmetry may lie.
+fn edge_or_line(table: &Table<'_, '_>) -> Checked<Place> {
+    match place(table)? {
+        on @ (Place::Edge(_) | Place::Line(..)) => Ok(on),
+        _ => Err(table.wrong(
+            table.place_of("on").as_ref(),
+            "a plane of symmetry needs a whole edge or line",
+            "write an edge, such as `on = \"u-start\"`, or a line inside, such as `on = \"u=0.5\"`",
+        )),
+    }
 }
 
 fn held(table: &Table<'_, '_>) -> Checked<[Option<f64>; 3]> {
@@ -471,40 +493,15 @@ fn rigid(table: &Table<'_, '_>) -> Checked<Hold> {
     Ok(Hold::Rigid { motions, reference_mm, normals_turn })
 }
 
-/// One `[[action]]`.
-pub(super) fn action(table: Table<'_, '_>, ordinal: usize) -> Checked<Action> {
-    let name = table.maybe_text("name")?.unwrap_or_else(|| format!("action {ordinal}"));
-    let kinds = ["force", "line-force", "edge-moment", "pressure"];
-    let kind = match table.word("kind", &kinds.map(|kind| (kind, kind)))? {
-        "force" => ActionKind::Force { on: point(&table)?, force_n: table.tuple("force_n", "[0.0, 0.0, 1.0]")? },
-        "line-force" => {
-            let on = place(&table)?;
-            if matches!(on, Place::Point(_)) {
-                return Err(table.wrong(
-                    table.place_of("on").as_ref(),
-                    "a force per length needs a length",
-                    "write an edge or a line in `on`, or use `kind = \"force\"` and `force_n`",
-                ));
-            }
-            ActionKind::LineForce { on, force_n_per_mm: table.tuple("force_n_per_mm", "[0.0, 0.0, 1.0]")? }
-        }
-        "edge-moment" => ActionKind::EdgeMoment {
-            on: edge(&table, "an edge moment")?,
-            moment_n: table.number("moment_n", ANY, "1.0")?,
-        },
-        _ => ActionKind::Pressure {
-            pressure_mpa: table.number("pressure_mpa", ANY, "0.001")?,
-            follower: table.switch_or("follower", true)?,
-        },
-    };
-    let history = history(&table)?;
-    table.finish()?;
-    Ok(Action { name, kind, history })
-}
-
 const AXES: [(&str, Axis); 3] = [("x", Axis::X), ("y", Axis::Y), ("z", Axis::Z)];
-const COMPONENTS: [(&str, Component); 4] =
-    [("x", Component::X), ("y", Component::Y), ("z", Component::Z), ("magnitude", Component::Magnitude)];
+const COMPONENTS: [(&str, Component); 6] = [
+    ("x", Component::X),
+    ("y", Component::Y),
+    ("z", Component::Z),
+    ("magnitude", Component::Magnitude),
+    ("normal", Component::Normal),
+    ("radial", Component::Radial),
+];
 const REACTIONS: [(&str, Reaction); 6] = [
     ("force-x", Reaction::ForceX),
     ("force-y", Reaction::ForceY),
@@ -515,7 +512,7 @@ const REACTIONS: [(&str, Reaction); 6] = [
 ];
 
 /// One `[[probe]]`.
-pub(super) fn probe(table: Table<'_, '_>, supports: &[Support]) -> Checked<Probe> {
+pub(super) fn probe(table: Table<'_, '_>, supports: &[Support], geometry: &Geometry) -> Checked<Probe> {
     let Some(name) = table.maybe_text("name")? else {
         return Err(table.wrong(
             None,
@@ -526,7 +523,11 @@ pub(super) fn probe(table: Table<'_, '_>, supports: &[Support]) -> Checked<Probe
     let kinds = ["displacement", "reaction", "section-moment", "energy", "bending-strain"];
     let kind = match table.word("kind", &kinds.map(|kind| (kind, kind)))? {
         "displacement" => {
-            ProbeKind::Displacement { on: point(&table)?, component: table.word("component", &COMPONENTS)? }
+            let component = table.word("component", &COMPONENTS)?;
+            if component == Component::Radial {
+                has_centre(&table, "component", geometry)?;
+            }
+            ProbeKind::Displacement { on: point(&table)?, component }
         }
         "reaction" => {
             let known: Vec<String> = supports.iter().map(|support| format!("\"{}\"", support.name)).collect();

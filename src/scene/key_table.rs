@@ -2,7 +2,7 @@
 
 use super::identity::Reach::{Everything, Free, Steps};
 use super::keys::Presence::{Default, Follows, InsteadOf, Required};
-use super::keys::Unit::{Degree, Megapascal, Millimetre, None};
+use super::keys::Unit::{Degree, KilogramPerCubicMetre, Megapascal, Millimetre, None};
 use super::keys::{Choice, Key, Kind, Limit, Limits, Section};
 
 /// The tables of a scene file, in the order in which one would write them.
@@ -21,7 +21,7 @@ pub static SECTIONS: [Section; 11] = [
 ];
 
 /// The keys of a scene file, table by table.
-pub static KEYS: [&Key; 34] = [
+pub static KEYS: [&Key; 35] = [
     &GEOMETRY_KIND,
     &LENGTH,
     &RADIUS,
@@ -30,6 +30,7 @@ pub static KEYS: [&Key; 34] = [
     &YOUNGS_MODULUS,
     &POISSONS_RATIO,
     &THICKNESS,
+    &DENSITY,
     &DEGREE,
     &ELEMENTS,
     &QUADRATURE,
@@ -189,6 +190,21 @@ pub(super) static THICKNESS: Key = Key {
     meaning: "Shell thickness t; less than the radius.",
     example: "0.1",
     aliases: &["t", "h"],
+};
+
+pub(super) static DENSITY: Key = Key {
+    section: "material",
+    name: "density_kg_m3",
+    unit: KilogramPerCubicMetre,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(0.0, "a shell without mass has no weight; leave the key out"),
+        high: Limit::included(1e12, "far denser than anything (osmium: 22590 kg/m3)"),
+    }),
+    presence: Follows("none, and nothing weighs"),
+    reach: Everything,
+    meaning: "Density rho; only an [[action]] of kind \"gravity\" asks for it.",
+    example: "7850.0",
+    aliases: &["rho", "ρ", "mass_density"],
 };
 
 pub(super) static DEGREE: Key = Key {

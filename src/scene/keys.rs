@@ -81,6 +81,8 @@ pub enum Unit {
     Degree,
     /// Megapascals, N/mm².
     Megapascal,
+    /// Kilograms per cubic metre.
+    KilogramPerCubicMetre,
 }
 
 impl Unit {
@@ -91,6 +93,7 @@ impl Unit {
             Unit::Millimetre => "mm",
             Unit::Degree => "deg",
             Unit::Megapascal => "mpa",
+            Unit::KilogramPerCubicMetre => "kg_m3",
         }
     }
 
@@ -101,6 +104,7 @@ impl Unit {
             Unit::Millimetre => "mm",
             Unit::Degree => "degrees",
             Unit::Megapascal => "MPa",
+            Unit::KilogramPerCubicMetre => "kg/m3",
         }
     }
 }

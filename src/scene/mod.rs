@@ -11,12 +11,13 @@
 //! | `syntax` | text that is not TOML |
 //! | `names`, `foreign_unit` | wrong names, and what was meant by them |
 //! | `read` | one entry to one value, within the limits of its key |
-//! | `table`, `general` | tables whose keys depend on their kind: geometries, materials, supports, actions, probes |
+//! | `table`, `general`, `actions` | tables whose keys depend on their kind: geometries, materials, supports, actions, probes |
 //! | `check`, `stage_order` | entries to a scene; what must hold between keys, and between stages |
 //! | `error`, `explain`, `render` | what can be wrong, in words, and with the text underlined |
 //! | `identity` | hash and differences of scenes |
 //! | `write`, `help` | a scene as TOML; the help text |
 
+mod actions;
 mod check;
 mod data;
 mod document;
@@ -40,9 +41,9 @@ mod write_general;
 pub use check::{parse, parse_with_settings};
 pub use data::{
     Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Component, Edge, EndRotation, Expectation,
-    ExpectedOutcome, FreeWord, Geometry, History, Hold, LengthLimit, Load, LoadSteps, Material, MeshSpec, Motion,
-    NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe, ProbeKind, Quadrature, Reaction, Scene,
-    Seam, Sense, Solver, Stage, Support, Symmetry, SyncPolicy,
+    ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, LengthLimit, Load, LoadSteps, LoadedArea,
+    Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe, ProbeKind,
+    Quadrature, Reaction, Scene, Seam, Sense, Solver, Stage, Support, SurfaceDirection, Symmetry, SyncPolicy,
 };
 pub use error::{Direction, Problem, SceneError, StageOrderProblem, SyntaxSlip, ValueType};
 pub use help::help_text;

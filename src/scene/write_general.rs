@@ -1,8 +1,8 @@
 //! Arrays of tables of a scene as TOML.
 
 use super::data::{
-    Action, ActionKind, Component, Edge, History, Hold, Material, Motion, ParametricDirection, Place, Probe, ProbeKind,
-    Scene, Support,
+    Action, ActionKind, Edge, ForceVector, History, Hold, LoadedArea, Material, Motion, ParametricDirection, Place,
+    Probe, ProbeKind, Scene, Support,
 };
 use super::keys::toml_float;
 
@@ -20,7 +20,8 @@ pub(super) fn arrays(scene: &Scene) -> String {
                 ("poissons_ratio_12", law.poissons_ratio_12),
                 ("shear_modulus_12_mpa", law.shear_modulus_12_mpa),
             ];
-            let lines = numbers.map(|(name, value)| format!("{name} = {}", toml_float(value)));
+            let mut lines = numbers.map(|(name, value)| format!("{name} = {}", toml_float(value))).to_vec();
+            lines.extend(ply.density_kg_m3.map(|value| format!("density_kg_m3 = {}", toml_float(value))));
             table(&mut text, "ply", &lines);
         }
     }
@@ -57,6 +58,18 @@ fn place(on: Place) -> String {
         Place::Point(at) => list(&at),
         Place::Line(ParametricDirection::U, fraction) => format!("\"u={}\"", toml_float(fraction)),
         Place::Line(ParametricDirection::V, fraction) => format!("\"v={}\"", toml_float(fraction)),
+        Place::Whole => "\"whole\"".into(),
+    }
+}
+
+/// A force as one line, or as a size and `along`.
+fn force(name: &str, force: ForceVector) -> Vec<String> {
+    match force {
+        ForceVector::Components(components) => vec![format!("{name} = {}", list(&components))],
+        ForceVector::Along(size, direction) => {
+            let word = serde_json::to_value(direction).unwrap_or_default();
+            vec![format!("{name} = {}", toml_float(size)), format!("along = {word}")]
+        }
     }
 }
 
@@ -68,8 +81,12 @@ fn history(lines: &mut Vec<String>, history: &History) {
 }
 
 fn support_lines(support: &Support) -> Vec<String> {
-    let mut lines = vec![format!("name = {}", quoted(&support.name)), format!("on = {}", place(support.on))];
+    let mut lines = vec![format!("name = {}", quoted(&support.name))];
+    if support.on != Place::Whole {
+        lines.push(format!("on = {}", place(support.on)));
+    }
     match &support.hold {
+        Hold::RigidMotions => lines.push("kind = \"rigid-motions\"".into()),
         Hold::Symmetric => lines.push("kind = \"symmetric\"".into()),
         Hold::Displacement { displacement_mm } => {
             lines.push("kind = \"displacement\"".into());
@@ -100,13 +117,23 @@ fn action_lines(action: &Action) -> Vec<String> {
     let mut lines = vec![format!("name = {}", quoted(&action.name))];
     lines.extend(match &action.kind {
         ActionKind::Force { on, force_n } => {
-            vec!["kind = \"force\"".into(), format!("on = {}", list(on)), format!("force_n = {}", list(force_n))]
+            [vec!["kind = \"force\"".into(), format!("on = {}", list(on))], force("force_n", *force_n)].concat()
         }
-        ActionKind::LineForce { on, force_n_per_mm } => vec![
-            "kind = \"line-force\"".into(),
-            format!("on = {}", place(*on)),
-            format!("force_n_per_mm = {}", list(force_n_per_mm)),
-        ],
+        ActionKind::LineForce { on, force_n_per_mm } => {
+            let place = format!("on = {}", place(*on));
+            [vec!["kind = \"line-force\"".into(), place], force("force_n_per_mm", *force_n_per_mm)].concat()
+        }
+        ActionKind::AreaForce { force_n_per_mm2, per } => {
+            let mut lines = vec!["kind = \"area-force\"".into()];
+            lines.extend(force("force_n_per_mm2", *force_n_per_mm2));
+            if *per == LoadedArea::Projected {
+                lines.push("per = \"projected-area\"".into());
+            }
+            lines
+        }
+        ActionKind::Gravity { acceleration_m_s2 } => {
+            vec!["kind = \"gravity\"".into(), format!("acceleration_m_s2 = {}", list(acceleration_m_s2))]
+        }
         ActionKind::EdgeMoment { on, moment_n } => vec![
             "kind = \"edge-moment\"".into(),
             format!("on = {}", edge(*on)),
@@ -128,14 +155,9 @@ fn probe_lines(probe: &Probe) -> Vec<String> {
     let word = |value: serde_json::Value| format!("component = {value}");
     match &probe.kind {
         ProbeKind::Displacement { on, component } => {
-            let component = match component {
-                Component::X => "x",
-                Component::Y => "y",
-                Component::Z => "z",
-                Component::Magnitude => "magnitude",
-            };
             let kind = "kind = \"displacement\"".into();
-            vec![name, kind, format!("on = {}", list(on)), format!("component = \"{component}\"")]
+            let component = word(serde_json::to_value(component).unwrap_or_default());
+            vec![name, kind, format!("on = {}", list(on)), component]
         }
         ProbeKind::Reaction { support, component } => vec![
             name,

@@ -18,12 +18,13 @@ pub struct ShellStiffness {
 /// Stiffness at a point with reference tangents A₁, A₂.
 pub fn shell_stiffness(material: &Material, tangents: [[f64; 3]; 2]) -> ShellStiffness {
     match material {
-        Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm } => {
+        Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm, .. } => {
             isotropic(*youngs_modulus_mpa, *poissons_ratio, *thickness_mm, tangents)
         }
-        Material::Orthotropic { law, angle_deg, thickness_mm } => {
-            layered(&[Ply { thickness_mm: *thickness_mm, angle_deg: *angle_deg, law: *law }], tangents)
-        }
+        Material::Orthotropic { law, angle_deg, thickness_mm, .. } => layered(
+            &[Ply { thickness_mm: *thickness_mm, angle_deg: *angle_deg, law: *law, density_kg_m3: None }],
+            tangents,
+        ),
         Material::Laminate { plies } => layered(plies, tangents),
     }
 }
@@ -165,7 +166,7 @@ mod tests {
             shear_modulus_12_mpa: e / (2.0 * (1.0 + nu)),
         };
         let expected = isotropic(e, nu, t, TANGENTS);
-        let ply = |angle_deg: f64| Ply { thickness_mm: t / 4.0, angle_deg, law };
+        let ply = |angle_deg: f64| Ply { thickness_mm: t / 4.0, angle_deg, law, density_kg_m3: None };
         let found = layered(&[ply(0.0), ply(30.0), ply(-70.0), ply(90.0)], TANGENTS);
         close(found.membrane, expected.membrane);
         close(found.bending, expected.bending);
@@ -175,7 +176,7 @@ mod tests {
     /// [0/90] by hand: B₁₁ = (E₂ − E₁) t² / 8(1 − ν₁₂ν₂₁) with the 0° ply at the bottom.
     #[test]
     fn a_cross_ply_strip_couples_as_by_hand() {
-        let ply = |angle_deg: f64| Ply { thickness_mm: 0.1, angle_deg, law: LAW };
+        let ply = |angle_deg: f64| Ply { thickness_mm: 0.1, angle_deg, law: LAW, density_kg_m3: None };
         let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let found = layered(&[ply(0.0), ply(90.0)], unit);
         let scale = 1.0 / (1.0 - 0.3 * 0.3 * 10.0 / 140.0);
@@ -191,8 +192,8 @@ mod tests {
     #[test]
     fn energy_is_that_of_the_layers() {
         let plies = [
-            Ply { thickness_mm: 0.1, angle_deg: 20.0, law: LAW },
-            Ply { thickness_mm: 0.25, angle_deg: -50.0, law: LAW },
+            Ply { thickness_mm: 0.1, angle_deg: 20.0, law: LAW, density_kg_m3: None },
+            Ply { thickness_mm: 0.25, angle_deg: -50.0, law: LAW, density_kg_m3: None },
         ];
         let stiffness = layered(&plies, TANGENTS);
         let (membrane, bending) = ([1e-3, -2e-3, 5e-4], [4e-3, 1e-3, -2e-3]);

@@ -316,7 +316,12 @@ pub(super) mod tests {
     use super::*;
 
     pub(in crate::shell) fn sample() -> (PointReference, [[f64; 3]; 5]) {
-        sample_of(&Material::Isotropic { youngs_modulus_mpa: 100.0, poissons_ratio: 0.3, thickness_mm: 0.5 })
+        sample_of(&Material::Isotropic {
+            youngs_modulus_mpa: 100.0,
+            poissons_ratio: 0.3,
+            thickness_mm: 0.5,
+            density_kg_m3: None,
+        })
     }
 
     pub(in crate::shell) fn laminate() -> Material {
@@ -326,7 +331,12 @@ pub(super) mod tests {
             poissons_ratio_12: 0.3,
             shear_modulus_12_mpa: 15.0,
         };
-        let ply = |angle_deg: f64, modulus: f64| crate::scene::Ply { thickness_mm: 0.3, angle_deg, law: law(modulus) };
+        let ply = |angle_deg: f64, modulus: f64| crate::scene::Ply {
+            thickness_mm: 0.3,
+            angle_deg,
+            law: law(modulus),
+            density_kg_m3: None,
+        };
         Material::Laminate { plies: vec![ply(10.0, 100.0), ply(-60.0, 40.0)] }
     }
 

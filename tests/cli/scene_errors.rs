@@ -566,6 +566,23 @@ fn general_supports_actions_and_probes() {
             ("[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]", "[[0.0, 1.0], [2.0, 1.0]]"),
             ("[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]", "[0.0, 1.0]"),
             ("component = \"z\"", "component = \"w\""),
+            ("component = \"z\"", "component = \"radial\""),
+            ("[0.0, 0.0, 0.02]", "0.02\nalong = \"radial\""),
+            ("[0.0, 0.0, 0.02]", "[0.0, 0.0, 0.02]\nalong = \"normal\""),
+            ("kind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, 0.02]", "kind = \"gravity\""),
+            (
+                "on = \"u-end\"\nkind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, 0.02]",
+                "kind = \"area-force\"\nforce_n_per_mm2 = 0.02\nalong = \"normal\"\nper = \"projected-area\"",
+            ),
+            (
+                "on = \"u-end\"\nkind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, 0.02]",
+                "kind = \"area-force\"\nforce_n_per_mm2 = 0.02\nalong = \"outward\"",
+            ),
+            ("kind = \"displacement\"\nz_mm = 0.5", "kind = \"symmetric\""),
+            (
+                "name = \"side\"\non = \"v-start\"\nkind = \"fixed\"\nhold = [\"y\"]",
+                "name = \"side\"\non = \"v-start\"\nkind = \"rigid-motions\"",
+            ),
             ("support = \"root\"", "support = \"foot\""),
             ("name = \"tip\"\n", ""),
             ("name = \"root moment\"", "name = \"tip\""),

@@ -130,6 +130,7 @@ fn another_value(key: &Key) -> Option<&'static str> {
         "material.youngs_modulus_mpa" => "70000",
         "material.poissons_ratio" => "0.31",
         "material.thickness_mm" => "0.2",
+        "material.density_kg_m3" => "7850",
         "mesh.degree" => "[3, 4]",
         "mesh.elements" => "[4, 6]",
         "mesh.quadrature" => "reduced",

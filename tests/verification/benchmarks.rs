@@ -154,7 +154,8 @@ fn laminated_plate() {
 #[test]
 fn six_motions_six_reactions() {
     let mut scene = read("rolled-cantilever");
-    scene.geometry = Geometry::CylinderPanel { length_mm: 60.0, radius_mm: 20.0, arc_deg: 120.0, seam: None };
+    scene.geometry =
+        Geometry::CylinderPanel { length_mm: 60.0, radius_mm: 20.0, arc_deg: 120.0, from_deg: None, seam: None };
     scene.mesh.elements = [6, 6];
     scene.actions.clear();
     scene.solver.tolerance = 1e-11;
@@ -234,15 +235,18 @@ fn free_motions_of_a_section_carry_nothing() {
 fn observed_orders() {
     let energy = |degree: usize, elements: usize| {
         let mut scene = read("rolled-cantilever");
-        scene.geometry = Geometry::CylinderPanel { length_mm: 2.0, radius_mm: 10.0, arc_deg: 90.0, seam: None };
+        scene.geometry =
+            Geometry::CylinderPanel { length_mm: 2.0, radius_mm: 10.0, arc_deg: 90.0, from_deg: None, seam: None };
         if let foldline::scene::Material::Isotropic { thickness_mm, .. } = &mut scene.material {
             *thickness_mm = 1.0;
         }
         scene.mesh.degree = [2, degree];
         scene.mesh.elements = [1, elements];
         scene.supports[0].on = Place::Edge(Edge::VStart);
-        scene.actions[0].kind =
-            foldline::scene::ActionKind::LineForce { on: Place::Edge(Edge::VEnd), force_n_per_mm: [0.0, 0.0, 1e-3] };
+        scene.actions[0].kind = foldline::scene::ActionKind::LineForce {
+            on: Place::Edge(Edge::VEnd),
+            force_n_per_mm: [0.0, 0.0, 1e-3].into(),
+        };
         scene.probes.clear();
         scene.solver.tolerance = 1e-12;
         scene.load = Load::Steps(LoadSteps {

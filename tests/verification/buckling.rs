@@ -20,7 +20,7 @@ fn column(target: f64) -> Scene {
     column.mesh.elements = [16, 1];
     column.load.set_target(target);
     let ActionKind::LineForce { force_n_per_mm, .. } = &mut column.actions[0].kind else { panic!() };
-    *force_n_per_mm = [-EULER_N_PER_MM, 0.0, 0.0];
+    *force_n_per_mm = [-EULER_N_PER_MM, 0.0, 0.0].into();
     column
 }
 

@@ -1,7 +1,7 @@
 //! Physics against closed forms, published tables, independent solvers and finite differences.
 
+mod actions;
 mod assembly;
-
 mod baseline;
 mod benchmarks;
 mod buckling;

@@ -3,10 +3,10 @@ use std::ops::{Add, Div, Mul, Sub};
 use super::*;
 use crate::model::starting_mesh;
 use crate::scene::{Quadrature, parse};
-use crate::shell::Hessian;
+use crate::shell::{Hessian, PointReference};
 
 /// Every number of points and of functions that leaves something over: in a batch, a block, a vector, a tile.
-const CASES: [([usize; 2], Quadrature); 13] = [
+const CASES: [([usize; 2], Quadrature); 16] = [
     ([2, 2], Quadrature::Full),
     ([2, 2], Quadrature::Reduced),
     ([2, 3], Quadrature::Full),
@@ -20,6 +20,9 @@ const CASES: [([usize; 2], Quadrature); 13] = [
     ([4, 3], Quadrature::Reduced),
     ([5, 3], Quadrature::Full),
     ([5, 5], Quadrature::Full),
+    ([2, 2], Quadrature::Balanced),
+    ([3, 3], Quadrature::Balanced),
+    ([4, 3], Quadrature::Balanced),
 ];
 
 const ELEMENT: usize = 5;
@@ -67,6 +70,16 @@ fn difference(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs())) / largest
 }
 
+/// Points of the element, the derivatives of its functions there, and how many those are.
+fn point_lists(tables: &Tables) -> Vec<(&[PointReference], &[f64], usize)> {
+    let whole = &tables.points;
+    let mut lists = vec![(whole.element_points(ELEMENT), whole.element_functions(ELEMENT), 5)];
+    lists.extend(
+        tables.stretching.iter().map(|table| (table.element_points(ELEMENT), table.element_functions(ELEMENT), 2)),
+    );
+    lists
+}
+
 /// Energy, residual and stiffness as plain sums over points, from the derivatives of single points.
 fn plain_sums(tables: &Tables) -> (f64, Vec<f64>, Vec<f64>) {
     let (used, padded) = (tables.functions_per_element, tables.padded);
@@ -75,24 +88,27 @@ fn plain_sums(tables: &Tables) -> (f64, Vec<f64>, Vec<f64>) {
     let mut residual = vec![0.0; 3 * used];
     let mut stiffness = Vec::new();
     let mut at_points = Vec::new();
-    for (q, point) in tables.element_points(ELEMENT).iter().enumerate() {
-        let f: Vec<&[f64]> =
-            (0..5).map(|k| &tables.element_functions(ELEMENT)[(q * 5 + k) * padded..][..used]).collect();
-        let mut u = [[0.0; 3]; 5];
-        for k in 0..5 {
+    let zeros = vec![0.0; used];
+    for (references, functions, rows) in point_lists(tables) {
+        for (q, point) in references.iter().enumerate() {
+            let row = |k: usize| if k < rows { &functions[(q * rows + k) * padded..][..used] } else { &zeros };
+            let f: Vec<Vec<f64>> = (0..5).map(|k| row(k).to_vec()).collect();
+            let mut u = [[0.0; 3]; 5];
+            for k in 0..5 {
+                for c in 0..3 {
+                    u[k][c] = (0..used).map(|a| f[k][a] * displacement[c * padded + a]).sum();
+                }
+            }
+            let mut hessian: Hessian = [[0.0; 16]; 15];
+            let (of_point, gradient) = point.hessian(&u, &mut hessian);
+            energy += of_point;
             for c in 0..3 {
-                u[k][c] = (0..used).map(|a| f[k][a] * displacement[c * padded + a]).sum();
+                for a in 0..used {
+                    residual[c * used + a] += (0..5).map(|k| f[k][a] * gradient[k][c]).sum::<f64>();
+                }
             }
+            at_points.push((f, hessian));
         }
-        let mut hessian: Hessian = [[0.0; 16]; 15];
-        let (of_point, gradient) = point.hessian(&u, &mut hessian);
-        energy += of_point;
-        for c in 0..3 {
-            for a in 0..used {
-                residual[c * used + a] += (0..5).map(|k| f[k][a] * gradient[k][c]).sum::<f64>();
-            }
-        }
-        at_points.push((f, hessian));
     }
     for b in 0..used {
         for dc in 0..9 {
@@ -110,6 +126,12 @@ fn plain_sums(tables: &Tables) -> (f64, Vec<f64>, Vec<f64>) {
         }
     }
     (energy, residual, stiffness)
+}
+
+#[test]
+fn stretching_has_points_of_its_own_in_some_cases() {
+    let own = CASES.iter().filter(|(degree, quadrature)| tables_of(*degree, *quadrature).stretching.is_some());
+    assert_eq!(own.count(), 3);
 }
 
 #[test]
@@ -206,7 +228,7 @@ fn the_width_of_the_vectors_changes_no_bit() {
         let tables = tables_of(degree, quadrature);
         let narrow = numbers(&tables, &integrated(&tables, Want::Stiffness, Build::Fma(fma)));
         let mut buffers = prepared(&tables);
-        integrate::<Fma, Eight>(fma, (), &Points::of(&tables, ELEMENT), Want::Stiffness, &mut buffers);
+        integrate::<Fma, Eight>(fma, (), &ElementPoints::of(&tables, ELEMENT), Want::Stiffness, &mut buffers);
         assert!(numbers(&tables, &buffers) == narrow, "{degree:?}");
         if let Some(avx512) = HasAvx512::detect() {
             let wide = integrated(&tables, Want::Stiffness, Build::Avx512(avx512));

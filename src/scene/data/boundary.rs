@@ -49,6 +49,8 @@ pub enum Place {
     Point([f64; 2]),
     /// The line on which one direction has a fraction, strictly inside (0, 1).
     Line(ParametricDirection, f64),
+    /// The whole surface.
+    Whole,
 }
 
 /// A part of the shell that is held or moved.
@@ -76,9 +78,12 @@ pub enum Hold {
         /// Displacement in x, y, z at factor 1, mm; `None` is free.
         displacement_mm: [Option<f64>; 3],
     },
-    /// The edge lies in a plane of symmetry: displacements across the plane and turns about the edge are zero. The
-    /// edge must be plane, and the surface must cross the plane at right angles. Edges only.
+    /// The edge, or a line inside, lies in a plane of symmetry: displacements across the plane and turns about the edge
+    /// or line are zero. It must be plane, and the surface must cross the plane at right angles. Edges and lines only.
     Symmetric,
+    /// The rigid motions that the other supports leave free are held, and nothing else: the shell takes no part in them
+    /// on the mean of points spread over it. Loads in balance leave no reaction. [`Place::Whole`] only.
+    RigidMotions,
     /// The edge is a rigid section with a pose of its own. `clamped` in a scene is one with all six motions held. The
     /// membrane strain at the edge stays free. Edges only.
     Rigid {
@@ -138,15 +143,28 @@ pub enum ActionKind {
     Force {
         /// Fractions (u, v).
         on: [f64; 2],
-        /// Components in x, y, z.
-        force_n: [f64; 3],
+        /// N.
+        force_n: ForceVector,
     },
     /// A dead force per undeformed length of an edge or a line.
     LineForce {
         /// Edge or line.
         on: Place,
-        /// Components in x, y, z.
-        force_n_per_mm: [f64; 3],
+        /// N/mm.
+        force_n_per_mm: ForceVector,
+    },
+    /// A dead force per area of the whole surface.
+    AreaForce {
+        /// N/mm².
+        force_n_per_mm2: ForceVector,
+        /// The area that is meant.
+        #[serde(default, skip_serializing_if = "LoadedArea::is_undeformed")]
+        per: LoadedArea,
+    },
+    /// Own weight: mass per undeformed area times an acceleration.
+    Gravity {
+        /// Components in x, y, z, m/s².
+        acceleration_m_s2: [f64; 3],
     },
     /// A moment per undeformed length of an edge, about the tangent of the deformed edge in the direction of
     /// growing u or v (right-hand rule); it turns with the shell.
@@ -164,6 +182,52 @@ pub enum ActionKind {
         /// undeformed shell (dead).
         follower: bool,
     },
+}
+
+/// A dead force, or force per length or area.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ForceVector {
+    /// Components in x, y, z.
+    Components([f64; 3]),
+    /// A size in a direction that each point of the undeformed surface has of its own.
+    Along(f64, SurfaceDirection),
+}
+
+impl From<[f64; 3]> for ForceVector {
+    fn from(components: [f64; 3]) -> Self {
+        ForceVector::Components(components)
+    }
+}
+
+/// A direction that a point of the undeformed surface has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SurfaceDirection {
+    /// Along the normal.
+    Normal,
+    /// Away from the axis or the centre ([`super::Geometry::away_from_centre`]).
+    Radial,
+    /// In the surface, square to an edge, out of the shell. Edges only.
+    Outward,
+}
+
+/// The area that a force per area is meant by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LoadedArea {
+    /// Of the undeformed surface.
+    #[default]
+    Undeformed,
+    /// Of its projection on a plane square to the force: snow.
+    Projected,
+}
+
+impl LoadedArea {
+    /// Whether it is the default.
+    pub fn is_undeformed(&self) -> bool {
+        *self == LoadedArea::Undeformed
+    }
 }
 
 /// Factor over the load factor: straight between (load factor, factor) pairs, constant beyond the last. Empty: the

@@ -31,6 +31,9 @@ pub enum Geometry {
         radius_mm: f64,
         /// Angle subtended, up to 360.
         arc_deg: f64,
+        /// Angle from the top (+z) towards +y at which the arc starts; `None`: −arc/2, so that its middle is on top.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        from_deg: Option<f64>,
         /// What a full turn does where it meets itself; given exactly where `arc_deg` is 360.
         #[serde(skip_serializing_if = "Option::is_none")]
         seam: Option<Seam>,
@@ -44,6 +47,9 @@ pub enum Geometry {
         outer_radius_mm: f64,
         /// Angle, up to 360.
         arc_deg: f64,
+        /// Angle from the +x axis at which it starts; `None`: 0.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        from_deg: Option<f64>,
         /// As for [`Geometry::CylinderPanel`].
         #[serde(skip_serializing_if = "Option::is_none")]
         seam: Option<Seam>,
@@ -57,12 +63,28 @@ pub enum Geometry {
         latitude_deg: [f64; 2],
         /// Longitudes, up to 360.
         arc_deg: f64,
+        /// Longitude at which it starts; `None`: 0.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        from_deg: Option<f64>,
         /// As for [`Geometry::CylinderPanel`].
         #[serde(skip_serializing_if = "Option::is_none")]
         seam: Option<Seam>,
     },
     /// Any surface of one patch.
     Nurbs(NurbsPatch),
+}
+
+impl Geometry {
+    /// Vector to a point from the axis of a cylinder or an annulus, or from the centre of a sphere, mm; `None` for shapes
+    /// that have neither.
+    pub fn away_from_centre(&self, [x, y, z]: [f64; 3]) -> Option<[f64; 3]> {
+        match self {
+            Geometry::TapeSpring { .. } | Geometry::CylinderPanel { .. } => Some([0.0, y, z]),
+            Geometry::Annulus { .. } => Some([x, y, 0.0]),
+            Geometry::SphereZone { .. } => Some([x, y, z]),
+            Geometry::Plate { .. } | Geometry::Nurbs(_) => None,
+        }
+    }
 }
 
 /// What a full turn does where it meets itself.

@@ -14,6 +14,9 @@ pub enum Material {
         poissons_ratio: f64,
         /// Shell thickness t.
         thickness_mm: f64,
+        /// Density ρ, kg/m³; only [`super::ActionKind::Gravity`] asks for it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        density_kg_m3: Option<f64>,
     },
     /// One orthotropic layer, symmetric about the mid-surface.
     Orthotropic {
@@ -24,6 +27,9 @@ pub enum Material {
         angle_deg: f64,
         /// Shell thickness t.
         thickness_mm: f64,
+        /// Density ρ, kg/m³; only [`super::ActionKind::Gravity`] asks for it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        density_kg_m3: Option<f64>,
     },
     /// Plies through the thickness, from the side that the normal points away from (bottom) to the other (top); the
     /// surface of the geometry lies in the middle of the total thickness.
@@ -41,7 +47,20 @@ impl Material {
             Material::Laminate { plies } => plies.iter().map(|ply| ply.thickness_mm).sum(),
         }
     }
+
+    /// Mass per area of the surface, kg/mm²; `None` where a density is missing.
+    pub fn mass_kg_per_mm2(&self) -> Option<f64> {
+        let layer = |density_kg_m3: Option<f64>, thickness_mm: f64| Some(density_kg_m3? * CUBIC_METRES * thickness_mm);
+        match self {
+            Material::Isotropic { density_kg_m3, thickness_mm, .. }
+            | Material::Orthotropic { density_kg_m3, thickness_mm, .. } => layer(*density_kg_m3, *thickness_mm),
+            Material::Laminate { plies } => plies.iter().map(|ply| layer(ply.density_kg_m3, ply.thickness_mm)).sum(),
+        }
+    }
 }
+
+/// A cubic millimetre in cubic metres.
+const CUBIC_METRES: f64 = 1e-9;
 
 /// Moduli of an orthotropic layer in plane stress.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,4 +85,7 @@ pub struct Ply {
     /// Moduli in the material axes.
     #[serde(flatten)]
     pub law: OrthotropicLaw,
+    /// Density ρ, kg/m³.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density_kg_m3: Option<f64>,
 }

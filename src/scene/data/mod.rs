@@ -6,7 +6,10 @@ mod geometry;
 mod material;
 mod probe;
 
-pub use boundary::{Action, ActionKind, Edge, FreeWord, History, Hold, Motion, ParametricDirection, Place, Support};
+pub use boundary::{
+    Action, ActionKind, Edge, ForceVector, FreeWord, History, Hold, LoadedArea, Motion, ParametricDirection, Place,
+    Support, SurfaceDirection,
+};
 pub use expectation::{Expectation, ExpectedOutcome};
 pub use geometry::{Geometry, NurbsPatch, Seam};
 pub use material::{Material, OrthotropicLaw, Ply};

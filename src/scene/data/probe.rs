@@ -61,6 +61,10 @@ pub enum Component {
     Z,
     /// The length of the vector.
     Magnitude,
+    /// Along the normal of the undeformed surface at the point.
+    Normal,
+    /// Away from the axis or the centre of the undeformed shell ([`super::Geometry::away_from_centre`]).
+    Radial,
 }
 
 /// A component of a vector.

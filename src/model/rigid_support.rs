@@ -1,0 +1,134 @@
+//! A support that holds rigid motions and nothing else.
+//!
+//! Where the other supports leave the rigid motions r_1 … r_n free, the displacement u is held orthogonal to each of them
+//! over some points x_k of the surface: Σ_k r_m(x_k) · u(x_k) = 0; with all six free, the shell neither moves nor turns on
+//! the mean. The free motions meet all other constraints and do no work in the shell, so that the reactions λ under loads f
+//! follow from Σ_m λ_m Σ_k r_m(x_k) · r_l(x_k) = −f · r_l. The matrix is their Gram matrix, regular where the points do not lie on one
+//! line: loads that do no work on rigid motions leave no reaction, and the shell deforms as if it were free.
+//!
+//! The points stand at fixed fractions of the surface, so that a refined mesh holds the same.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::model::elimination::Expression;
+use crate::model::expressions::control_expressions;
+use crate::model::place::parameters_of;
+use crate::model::rigid_motion::{Body, FreeMotions};
+use crate::model::supports::Supports;
+use crate::model::{Loads, ModelError, Unknowns};
+use crate::scene::{Place, Scene};
+use crate::shell::{norm, sub};
+use crate::spline::{Mesh, mid_surface_point};
+
+/// Fractions of u and v of the points. Three remain on a closed turn, evenly spaced and never on one line; so few that
+/// they couple few control points.
+const FRACTIONS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+/// Points nearer to each other than this share of the largest distance are one: a turn meets itself.
+const SAME: f64 = 1e-6;
+/// Work of the loads on a free motion, relative to all their forces, that is rounding and quadrature. A force that these
+/// few points have to carry bends a thin free shell without stretching it: on a tube, (R/t)² times as far as pressure of
+/// the same sum widens it.
+const BALANCE: f64 = 1e-9;
+
+/// What such a support holds.
+#[derive(Clone, Debug)]
+pub struct HeldMotions {
+    /// Index of the support.
+    pub support: usize,
+    /// What the others leave free.
+    pub free: FreeMotions,
+}
+
+/// A point whose displacement counts.
+struct Point {
+    position: [f64; 3],
+    /// Its displacement in those of control points.
+    sum: Vec<(usize, f64)>,
+}
+
+impl Supports {
+    /// Holds the motions that are free so far.
+    pub(super) fn hold_rigid_motions(
+        &mut self,
+        index: usize,
+        scene: &Scene,
+        mesh: &Mesh,
+        points: &[[f64; 3]],
+    ) -> Result<(), ModelError> {
+        let spread = self.spread_points(scene, mesh)?;
+        let body = Body::around(&spread.iter().map(|point| point.position).collect::<Vec<_>>());
+        let free = FreeMotions::new(body, self, points);
+        if free.basis.ncols() == 0 {
+            return Err(ModelError::NoFreeMotion { support: self.traces[index].name.clone() });
+        }
+        for motion in free.basis.column_iter() {
+            let mut expression = Expression::new();
+            for point in &spread {
+                let fields = body.fields(point.position);
+                let moved = [0, 1, 2].map(|c| (0..6).map(|k| motion[k] * fields[k][c]).sum::<f64>());
+                for (control, factor) in &point.sum {
+                    let of_axis = |c: usize| (3 * control + c, factor * moved[c]);
+                    expression.extend((0..3).map(of_axis).filter(|(_, factor)| *factor != 0.0));
+                }
+            }
+            self.push(Some(index), expression);
+        }
+        let trace = &mut self.traces[index];
+        trace.points = spread.iter().flat_map(|point| &point.sum).map(|(control, _)| *control).collect();
+        trace.pole = body.middle;
+        self.held_motions = Some(HeldMotions { support: index, free });
+        Ok(())
+    }
+
+    /// Points that no moving section carries, each once.
+    fn spread_points(&self, scene: &Scene, mesh: &Mesh) -> Result<Vec<Point>, ModelError> {
+        let mut spread: Vec<Point> = Vec::new();
+        for fractions in FRACTIONS.iter().flat_map(|u| FRACTIONS.map(|v| [*u, v])) {
+            let position = mid_surface_point(mesh, &[], parameters_of(&scene.geometry, fractions)).position;
+            let sum = control_expressions(scene, mesh, Place::Point(fractions))?.swap_remove(0);
+            if sum.iter().all(|(control, _)| self.section_of[*control].is_none()) {
+                spread.push(Point { position, sum });
+            }
+        }
+        let distance = |one: &Point, other: &Point| norm(sub(one.position, other.position));
+        let largest = spread.iter().map(|point| distance(point, &spread[0])).fold(0.0, f64::max);
+        let mut once: Vec<Point> = Vec::new();
+        for point in spread {
+            if once.iter().all(|other| distance(&point, other) > SAME * largest) {
+                once.push(point);
+            }
+        }
+        Ok(once)
+    }
+}
+
+/// Refuses loads that push along a motion that only a support of rigid motions holds.
+///
+/// # Errors
+/// Where they do, at the end or at a kink of a history.
+pub fn check_balance(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<(), ModelError> {
+    let Some(held) = &unknowns.supports().held_motions else { return Ok(()) };
+    let loads = Loads::new(scene, mesh)?;
+    let still = vec![[0.0; 3]; unknowns.points.len()];
+    let kinks = scene.actions.iter().flat_map(|action| action.history.kinks());
+    for load_factor in kinks.chain([scene.load.target()]) {
+        let forces = loads.forces(mesh, &still, load_factor);
+        let mut work = DVector::<f64>::zeros(6);
+        for (force, point) in forces.iter().zip(&unknowns.points) {
+            let fields = held.free.body.fields(*point);
+            (0..6).for_each(|k| work[k] += (0..3).map(|c| force[c] * fields[k][c]).sum::<f64>());
+        }
+        let on_free = &held.free.basis * held.free.basis.tr_mul(&work);
+        let all: f64 = forces.iter().map(|force| norm(*force)).sum();
+        if on_free.norm() > BALANCE * all {
+            let motion = DMatrix::from_column_slice(6, 1, (&on_free / on_free.norm()).as_slice());
+            return Err(ModelError::Unbalanced {
+                support: unknowns.supports().traces[held.support].name.clone(),
+                motion: held.free.body.words(&motion),
+                share: on_free.norm() / all,
+                load_factor,
+            });
+        }
+    }
+    Ok(())
+}
