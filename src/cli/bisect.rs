@@ -27,8 +27,8 @@ pub(super) struct Arguments {
     /// what kind of critical point it is, and which mode is soft there
     #[arg(long)]
     snap: bool,
-    /// How well the jump is to be located, in degrees
-    #[arg(long, value_name = "DEG", default_value_t = 1e-4, requires = "snap", value_parser = resolved)]
+    /// How well the jump is to be located: in degrees, or in the load factor of a scene that is driven by one
+    #[arg(long, value_name = "WIDTH", default_value_t = 1e-4, requires = "snap", value_parser = resolved)]
     tolerance: f64,
     /// Find the first stage whose report meets a condition, such as 'moment_n_mm < 100 and step > 3'
     #[arg(long, value_name = "CONDITION")]
@@ -116,7 +116,9 @@ impl Arguments {
 /// A tolerance that rotations are resolved to.
 fn resolved(text: &str) -> Result<f64, String> {
     match super::run::positive(text)? {
-        tolerance if tolerance < 1e-8 => Err("jumps are not resolved more finely than 1e-8 degrees".to_string()),
+        tolerance if tolerance < 1e-8 => {
+            Err("jumps are not resolved more finely than 1e-8 (degrees, or load factor)".to_string())
+        }
         tolerance => Ok(tolerance),
     }
 }
@@ -157,6 +159,9 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
     };
     let kind = match report.critical {
         None => "not passed by the path that was followed".to_string(),
+        Some(critical) if critical.pivots_changed == 0 => {
+            format!("{}: no pivot of the stiffness changed sign", critical.name())
+        }
         Some(critical) => format!(
             "{}: {} of the stiffness changed sign",
             critical.name(),

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{ReadLog, read_log, scene_at};
-use super::output::{print, write_file};
+use super::output::{file_name, print, write_file};
 use super::plot::cells_per_element;
 use crate::history::{StabilityReport, stability_at};
 use crate::pipeline::{Outcome, Record};
@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "K")]
     step: Option<u64>,
     /// Folder for mode.svg and mode.vtu: the shell of --step with the mode added, as large as 5 % of the shell
-    #[arg(short, long, value_name = "DIR", requires = "step")]
+    #[arg(short, long, value_name = "DIR", requires = "step", value_parser = file_name)]
     output: Option<PathBuf>,
 }
 

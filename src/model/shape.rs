@@ -3,7 +3,9 @@
 use nalgebra::DMatrix;
 
 use crate::model::ModelError;
-use crate::scene::{Geometry, NurbsPatch, Scene};
+use crate::model::joint::smoothed;
+use crate::model::soundness::{check_normals, check_seam, closed_directions};
+use crate::scene::{Geometry, NurbsPatch, Scene, Seam};
 use crate::spline::{
     HomogeneousCurve, Mesh, basis_derivatives, basis_derivatives_len, circular_arc, find_span, straight_line,
 };
@@ -20,7 +22,7 @@ pub(super) struct Shape {
 /// apex; its half-length model x in [0, L/2], its half-arc model φ in [0, α/2].
 ///
 /// # Errors
-/// Where the degree of the mesh is below that of the surface.
+/// Where the degree of the mesh is below that of the surface, or the surface is none that a shell can have.
 pub(super) fn shape(scene: &Scene) -> Result<Shape, ModelError> {
     let [p, q] = scene.mesh.degree;
     let elements = scene.mesh.elements;
@@ -80,8 +82,39 @@ fn product(u: &HomogeneousCurve, v: &HomogeneousCurve, point: impl Fn(&[f64; 3],
     Mesh { degree: [u.degree, v.degree], knots: [u.knots.clone(), v.knots.clone()], control_points }
 }
 
-/// The user's patch on [0, 1]², raised to the degree of the mesh.
+/// The user's patch on [0, 1]², raised to the degree of the mesh, smooth to rounding.
 fn nurbs(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
+    let mesh = raised_to(patch, degree)?;
+    let smooth = check_normals(&mesh).and_then(|()| {
+        let closed = closed_directions(&mesh).map(|closed| closed && patch.seam == Some(Seam::Smooth));
+        smoothed(mesh.clone(), closed)
+    });
+    match smooth {
+        Ok(smooth) => check_seam(&smooth, patch.seam).map(|()| smooth),
+        Err(ModelError::FoldsOver { from, to, angle_deg, .. }) if is_sound_u_fastest(patch, degree) => {
+            let hint = LISTED_U_FASTEST;
+            Err(ModelError::FoldsOver { from, to, angle_deg, hint })
+        }
+        Err(error) => Err(error),
+    }
+}
+
+const LISTED_U_FASTEST: &str = "; listed the other way these points make a sound surface: the list has u running fastest, so exchange the two loops";
+
+/// Whether the points of a patch make a surface where they are taken as listed with u running fastest.
+fn is_sound_u_fastest(patch: &NurbsPatch, degree: [usize; 2]) -> bool {
+    let n1 = patch.knots_u.len() - patch.degrees[0] - 1;
+    let n2 = patch.knots_v.len() - patch.degrees[1] - 1;
+    let other_way = |k: usize| k % n2 * n1 + k / n2;
+    let patch = NurbsPatch {
+        control_points_mm: (0..n1 * n2).map(|k| patch.control_points_mm[other_way(k)]).collect(),
+        weights: (0..n1 * n2).map(|k| patch.weights[other_way(k)]).collect(),
+        ..patch.clone()
+    };
+    raised_to(&patch, degree).and_then(|mesh| check_normals(&mesh)).is_ok()
+}
+
+fn raised_to(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
     let unit = |knots: &[f64]| {
         let (first, last) = (knots[0], knots[knots.len() - 1]);
         knots.iter().map(|knot| (knot - first) / (last - first)).collect::<Vec<f64>>()
@@ -160,7 +193,7 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
 mod tests {
     use super::*;
     use crate::model::starting_mesh;
-    use crate::scene::{Seam, parse};
+    use crate::scene::parse;
     use crate::shell::{cross, dot, norm};
     use crate::spline::mid_surface_point;
 
@@ -218,6 +251,7 @@ mod tests {
                 [4.0, 3.0, 0.0],
             ],
             weights: vec![1.0, half, 1.0, 1.0, half, 1.0],
+            seam: None,
         };
         let mesh = meshed(Geometry::Nurbs(patch), [3, 5]);
         check(&mesh, |[_, y, z]| y.hypot(z) - 3.0, |[_, y, z]| [0.0, y, z]);
