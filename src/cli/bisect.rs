@@ -13,7 +13,7 @@ use crate::history::{
     Comparison, Condition, SnapReport, find_parting, find_snap, first_loss_of_stability, shown_value,
 };
 use crate::pipeline::Parameter;
-use crate::units::{count, unsigned_zero};
+use crate::units::{count, place as place_mm, unsigned_zero};
 
 /// Find where two logs part, where a log jumps (--snap), or where a condition first holds (--when)
 #[derive(Args, Debug)]
@@ -146,7 +146,7 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
     let [below, beyond] = report.bracket_deg;
     let [before, after] = report.moment_n_mm;
     let [stable, most, end] = report.negative_pivots;
-    let [x, y, z] = report.mode_at;
+    let at = place_mm(report.mode_at);
     let [u, v, w] = report.mode.shape[report.mode.largest_at].map(unsigned_zero);
     let [n1, n2] = report.stable.mesh.element_counts();
     let (name, degree) = match parameter {
@@ -174,7 +174,7 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
          energy released      {:.4} N·mm; strain energy before: {:.4} N·mm\n\
          kind                 {kind}\n\
          negative pivots      {stable} before, up to {most} on the way, {end} after\n\
-         soft mode            eigenvalue {:.4e} N/mm at {below:.6}{degree}; moves most at ({x:.1}, {y:.1}, {z:.1}) mm, towards ({u:.2}, {v:.2}, {w:.2})\n",
+         soft mode            eigenvalue {:.4e} N/mm at {below:.6}{degree}; moves most at {at}, towards ({u:.2}, {v:.2}, {w:.2})\n",
         report.solves, report.energy_released_n_mm, report.stable.strain_energy_n_mm, report.mode.eigenvalue
     )
 }

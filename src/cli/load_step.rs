@@ -25,7 +25,7 @@ impl LoadStep {
     pub(super) fn line(&self) -> String {
         let Report { step, parameter, moment_n_mm, elements: [n1, n2], .. } = self.report;
         let reached = match self.report.driven_by {
-            Parameter::Rotation => format!("{parameter:>8.3}°  {moment_n_mm:>9.3} N·mm"),
+            Parameter::Rotation => format!("{parameter:>8.3}°  {:>9} N·mm", reading(moment_n_mm, 3)),
             Parameter::LoadFactor => {
                 let probe = self.report.probes.first();
                 let shown =

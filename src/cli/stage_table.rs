@@ -68,10 +68,10 @@ fn cells(record: &Record) -> [String; COLUMNS.len()] {
         report.stage.name().to_string(),
         format!("{:.3}", report.parameter),
         match report.driven_by {
-            Parameter::Rotation => format!("{:.3}", report.moment_n_mm),
+            Parameter::Rotation => reading(report.moment_n_mm, 3),
             Parameter::LoadFactor => report.probes.first().map_or(String::new(), |probe| reading(probe.value, 4)),
         },
-        format!("{:.3}", report.strain_energy_n_mm),
+        reading(report.strain_energy_n_mm, 3),
         format!("{}×{}", report.elements[0], report.elements[1]),
         report.unknowns.to_string(),
         unless_zero(report.iterations as u64),

@@ -26,7 +26,7 @@ pub struct Joint {
 }
 
 /// Angles (rad) and shares up to which the geometry counts as smooth: coordinates given to five digits are off by that much
-/// over the distance of two control points. A strip bent by its own weight is off by no more than 1e-6 for it.
+/// over the distance of two control points.
 pub const SMOOTH: f64 = 1e-3;
 
 /// Joints in a direction: interior knots of full multiplicity.

@@ -15,7 +15,7 @@ use crate::spline::{Mesh, Spans};
 use crate::units::{place, significant};
 
 /// Angles (rad) between an edge's normal plane and the surface that are rounding of coordinates given to five digits; also
-/// the share of a stiffness that turning the axes by as much makes. A quarter of a plate under pressure is off by 1e-4 for it.
+/// the share of a stiffness that turning the axes by as much makes.
 const ANGLE: f64 = SMOOTH;
 /// Deviations below this are rounding of a computation: elimination finds constraints redundant that differ by as little.
 const ROUNDING: f64 = 1e-12;

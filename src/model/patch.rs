@@ -165,7 +165,7 @@ pub enum ModelError {
     /// The normal turns over between two points that lie next to each other.
     #[error(
         "the surface folds over itself between {from} and {to}: its normal turns by {}°; control points are listed with v \
-         running fastest, and neighbours in the list of u or v must not turn back{hint}",
+         running fastest, and lines of them must not turn back or cross",
         significant(*angle_deg, 3)
     )]
     FoldsOver {
@@ -175,8 +175,15 @@ pub enum ModelError {
         to: String,
         /// Angle between the normals, degrees.
         angle_deg: f64,
-        /// What most likely happened.
-        hint: &'static str,
+    },
+    /// The control points make a sound surface where they are taken in the other order.
+    #[error(
+        "{fault}. Taken in the other order these control points make a sound surface: they are listed with u running fastest, \
+         and v has to; exchange the two loops that write them"
+    )]
+    ListedUFastest {
+        /// What is wrong with the surface as it stands.
+        fault: Box<ModelError>,
     },
     /// Opposite edges coincide, and the scene does not say what happens there.
     #[error(

@@ -84,34 +84,36 @@ fn product(u: &HomogeneousCurve, v: &HomogeneousCurve, point: impl Fn(&[f64; 3],
 
 /// The user's patch on [0, 1]², raised to the degree of the mesh, smooth to rounding.
 fn nurbs(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
-    let mesh = raised_to(patch, degree)?;
-    let smooth = check_normals(&mesh).and_then(|()| {
-        let closed = closed_directions(&mesh).map(|closed| closed && patch.seam == Some(Seam::Smooth));
-        smoothed(mesh.clone(), closed)
-    });
-    match smooth {
-        Ok(smooth) => check_seam(&smooth, patch.seam).map(|()| smooth),
-        Err(ModelError::FoldsOver { from, to, angle_deg, .. }) if is_sound_u_fastest(patch, degree) => {
-            let hint = LISTED_U_FASTEST;
-            Err(ModelError::FoldsOver { from, to, angle_deg, hint })
+    let mesh = sound(patch, degree).map_err(|fault| match fault {
+        ModelError::DegreeTooLow { .. } => fault,
+        _ if sound(&listed_the_other_way(patch), degree).is_ok() => {
+            ModelError::ListedUFastest { fault: Box::new(fault) }
         }
-        Err(error) => Err(error),
-    }
+        _ => fault,
+    })?;
+    check_seam(&mesh, patch.seam)?;
+    Ok(mesh)
 }
 
-const LISTED_U_FASTEST: &str = "; listed the other way these points make a sound surface: the list has u running fastest, so exchange the two loops";
+/// The surface of a patch, where a shell can have it.
+fn sound(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
+    let mesh = raised_to(patch, degree)?;
+    let closed = closed_directions(&mesh).map(|closed| closed && patch.seam == Some(Seam::Smooth));
+    let mesh = smoothed(mesh, closed)?;
+    check_normals(&mesh)?;
+    Ok(mesh)
+}
 
-/// Whether the points of a patch make a surface where they are taken as listed with u running fastest.
-fn is_sound_u_fastest(patch: &NurbsPatch, degree: [usize; 2]) -> bool {
+/// The patch whose points are listed with u running fastest.
+fn listed_the_other_way(patch: &NurbsPatch) -> NurbsPatch {
     let n1 = patch.knots_u.len() - patch.degrees[0] - 1;
     let n2 = patch.knots_v.len() - patch.degrees[1] - 1;
-    let other_way = |k: usize| k % n2 * n1 + k / n2;
-    let patch = NurbsPatch {
-        control_points_mm: (0..n1 * n2).map(|k| patch.control_points_mm[other_way(k)]).collect(),
-        weights: (0..n1 * n2).map(|k| patch.weights[other_way(k)]).collect(),
+    let source = |k: usize| k % n2 * n1 + k / n2;
+    NurbsPatch {
+        control_points_mm: (0..n1 * n2).map(|k| patch.control_points_mm[source(k)]).collect(),
+        weights: (0..n1 * n2).map(|k| patch.weights[source(k)]).collect(),
         ..patch.clone()
-    };
-    raised_to(&patch, degree).and_then(|mesh| check_normals(&mesh)).is_ok()
+    }
 }
 
 fn raised_to(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {

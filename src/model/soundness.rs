@@ -116,7 +116,7 @@ fn check_area(mesh: &Mesh, [before, middle, after]: [&Sample; 3], least: f64) ->
 
 fn folds(one: &Sample, other: &Sample) -> ModelError {
     let angle_deg = norm(cross(one.area, other.area)).atan2(dot(one.area, other.area)).to_degrees();
-    ModelError::FoldsOver { from: place(one.position), to: place(other.position), angle_deg, hint: "" }
+    ModelError::FoldsOver { from: place(one.position), to: place(other.position), angle_deg }
 }
 
 /// Largest distances of the two edges across each direction, mm: as they are, and with one of them reversed.
@@ -164,7 +164,7 @@ pub fn check_seam(mesh: &Mesh, seam: Option<Seam>) -> Result<(), ModelError> {
             gap_mm: shown(gaps.same[way]),
             tolerance_mm: shown(gaps.tolerance),
         }),
-        (None | Some(Seam::Smooth), None, Some(way)) => Err(ModelError::EdgesMeetReversed { edges: EDGES[way] }),
+        (None | Some(Seam::Smooth), _, Some(way)) => Err(ModelError::EdgesMeetReversed { edges: EDGES[way] }),
         (Some(_), None, None) => {
             Err(ModelError::NoSeam { gaps_mm: gaps.same.map(shown), tolerance_mm: shown(gaps.tolerance) })
         }

@@ -118,20 +118,17 @@ impl Supports {
                 supports.hold_rigidly(index, support, &ties.rows(mesh, edge)?, &points)?;
             }
         }
-        let mirrors = Mirror::all(&all, mesh)?;
+        let mut mirrors = Mirror::all(&all, mesh)?.into_iter();
         for (index, support) in all.iter().enumerate() {
             match (&support.hold, support.on) {
                 (Hold::Rigid { .. }, _) => {}
-                (Hold::Symmetric, Place::Edge(_)) => {
-                    if let Some(mirror) = mirrors.iter().find(|mirror| mirror.support == support.name) {
-                        supports.mirror(index, mesh, mirror)?;
-                    }
+                (Hold::Symmetric, _) => {
+                    mirrors.next().map_or(Ok(()), |mirror| supports.mirror(index, mesh, &mirror))?
                 }
                 (Hold::Displacement { displacement_mm }, on) => {
                     let places = control_expressions(scene, mesh, on)?;
                     supports.displace(index, support, *displacement_mm, &places, &points)?;
                 }
-                (Hold::Symmetric, _) => return Err(ModelError::NotAnEdge { support: support.name.clone() }),
             }
         }
         supports.tie(&ties, mesh);

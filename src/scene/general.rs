@@ -47,6 +47,8 @@ pub(super) const SEAMS: [(&str, Seam); 2] = [("smooth", Seam::Smooth), ("free", 
 pub(super) const ARRAYS: [&str; 4] = ["ply", "support", "action", "probe"];
 
 const ARC: Range = Range { above: 0.0, most: 360.0, reason: "an arc is more than 0 and at most 360 degrees" };
+/// A gap of a full turn that is smaller is rounding of coordinates: 1e-4 rad.
+const NEAR_FULL_TURN_DEG: f64 = 0.006;
 const MODULUS: Range = Range { above: 0.0, most: 1e13, reason: "moduli are positive, in MPa" };
 
 /// A geometry of one of [`GEOMETRIES`].
@@ -98,6 +100,14 @@ pub(super) fn geometry(table: Table<'_, '_>, folder: &std::path::Path) -> Checke
 
 fn seam(table: &Table<'_, '_>, arc_deg: f64) -> Checked<Option<Seam>> {
     let given = table.maybe_word("seam", &SEAMS)?;
+    let short_deg = 360.0 - arc_deg;
+    if short_deg > 0.0 && short_deg < NEAR_FULL_TURN_DEG {
+        return Err(table.wrong(
+            table.place_of("arc_deg").as_ref(),
+            format!("an arc of {arc_deg} degrees is {short_deg:.1e} degrees short of a full turn"),
+            "write `arc_deg = 360.0` and a `seam`, or leave a gap that can be seen (0.006 degrees)",
+        ));
+    }
     match (given, arc_deg == 360.0) {
         (None, true) => Err(table.wrong(
             None,
