@@ -1,8 +1,8 @@
 //! Whether a surface that a user gives is one that a shell can have: it does not fold over itself, has a normal everywhere,
 //! and edges that coincide are said to.
 //!
-//! Normals are looked at on a grid: lines of every span, and points on them. Next to each other they turn by less than a
-//! quarter turn, or else halving the step between them ends in two that do not: there the surface turns over. Between
+//! Normals are looked at on a grid: points of every span and its ends. From one to the next they turn by less than a quarter
+//! turn, or do once the step between them is halved often enough; where they never do the surface turns over. Between
 //! points, the area of a parameter square is followed to its least value, which a fold or a collapse takes to zero.
 
 use crate::model::ModelError;
@@ -52,19 +52,19 @@ pub fn check_normals(mesh: &Mesh) -> Result<(), ModelError> {
         along.iter().map(|u| across.iter().map(|v| Sample::new(mesh, [*u, *v])).collect()).collect();
     let largest = grid.iter().flatten().map(|sample| norm(sample.area)).fold(0.0, f64::max);
     let least = NO_AREA * largest;
+    let columns = (0..across.len()).map(|j| grid.iter().map(|row| row[j]).collect::<Vec<Sample>>());
+    let lines: Vec<Vec<Sample>> = grid.iter().cloned().chain(columns).collect();
+    // Where there is no area there is no normal either: that is told of the point itself.
+    let has_area = |pair: &&[Sample]| pair.iter().all(|sample| norm(sample.area) > least);
+    let mut pairs = lines.iter().flat_map(|line| line.windows(2)).filter(has_area);
+    if let Some(pair) = pairs.find(|pair| turns_over(mesh, &pair[0], &pair[1], HALVINGS)) {
+        return Err(folds(&pair[0], &pair[1]));
+    }
     if let Some(point) = grid.iter().flatten().find(|sample| norm(sample.area) <= least) {
         return Err(ModelError::Collapsed { at: place(point.position) });
     }
-    let columns = (0..across.len()).map(|j| grid.iter().map(|row| row[j]).collect::<Vec<Sample>>());
-    for line in grid.iter().cloned().chain(columns) {
-        for pair in line.windows(2) {
-            check_turn(mesh, &pair[0], &pair[1], HALVINGS)?;
-        }
-        for three in line.windows(3) {
-            check_area(mesh, [&three[0], &three[1], &three[2]], least)?;
-        }
-    }
-    Ok(())
+    let threes = lines.iter().flat_map(|line| line.windows(3));
+    threes.map(|three| check_area(mesh, [&three[0], &three[1], &three[2]], least)).collect()
 }
 
 /// Parameters of the grid: both ends of every span, and more in between than an area that is a polynomial has turning points.
@@ -75,16 +75,16 @@ fn parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
     bounds.into_iter().flat_map(inside).chain([1.0]).collect()
 }
 
-fn check_turn(mesh: &Mesh, one: &Sample, other: &Sample, halvings: usize) -> Result<(), ModelError> {
+/// Whether the normal turns over between two points, however near to each other.
+fn turns_over(mesh: &Mesh, one: &Sample, other: &Sample, halvings: usize) -> bool {
     if dot(one.area, other.area) > 0.0 {
-        return Ok(());
+        return false;
     }
     if halvings == 0 {
-        return Err(folds(one, other));
+        return true;
     }
     let middle = Sample::between(mesh, one, other, 0.5);
-    check_turn(mesh, one, &middle, halvings - 1)?;
-    check_turn(mesh, &middle, other, halvings - 1)
+    turns_over(mesh, one, &middle, halvings - 1) || turns_over(mesh, &middle, other, halvings - 1)
 }
 
 /// Where the middle of three points has the least area of them, follows it to the least one between the outer two, seen

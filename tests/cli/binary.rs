@@ -68,6 +68,7 @@ fn wrong_usage() {
         &["run", "a.toml", "-o", "-"][..],
         &["recover", "a.mcap", "-o", "-"],
         &["plot", "a.mcap", "-o", "-"],
+        &["replay", "a.mcap", "--from-scratch", "--trace", "-"],
         &["stability", "a.mcap", "--step", "1", "-o", "-"],
     ] {
         let said = refusal(arguments, 2);
