@@ -14,6 +14,35 @@ pub(crate) fn rounded(value: f64) -> String {
     }
 }
 
+/// A number in so many significant digits, in plain writing where a person reads that at a glance.
+pub(crate) fn significant(value: f64, digits: usize) -> String {
+    let decimals = digits.saturating_sub(1);
+    let scientific = format!("{value:.decimals$e}");
+    let shown = match scientific.parse::<f64>() {
+        Ok(0.0) => "0".into(),
+        Ok(rounded) if (1e-3..1e6).contains(&rounded.abs()) => rounded.to_string(),
+        Ok(rounded) => format!("{rounded:e}"),
+        Err(_) => scientific,
+    };
+    shown.replace('-', "−")
+}
+
+/// A measured number with so many decimals, or in powers of ten where those would leave fewer than three digits of it.
+pub(crate) fn reading(value: f64, decimals: usize) -> String {
+    let least = 10.0_f64.powi(2 - decimals as i32);
+    match value.abs() {
+        size if size == 0.0 || size >= least => format!("{value:.decimals$}"),
+        _ => format!("{value:.decimals$e}"),
+    }
+}
+
+/// A point in space as "(x, y, z) mm"; what is a millionth of the largest component or less is 0.
+pub(crate) fn place(point: [f64; 3]) -> String {
+    let largest = point.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let [x, y, z] = point.map(|x| significant(if x.abs() <= 1e-6 * largest { 0.0 } else { x }, 5));
+    format!("({x}, {y}, {z}) mm")
+}
+
 /// A component with two digits behind the point that does not read "-0.00".
 pub(crate) fn unsigned_zero(value: f64) -> f64 {
     if value.abs() < 0.005 { 0.0 } else { value }
@@ -45,6 +74,12 @@ mod tests {
         assert_eq!(signed(-4.94, 1), "−4.9");
         assert_eq!(signed(0.44, 1), "+0.4");
         assert_eq!(["9.9", "20", "0", "−0.001"], [9.9, 20.0, -0.0001, -0.001].map(rounded).as_slice());
+        assert_eq!(
+            ["0", "1.59e−6", "−0.0123", "12.3", "1230", "1.23e7"],
+            [0.0, 1.59e-6, -0.012345, 12.345, 1234.5, 12_345_678.0].map(|value| significant(value, 3)).as_slice()
+        );
+        assert_eq!(["0.0000", "0.0123", "1.5900e-6"], [0.0, 0.0123, 1.59e-6].map(|value| reading(value, 4)).as_slice());
+        assert_eq!(place([1e-17, -2.0, 3.0e-4]), "(0, −2, 3e−4) mm");
         assert_eq!(count(1, "stage"), "1 stage");
         assert_eq!(count(0, "stage"), "0 stages");
         assert_eq!(

@@ -13,7 +13,7 @@ use crate::history::{
     Comparison, Condition, SnapReport, find_parting, find_snap, first_loss_of_stability, shown_value,
 };
 use crate::pipeline::Parameter;
-use crate::units::{count, unsigned_zero};
+use crate::units::{count, place as place_mm, unsigned_zero};
 
 /// Find where two logs part, where a log jumps (--snap), or where a condition first holds (--when)
 #[derive(Args, Debug)]
@@ -27,8 +27,8 @@ pub(super) struct Arguments {
     /// what kind of critical point it is, and which mode is soft there
     #[arg(long)]
     snap: bool,
-    /// How well the jump is to be located, in degrees
-    #[arg(long, value_name = "DEG", default_value_t = 1e-4, requires = "snap", value_parser = resolved)]
+    /// How well the jump is to be located: in degrees, or in the load factor of a scene that is driven by one
+    #[arg(long, value_name = "WIDTH", default_value_t = 1e-4, requires = "snap", value_parser = resolved)]
     tolerance: f64,
     /// Find the first stage whose report meets a condition, such as 'moment_n_mm < 100 and step > 3'
     #[arg(long, value_name = "CONDITION")]
@@ -116,7 +116,9 @@ impl Arguments {
 /// A tolerance that rotations are resolved to.
 fn resolved(text: &str) -> Result<f64, String> {
     match super::run::positive(text)? {
-        tolerance if tolerance < 1e-8 => Err("jumps are not resolved more finely than 1e-8 degrees".to_string()),
+        tolerance if tolerance < 1e-8 => {
+            Err("jumps are not resolved more finely than 1e-8 (degrees, or load factor)".to_string())
+        }
         tolerance => Ok(tolerance),
     }
 }
@@ -144,7 +146,7 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
     let [below, beyond] = report.bracket_deg;
     let [before, after] = report.moment_n_mm;
     let [stable, most, end] = report.negative_pivots;
-    let [x, y, z] = report.mode_at;
+    let at = place_mm(report.mode_at);
     let [u, v, w] = report.mode.shape[report.mode.largest_at].map(unsigned_zero);
     let [n1, n2] = report.stable.mesh.element_counts();
     let (name, degree) = match parameter {
@@ -157,6 +159,9 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
     };
     let kind = match report.critical {
         None => "not passed by the path that was followed".to_string(),
+        Some(critical) if critical.pivots_changed == 0 => {
+            format!("{}: no pivot of the stiffness changed sign", critical.name())
+        }
         Some(critical) => format!(
             "{}: {} of the stiffness changed sign",
             critical.name(),
@@ -169,7 +174,7 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
          energy released      {:.4} N·mm; strain energy before: {:.4} N·mm\n\
          kind                 {kind}\n\
          negative pivots      {stable} before, up to {most} on the way, {end} after\n\
-         soft mode            eigenvalue {:.4e} N/mm at {below:.6}{degree}; moves most at ({x:.1}, {y:.1}, {z:.1}) mm, towards ({u:.2}, {v:.2}, {w:.2})\n",
+         soft mode            eigenvalue {:.4e} N/mm at {below:.6}{degree}; moves most at {at}, towards ({u:.2}, {v:.2}, {w:.2})\n",
         report.solves, report.energy_released_n_mm, report.stable.strain_energy_n_mm, report.mode.eigenvalue
     )
 }

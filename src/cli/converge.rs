@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::output::{print, print_json};
 use super::scene_file::{checked, read_scene};
 use crate::scene::Scene;
-use crate::study::{ConvergenceRow, converge};
+use crate::study::{ConvergenceRow, check_spring, converge};
 
 /// Follow a tape spring past its limit point, down the unstable path and up the fold, on uniform meshes of every degree and
 /// size asked for: peak, limit rotation and moments of each, beside its run time
@@ -46,15 +46,16 @@ impl Arguments {
                 scenes.push(checked(&text, &name, &settings)?);
             }
         }
+        let failed = |scene: &Scene| {
+            let (degree, elements) = (scene.mesh.degree, scene.mesh.elements);
+            move |source| Failure::Convergence { degree, elements, source: Box::new(source) }
+        };
+        scenes.iter().try_for_each(|scene| check_spring(scene).map_err(failed(scene)))?;
         if !self.json {
             print(&head(self.unstable_at, scenes.first().map_or(0.0, |scene| scene.load.target())))?;
         }
         for scene in &scenes {
-            let found = converge(scene, self.unstable_at).map_err(|source| Failure::Convergence {
-                degree: scene.mesh.degree,
-                elements: scene.mesh.elements,
-                source: Box::new(source),
-            })?;
+            let found = converge(scene, self.unstable_at).map_err(failed(scene))?;
             match self.json {
                 true => print_json(&found)?,
                 false => print(&row(&found))?,

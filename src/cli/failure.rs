@@ -26,6 +26,8 @@ Exit codes:
 pub(super) enum Failure {
     #[error("cannot read {}", path.display())]
     Read { path: PathBuf, source: io::Error },
+    #[error("{} is no scene: {reason}", path.display())]
+    NotText { path: PathBuf, reason: String },
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: io::Error },
     #[error("cannot write to standard output")]
@@ -107,6 +109,7 @@ impl Failure {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Failure::Read { .. }
+            | Failure::NotText { .. }
             | Failure::WrongScene { .. }
             | Failure::UntilBeyondScene { .. }
             | Failure::NoSuchStep { .. }

@@ -2,7 +2,7 @@
 
 use crate::pipeline::{CriticalPoint, Outcome, Parameter, Record, Report};
 use crate::scene::{Scene, Stage};
-use crate::units::{count, duration};
+use crate::units::{count, duration, reading};
 
 /// A load step that found an equilibrium, with what it took to find it.
 #[derive(Clone, Debug)]
@@ -12,7 +12,7 @@ pub(super) struct LoadStep {
     elements_before: [usize; 2],
     iterations: usize,
     wall_s: f64,
-    /// Solves turned down on the way: without equilibrium, for a jump, for a critical point, for a sharp turn.
+    /// Solves turned down on the way: without equilibrium, for a jump or an unstable shape on the way, for a critical point, for a sharp turn.
     rejected: [usize; 4],
     /// What the step passed on its path.
     passed: Option<CriticalPoint>,
@@ -25,11 +25,12 @@ impl LoadStep {
     pub(super) fn line(&self) -> String {
         let Report { step, parameter, moment_n_mm, elements: [n1, n2], .. } = self.report;
         let reached = match self.report.driven_by {
-            Parameter::Rotation => format!("{parameter:>8.3}°  {moment_n_mm:>9.3} N·mm"),
+            Parameter::Rotation => format!("{parameter:>8.3}°  {:>9} N·mm", reading(moment_n_mm, 3)),
             Parameter::LoadFactor => {
                 let probe = self.report.probes.first();
-                let reading = probe.map(|probe| format!("  {} {:>11.5} {}", probe.name, probe.value, probe.unit));
-                format!("factor {parameter:>8.4}{}", reading.unwrap_or_default())
+                let shown =
+                    probe.map(|probe| format!("  {} {:>11} {}", probe.name, reading(probe.value, 5), probe.unit));
+                format!("factor {parameter:>8.4}{}", shown.unwrap_or_default())
             }
         };
         let elements = format!("{n1} × {n2}");
@@ -65,7 +66,8 @@ impl LoadStep {
             events.push(format!("after {} without equilibrium", count(no_equilibrium, "solve")));
         }
         if jump > 0 {
-            events.push(format!("after {} too far past the jump", count(jump, "solve")));
+            let why = if self.released_n_mm.is_some() { "too far past the jump" } else { "unstable on the way" };
+            events.push(format!("after {} {why}", count(jump, "solve")));
         }
         if critical > 0 {
             events.push(format!("after {} past a critical point ahead", count(critical, "solve")));

@@ -1,7 +1,7 @@
 //! Standard output that may be closed, and files that are whole or not there.
 
 use std::io::{self, ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 
@@ -11,6 +11,17 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(source) if source.kind() != ErrorKind::BrokenPipe => Err(Failure::Print { source }),
         _ => Ok(()),
+    }
+}
+
+/// The name of a file or a folder to write. `-`, which elsewhere means standard output, is none.
+pub(super) fn file_name(text: &str) -> Result<PathBuf, String> {
+    match text {
+        "-" => {
+            Err("a file is wanted: this is written in place, not to standard output; ./- is a file of that name".into())
+        }
+        "" => Err("a name is wanted".into()),
+        name => Ok(name.into()),
     }
 }
 

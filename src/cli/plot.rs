@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
-use super::output::{print, write_file};
+use super::output::{file_name, print, write_file};
 use crate::pipeline::{Parameter, Report};
 use crate::spline::Mesh;
 use crate::study::TapeSpring;
@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     log: PathBuf,
     /// Folder for moment-rotation.svg (other shells: load-probe.svg, the load factor over the first probe), mesh.svg and
     /// mesh.vtu [default: the log's name without .mcap]
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = file_name)]
     output: Option<PathBuf>,
     /// Show the mesh at the end of this load step [default: the last one]
     #[arg(long, value_name = "K")]

@@ -187,7 +187,9 @@ fn live_message(report: &Report) -> String {
     let outcome = match report.outcome {
         Outcome::Done if report.iterations > 0 => format!(", {iterations} iterations"),
         Outcome::Done => String::new(),
-        Outcome::RejectedJump => format!(" turned down at {:.3}{degree}: jump", report.attempted_parameter),
+        Outcome::RejectedJump => {
+            format!(" turned down at {:.3}{degree}: unstable on the way", report.attempted_parameter)
+        }
         Outcome::RejectedCriticalPoint => {
             format!(" turned down at {:.3}{degree}: past a critical point", report.attempted_parameter)
         }
@@ -238,7 +240,7 @@ mod tests {
         assert_eq!(live_prefix(Parameter::Rotation, report.parameter, 20.0), "9.600° of 20°");
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve, 5 iterations");
         report.outcome = Outcome::RejectedJump;
-        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve turned down at 9.615°: jump");
+        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve turned down at 9.615°: unstable on the way");
         report = Report { outcome: Outcome::Done, stage: Stage::RefineKnots, iterations: 0, ..report };
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  refine-knots");
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::print;
+use super::output::{file_name, print};
 use crate::journal::{RecoverOutcome, recover};
 
 /// Exit code of a recovery that had to leave something behind.
@@ -17,7 +17,7 @@ pub(super) struct Arguments {
     /// Log to read (MCAP)
     log: PathBuf,
     /// Log to write
-    #[arg(short, long, value_name = "NEW")]
+    #[arg(short, long, value_name = "NEW", value_parser = file_name)]
     output: PathBuf,
 }
 

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::log_file::{ReadLog, read_log, scene_at};
-use super::output::print;
+use super::output::{file_name, print};
 use super::scene_file::stage_named;
 use super::session::use_threads;
 use super::trace;
@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Write every Newton iterate to FILE.mcap and FILE.csv
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_name)]
     trace: Option<PathBuf>,
     /// Threads; the result is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]

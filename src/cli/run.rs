@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
-use super::output::say;
+use super::output::{file_name, say};
 use super::progress::Manner;
 use super::resume::{self, OldLog};
 use super::scene_file::{SceneFile, read_scene};
@@ -23,14 +23,14 @@ pub(super) struct Arguments {
     /// Scene file (TOML); `foldline help scene` describes its keys
     scene: PathBuf,
     /// Log to write (MCAP) [default: checkpoints/SCENE.mcap]
-    #[arg(short, long, value_name = "LOG")]
+    #[arg(short, long, value_name = "LOG", value_parser = file_name)]
     output: Option<PathBuf>,
     /// Threads; the result is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Stop after the first step at or beyond this rotation of each end, in degrees, or this load factor; `resume` goes on
     /// from there
-    #[arg(long, value_name = "DEG", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "AT", value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Go on with the log if there is one, as far as it stands for this scene
     #[arg(long)]
@@ -132,7 +132,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
         Ok(_) => {
             Err("a rotation or a load factor above 0 is wanted; by arc length it counts on both sides of 0".to_string())
         }
-        Err(_) => Err("a number of degrees is wanted, such as 12.5".to_string()),
+        Err(_) => Err("a number is wanted, such as 12.5: degrees, or a load factor".to_string()),
     }
 }
 

@@ -14,7 +14,8 @@ pub(super) struct SceneFile {
 
 /// Reads and checks a scene file.
 pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
+    let bytes = std::fs::read(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
+    let text = text_of(bytes).map_err(|reason| Failure::NotText { path: path.to_path_buf(), reason })?;
     let scene = checked(&text, &path.display().to_string(), &[])?;
     // A log stands for itself: a surface from a file of its own goes into the text that the log keeps.
     let text = match scene.geometry {
@@ -22,6 +23,28 @@ pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
         _ => text,
     };
     Ok(SceneFile { scene, text })
+}
+
+/// The text of a scene, without a byte-order mark; or else what the bytes are most likely, and the way out.
+fn text_of(bytes: Vec<u8>) -> Result<String, String> {
+    const LOG: &[u8] = b"\x89MCAP0\r\n";
+    const UTF_16: [&[u8]; 2] = [b"\xff\xfe", b"\xfe\xff"];
+    if bytes.starts_with(LOG) {
+        return Err("it is a log; `foldline resume` goes on with one, `foldline inspect` shows what is in it".into());
+    }
+    if UTF_16.iter().any(|mark| bytes.starts_with(mark)) || bytes.iter().take(64).any(|byte| *byte == 0) {
+        return Err("it is text in UTF-16, or none at all; save it as UTF-8".into());
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let (at, bytes) = (error.utf8_error().valid_up_to(), error.as_bytes());
+        let line = 1 + bytes[..at].iter().filter(|byte| **byte == b'\n').count();
+        format!(
+            "line {line} holds the byte 0x{:02X}, which is no UTF-8 (in Latin-1 it is {:?}); save it as UTF-8",
+            bytes[at],
+            char::from(bytes[at])
+        )
+    })?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
 /// Checks the text of a scene, with settings `section.key=value` laid over it.
@@ -38,4 +61,20 @@ fn rendered(error: &SceneError) -> String {
 pub(super) fn stage_named(name: &str) -> Result<Stage, String> {
     let known = || Stage::ALL.map(Stage::name).join(", ");
     Stage::ALL.into_iter().find(|stage| stage.name() == name).ok_or_else(|| format!("the stages are {}", known()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_text_is_named() {
+        let reason = |bytes: &[u8]| text_of(bytes.to_vec()).unwrap_err();
+        assert!(reason(b"\x89MCAP0\r\nrest").contains("it is a log"));
+        assert!(reason(b"\xff\xfe[\0g\0").contains("UTF-16"));
+        assert!(reason(b"[\0g\0e\0").contains("UTF-16"));
+        let latin = reason(b"[geometry]\n# L\xe4nge\n");
+        assert!(latin.contains("line 2") && latin.contains("0xE4") && latin.contains('ä'), "{latin}");
+        assert_eq!(text_of(b"\xef\xbb\xbf[geometry]".to_vec()), Ok("[geometry]".into()));
+    }
 }

@@ -6,13 +6,13 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{ReadLog, read_log, scene_at};
-use super::output::{print, write_file};
+use super::output::{file_name, print, write_file};
 use super::plot::cells_per_element;
 use crate::history::{StabilityReport, stability_at};
 use crate::pipeline::{Outcome, Record};
 use crate::scene::Scene;
 use crate::shell::{add, norm, scaled, sub};
-use crate::units::{count, unsigned_zero};
+use crate::units::{count, place, unsigned_zero};
 use crate::view::{Picture, deformed_surface, mesh_picture, vtu};
 
 /// Largest motion of a mode in its picture, relative to the size of the shell.
@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "K")]
     step: Option<u64>,
     /// Folder for mode.svg and mode.vtu: the shell of --step with the mode added, as large as 5 % of the shell
-    #[arg(short, long, value_name = "DIR", requires = "step")]
+    #[arg(short, long, value_name = "DIR", requires = "step", value_parser = file_name)]
     output: Option<PathBuf>,
 }
 
@@ -92,12 +92,12 @@ fn row(record: &Record, report: &StabilityReport) -> String {
 
 fn in_full(record: &Record, report: &StabilityReport) -> String {
     let stable = if record.report.negative_pivots == 0 { "stable" } else { "not stable" };
-    let [x, y, z] = report.mode_at;
+    let at = place(report.mode_at);
     let [u, v, w] = report.mode.shape[report.mode.largest_at].map(unsigned_zero);
     format!(
         "load step {}, {} at {}: {stable}, {}\n\
          lowest eigenvalue    {:.6e} N/mm (for a motion of 1 mm root mean square)\n\
-         its mode             moves most at ({x:.1}, {y:.1}, {z:.1}) mm, towards ({u:.2}, {v:.2}, {w:.2})\n",
+         its mode             moves most at {at}, towards ({u:.2}, {v:.2}, {w:.2})\n",
         record.report.step,
         record.report.stage,
         record.report.driven_by.shown(record.report.parameter),

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use crate::pipeline::{Outcome, Parameter, Record, Report};
 use crate::scene::Stage;
+use crate::units::reading;
 
 /// A column: its head, and whether its cells stand to the right.
 struct Column(&'static str, bool);
@@ -67,10 +68,10 @@ fn cells(record: &Record) -> [String; COLUMNS.len()] {
         report.stage.name().to_string(),
         format!("{:.3}", report.parameter),
         match report.driven_by {
-            Parameter::Rotation => format!("{:.3}", report.moment_n_mm),
-            Parameter::LoadFactor => report.probes.first().map_or(String::new(), |probe| format!("{:.4}", probe.value)),
+            Parameter::Rotation => reading(report.moment_n_mm, 3),
+            Parameter::LoadFactor => report.probes.first().map_or(String::new(), |probe| reading(probe.value, 4)),
         },
-        format!("{:.3}", report.strain_energy_n_mm),
+        reading(report.strain_energy_n_mm, 3),
         format!("{}×{}", report.elements[0], report.elements[1]),
         report.unknowns.to_string(),
         unless_zero(report.iterations as u64),
@@ -87,7 +88,7 @@ fn note(report: &Report) -> String {
     let attempted = report.attempted_parameter;
     let degree = if report.driven_by == Parameter::Rotation { "°" } else { "" };
     match report.outcome {
-        Outcome::RejectedJump => format!("✗ jump at {attempted:.3}{degree}"),
+        Outcome::RejectedJump => format!("✗ unstable by {attempted:.3}{degree}"),
         Outcome::RejectedCriticalPoint => format!("✗ past critical {attempted:.3}{degree}"),
         Outcome::RejectedSharpTurn => format!("✗ sharp turn {attempted:.3}{degree}"),
         Outcome::RejectedNoEquilibrium => format!("✗ no solution {attempted:.3}{degree}"),
@@ -129,7 +130,9 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
     let outcome = match report.outcome {
         Outcome::Done if report.jumped => "done; the shell jumped".to_string(),
         Outcome::Done => "done".to_string(),
-        Outcome::RejectedJump => "turned down: jumped; the increment is halved until the jump is located".to_string(),
+        Outcome::RejectedJump => {
+            "turned down: unstable on the way, or jumped; the increment is halved until that is located".to_string()
+        }
         Outcome::RejectedCriticalPoint => {
             "turned down: past a limit point or a bifurcation; the step is halved until that is located".to_string()
         }

@@ -84,7 +84,7 @@ impl Arguments {
         let labels = cases.iter().map(Case::label).chain([name.clone()]);
         let width = labels.map(|label| label.chars().count()).max().unwrap_or(0);
         if !self.json {
-            print(&head(width))?;
+            print(&head(width, expected.quantity()))?;
         }
         let own = expected.against(&expected).map_err(failed(name.clone()))?;
         self.show(&name, &[], &own, width)?;
@@ -169,9 +169,10 @@ fn label(scene: &str, settings: &[String]) -> String {
     [&[scene.to_string()], settings].concat().join(" ")
 }
 
-fn head(width: usize) -> String {
+fn head(width: usize, quantity: &str) -> String {
     format!(
-        "{:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>8} {:>10} {:>7} {:>7}\n",
+        "before, after: errors of {quantity} before and after the first snap, of its largest value there\n\
+         {:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>8} {:>10} {:>7} {:>7}\n",
         "run", "elements", "unknowns", "before", "snap", "after", "compared", "iterations", "factors", "wall s"
     )
 }

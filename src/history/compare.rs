@@ -68,7 +68,7 @@ fn structure(a: &State, b: &State) -> Option<String> {
         let what = |state: &State| match state.control.rejection {
             None => format!("a solve that reached {}°", state.parameter),
             Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
-            Some(Rejection::Jump) => "a solve that was turned down for a jump".to_string(),
+            Some(Rejection::Jump) => "a solve that was turned down as unstable on the way".to_string(),
             Some(Rejection::CriticalPoint) => "a solve that was turned down for a critical point".to_string(),
             Some(Rejection::SharpTurn) => "a solve that was turned down for a sharp turn".to_string(),
         };

@@ -1,4 +1,4 @@
-//! Edges of a mesh as supports see them: two rows of control points, normals, centroid, plane of symmetry.
+//! Edges of a mesh as supports see them: two rows of control points, normals, centroid.
 
 use crate::model::ModelError;
 use crate::scene::{Edge, ParametricDirection};
@@ -19,31 +19,10 @@ pub struct EdgeRows {
     pub centroid: [f64; 3],
 }
 
-/// Why an edge or a line is no plane of symmetry.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoPlane {
-    /// It is not plane.
-    #[error("it does not lie in a plane")]
-    NotPlane,
-    /// The surface leaves the plane at another angle.
-    #[error("the surface does not cross its plane at right angles")]
-    NotAtRightAngles,
-    /// The lines of control points leave the plane at another angle.
-    #[error("the parametric lines of the surface do not cross its plane at right angles")]
-    Skewed,
-    /// The weights across a line inside are shared out differently along it.
-    #[error(
-        "the weights of the surface change across the line in shares that differ along it, so that no spline keeps its slope: model the half, whose edge lies there"
-    )]
-    UnevenWeights,
-}
-
 /// Newton steps to the nearest point; quadratic from a start within the span.
 const NEWTON_STEPS: usize = 30;
 /// Gauss points a span for the centroid.
 const CENTROID_POINTS: usize = 8;
-/// Deviation from a plane, relative to the size of the edge, that is rounding.
-pub(super) const PLANE: f64 = 1e-9;
 
 /// Rows of an edge.
 ///
@@ -63,56 +42,14 @@ pub fn edge_rows(mesh: &Mesh, edge: Edge) -> Result<EdgeRows, ModelError> {
     Ok(EdgeRows { normals: normals.collect::<Result<_, _>>()?, centroid: centroid(mesh, edge), outer, inner })
 }
 
-/// The unit normal of the plane of symmetry that an edge can lie in.
-///
-/// # Errors
-/// Why it cannot.
-pub fn symmetry_plane(mesh: &Mesh, edge: Edge) -> Result<[f64; 3], NoPlane> {
-    let (way, at_end) = side(edge);
-    let running = 1 - way;
-    let counts = mesh.control_counts();
-    let point = |k: usize, j: usize| {
-        let along = if at_end { counts[way] - 1 - k } else { k };
-        let [x, y, z, w] = mesh.control_points[if way == 0 { along * counts[1] + j } else { j * counts[1] + along }];
-        [x / w, y / w, z / w]
-    };
-    let first = sub(point(1, 0), point(0, 0));
-    let normal = scaled(1.0 / norm(first), first);
-    let origin = point(0, 0);
-    let size = (0..counts[running]).map(|j| norm(sub(point(0, j), origin))).fold(norm(first), f64::max);
-    for j in 0..counts[running] {
-        if dot(sub(point(0, j), origin), normal).abs() > PLANE * size {
-            // A plane edge whose surface leaves it at an angle, or no plane at all: the edge alone says which.
-            return Err(if is_plane(&(0..counts[running]).map(|j| point(0, j)).collect::<Vec<_>>()) {
-                NoPlane::NotAtRightAngles
-            } else {
-                NoPlane::NotPlane
-            });
-        }
-        let step = sub(point(1, j), point(0, j));
-        if norm(cross(step, normal)) > PLANE * norm(step) {
-            return Err(NoPlane::Skewed);
-        }
-    }
-    Ok(normal)
-}
-
-fn is_plane(points: &[[f64; 3]]) -> bool {
-    let arms: Vec<[f64; 3]> = points.iter().map(|x| sub(*x, points[0])).collect();
-    let size = arms.iter().map(|x| norm(*x)).fold(0.0, f64::max);
-    let last = arms[arms.len() - 1];
-    let normal =
-        arms.iter().map(|x| cross(*x, last)).fold([0.0; 3], |best, x| if norm(x) > norm(best) { x } else { best });
-    let length = norm(normal);
-    length <= PLANE * size * size || arms.iter().all(|x| dot(*x, normal).abs() <= PLANE * size * length)
-}
-
-fn side(edge: Edge) -> (usize, bool) {
+/// Direction (0 or 1) that is constant along an edge, and whether the edge is at its end.
+pub fn side(edge: Edge) -> (usize, bool) {
     let (direction, at_end) = edge.side();
     (if direction == ParametricDirection::U { 0 } else { 1 }, at_end)
 }
 
-fn on_edge(mesh: &Mesh, edge: Edge, parameter: f64) -> SurfacePoint {
+/// The point of an edge at a parameter along it.
+pub fn on_edge(mesh: &Mesh, edge: Edge, parameter: f64) -> SurfacePoint {
     let (way, at_end) = side(edge);
     let end = if at_end { 1.0 } else { 0.0 };
     mid_surface_point(mesh, &[], if way == 0 { [end, parameter] } else { [parameter, end] })
@@ -141,8 +78,7 @@ fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f
     let normal = cross(point.derivatives[0], point.derivatives[1]);
     let scale = norm(point.derivatives[0]) * norm(point.derivatives[1]);
     if norm(normal) <= 1e-12 * scale || scale == 0.0 {
-        let at = point.position.map(crate::units::rounded);
-        return Err(ModelError::Collapsed { x: at[0].clone(), y: at[1].clone(), z: at[2].clone() });
+        return Err(ModelError::Collapsed { at: crate::units::place(point.position) });
     }
     Ok(scaled(1.0 / norm(normal), normal))
 }
@@ -185,8 +121,5 @@ mod tests {
         }
         let half = 55.0_f64.to_radians();
         assert!((rows.centroid[2] - 10.0 * half.sin() / half).abs() < 1e-12);
-        assert_eq!(symmetry_plane(&mesh, Edge::UEnd).map(|normal| normal.map(f64::abs)), Ok([1.0, 0.0, 0.0]));
-        // The free edge of a cylinder lies in its own radial plane.
-        assert!(symmetry_plane(&mesh, Edge::VStart).is_ok());
     }
 }

@@ -2,10 +2,12 @@
 //!
 //! With A = Σ N w u and W = Σ N w, u = A/W has the one-sided derivatives (p/Δ₋)(w₋/w)(u − u₋) and (p/Δ₊)(w₊/w)(u₊ − u) at
 //! such a line: equal derivatives put u on the line between its neighbours, in shares of the weights over the spans. The
-//! geometry itself says whether it is smooth there.
+//! geometry itself says whether it is smooth there. Where it is, but its parameter runs at another speed on either side,
+//! derivatives with respect to length are equal instead, and the shares are those of the geometry. Both need the weights
+//! of the three lines in one ratio all along.
 
 use crate::model::ModelError;
-use crate::shell::{norm, sub};
+use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
 /// Three neighbouring lines of control points of which the middle one follows from the others.
@@ -23,13 +25,14 @@ pub struct Joint {
     pub after_weight: f64,
 }
 
-/// A distance, relative to the segments beside it, above which the geometry has a kink.
-const KINK: f64 = 1e-9;
+/// Angles (rad) and shares up to which the geometry counts as smooth: coordinates given to five digits are off by that much
+/// over the distance of two control points.
+pub const SMOOTH: f64 = 1e-3;
 
 /// Joints in a direction: interior knots of full multiplicity.
 ///
 /// # Errors
-/// Where the geometry has a kink there.
+/// Where the geometry is not smooth there.
 pub fn joints(mesh: &Mesh, direction: usize) -> Result<Vec<Joint>, ModelError> {
     let degree = mesh.degree[direction];
     let knots = &mesh.knots[direction];
@@ -49,7 +52,7 @@ pub fn joints(mesh: &Mesh, direction: usize) -> Result<Vec<Joint>, ModelError> {
 /// The seam where the last line of control points meets the first.
 ///
 /// # Errors
-/// Where the edges do not coincide, or the geometry has a kink there.
+/// Where the geometry is not smooth there. The edges must coincide.
 pub fn seam(mesh: &Mesh, direction: usize) -> Result<Joint, ModelError> {
     let degree = mesh.degree[direction];
     let knots = &mesh.knots[direction];
@@ -59,24 +62,113 @@ pub fn seam(mesh: &Mesh, direction: usize) -> Result<Joint, ModelError> {
     smooth(mesh, direction, joint, spans)
 }
 
-/// Weights of a joint, held against the geometry on every line across it.
-fn smooth(mesh: &Mesh, direction: usize, joint: Joint, spans: [f64; 2]) -> Result<Joint, ModelError> {
-    let counts = mesh.control_counts();
-    let control = |along: usize, across: usize| match direction {
-        0 => mesh.control_points[along * counts[1] + across],
-        _ => mesh.control_points[across * counts[1] + along],
-    };
-    let place = |[x, y, z, w]: [f64; 4]| [x / w, y / w, z / w];
-    let before_weight = control(joint.before, 0)[3] / spans[0];
-    let after_weight = control(joint.after, 0)[3] / spans[1];
-    for across in 0..counts[1 - direction] {
-        let [before, middle, after] = [joint.before, joint.index, joint.after].map(|k| place(control(k, across)));
-        let total = before_weight + after_weight;
-        let expected = [0, 1, 2].map(|c| (before_weight * before[c] + after_weight * after[c]) / total);
-        if norm(sub(expected, middle)) > KINK * norm(sub(after, before)) {
-            let at = middle.map(crate::units::rounded);
-            return Err(ModelError::Kink { x: at[0].clone(), y: at[1].clone(), z: at[2].clone() });
+/// The same surface with the middle line of every joint, and of the seam where it is `closed`, moved on to the straight line
+/// between its neighbours, and the last line of a closed direction on to the first: what is smooth within the tolerance is
+/// smooth to rounding, so that a shell that turns as a whole is not strained.
+///
+/// # Errors
+/// Where the surface is not smooth.
+pub fn smoothed(mut mesh: Mesh, closed: [bool; 2]) -> Result<Mesh, ModelError> {
+    for way in 0..2 {
+        let last = mesh.control_counts()[way] - 1;
+        if closed[way] {
+            copy_line(&mut mesh, way, 0, last);
+        }
+        for joint in joints(&mesh, way)? {
+            straighten(&mut mesh, way, joint);
+        }
+        if closed[way] {
+            let joint = seam(&mesh, way)?;
+            straighten(&mut mesh, way, joint);
+            copy_line(&mut mesh, way, 0, last);
         }
     }
+    Ok(mesh)
+}
+
+fn straighten(mesh: &mut Mesh, way: usize, joint: Joint) {
+    let Joint { index, before, after, before_weight, after_weight } = joint;
+    let shares = [before_weight, after_weight].map(|weight| weight / (before_weight + after_weight));
+    for across in 0..mesh.control_counts()[1 - way] {
+        let [one, other] = [before, after].map(|along| place_of(mesh, way, along, across));
+        move_to(mesh, way, [index, across], add(scaled(shares[0], one), scaled(shares[1], other)));
+    }
+}
+
+fn copy_line(mesh: &mut Mesh, way: usize, from: usize, to: usize) {
+    for across in 0..mesh.control_counts()[1 - way] {
+        let place = place_of(mesh, way, from, across);
+        move_to(mesh, way, [to, across], place);
+    }
+}
+
+fn move_to(mesh: &mut Mesh, way: usize, [along, across]: [usize; 2], [x, y, z]: [f64; 3]) {
+    let index = index_of(mesh, way, along, across);
+    let weight = mesh.control_points[index][3];
+    mesh.control_points[index] = [x * weight, y * weight, z * weight, weight];
+}
+
+fn index_of(mesh: &Mesh, way: usize, along: usize, across: usize) -> usize {
+    let counts = mesh.control_counts();
+    if way == 0 { along * counts[1] + across } else { across * counts[1] + along }
+}
+
+fn weight_of(mesh: &Mesh, way: usize, along: usize, across: usize) -> f64 {
+    mesh.control_points[index_of(mesh, way, along, across)][3]
+}
+
+fn place_of(mesh: &Mesh, way: usize, along: usize, across: usize) -> [f64; 3] {
+    let [x, y, z, w] = mesh.control_points[index_of(mesh, way, along, across)];
+    [x / w, y / w, z / w]
+}
+
+/// Weights of a joint, held against the geometry on every line across it.
+fn smooth(mesh: &Mesh, way: usize, joint: Joint, spans: [f64; 2]) -> Result<Joint, ModelError> {
+    let across = 0..mesh.control_counts()[1 - way];
+    let legs: Vec<[[f64; 3]; 2]> = across
+        .clone()
+        .map(|across| {
+            let [before, middle, after] =
+                [joint.before, joint.index, joint.after].map(|along| place_of(mesh, way, along, across));
+            [sub(middle, before), sub(after, middle)]
+        })
+        .collect();
+    let at = |across: usize| crate::units::place(place_of(mesh, way, joint.index, across));
+    for (across, [before, after]) in legs.iter().enumerate() {
+        let angle = norm(cross(*before, *after)).atan2(dot(*before, *after));
+        if angle > SMOOTH {
+            return Err(ModelError::Kink { at: at(across), angle_deg: angle.to_degrees() });
+        }
+    }
+    let uneven = |along: usize| {
+        let ratio = |across: usize| weight_of(mesh, way, along, across) / weight_of(mesh, way, joint.index, across);
+        across.clone().find(|across| (ratio(*across) / ratio(0) - 1.0).abs() > SMOOTH)
+    };
+    let knot = || crate::units::significant(knot_of(mesh, way, joint.index), 6);
+    let direction = ["u", "v"][way];
+    if let Some(across) = uneven(joint.before).or_else(|| uneven(joint.after)) {
+        return Err(ModelError::UnevenJoint { direction, knot: knot(), at: at(across), what: "weights" });
+    }
+    // How far off equal derivatives are, as a share of the step from the line before to the line after.
+    let misfit = |[before_weight, after_weight]: [f64; 2]| {
+        let off = legs.iter().enumerate().map(|(across, [before, after])| {
+            let step = norm(sub(scaled(after_weight, *after), scaled(before_weight, *before)));
+            (across, step / ((before_weight + after_weight) * norm(add(*before, *after))))
+        });
+        off.fold((0, 0.0), |worst, one| if one.1 > worst.1 { one } else { worst })
+    };
+    let by_parameter = [joint.before, joint.after].map(|along| weight_of(mesh, way, along, 0));
+    let by_parameter = [by_parameter[0] / spans[0], by_parameter[1] / spans[1]];
+    let by_length = [0, 1].map(|side| 1.0 / legs.iter().map(|leg| norm(leg[side])).sum::<f64>());
+    let shares = [by_parameter, by_length].into_iter().find(|shares| misfit(*shares).1 <= SMOOTH);
+    let [before_weight, after_weight] = shares.ok_or_else(|| {
+        let (across, _) = misfit(by_length);
+        ModelError::UnevenJoint { direction, knot: knot(), at: at(across), what: "speeds" }
+    })?;
     Ok(Joint { before_weight, after_weight, ..joint })
+}
+
+/// The knot at which the function of a line is 1: of a seam, the first.
+fn knot_of(mesh: &Mesh, way: usize, line: usize) -> f64 {
+    mesh.knots[way][line + 1]
 }

@@ -1,8 +1,12 @@
 //! The mesh that a scene starts from: an exact NURBS surface with the scene's elements.
 
+use crate::model::joint::SMOOTH;
+use crate::model::mirror::check_mirror_images;
 use crate::model::shape::shape;
+use crate::model::subdivision::subdivide;
 use crate::scene::Scene;
-use crate::spline::{Mesh, Spans};
+use crate::spline::Mesh;
+use crate::units::significant;
 
 /// A scene that cannot be made discrete.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -46,6 +50,50 @@ pub enum ModelError {
         /// Why.
         reason: String,
     },
+    /// The material is not its own mirror image.
+    #[error(
+        "support \"{support}\" is no plane of symmetry of this material: along and across its edge at {at}, {terms}; a mirror \
+         image of this laminate is another laminate, so model the whole shell (all six of A16, A26, B16, B26, D16, D26 must \
+         vanish; a share of {tolerance} is taken for rounding)"
+    )]
+    MaterialNotMirrored {
+        /// Name of the support.
+        support: String,
+        /// Where.
+        at: String,
+        /// The terms that do not vanish.
+        terms: String,
+        /// Share of the stiffness that is taken for rounding.
+        tolerance: f64,
+    },
+    /// A load on a plane of symmetry that is not its own mirror image.
+    #[error(
+        "action \"{action}\" acts on the plane of symmetry of support \"{support}\" {how}: its mirror image acts the other \
+         way; take that part away, or model the whole shell"
+    )]
+    LoadNotMirrored {
+        /// Name of the action.
+        action: String,
+        /// Name of the support.
+        support: String,
+        /// What is wrong with it.
+        how: String,
+    },
+    /// A rigid section meets a plane of symmetry that it may leave.
+    #[error(
+        "the rigid section \"{section}\" meets the plane of symmetry of support \"{support}\", and {} would take it out of that \
+         plane: hold {} there (0.0), or model the whole shell",
+        motions.join(", "),
+        if motions.len() == 1 { "it" } else { "them" }
+    )]
+    SectionLeavesPlane {
+        /// Name of the section's support.
+        section: String,
+        /// Name of the support.
+        support: String,
+        /// Motions of the section, as they stand in a scene.
+        motions: Vec<&'static str>,
+    },
     /// Two supports hold a control point of a section that moves.
     #[error(
         "supports \"{support}\" and \"{other}\" meet, and \"{other}\" is a rigid section that moves: hold the one or the other \
@@ -76,29 +124,114 @@ pub enum ModelError {
         /// Name of the other, if it is known.
         other: Option<String>,
     },
-    /// The surface folds at an interior line.
+    /// The surface has a kink at an interior line or a seam.
     #[error(
-        "the surface has a kink at ({x}, {y}, {z}) mm, and one patch must be smooth: give the knots there a lower multiplicity, or smooth the control points"
+        "the surface has a kink of {}° at {at}, and one patch must be smooth (angles up to {}° are taken for rounding): give \
+         the knots there a lower multiplicity, or put the control points before, on and behind the line on straight lines",
+        significant(*angle_deg, 3),
+        significant(SMOOTH.to_degrees(), 2)
     )]
     Kink {
-        /// x, mm.
-        x: String,
-        /// y, mm.
-        y: String,
-        /// z, mm.
-        z: String,
+        /// Where.
+        at: String,
+        /// Angle between the lines of control points on both sides, degrees.
+        angle_deg: f64,
+    },
+    /// The surface is smooth at an interior line or a seam, but the control points on both sides are in no single ratio.
+    #[error(
+        "the surface is smooth at {at}, on the knot {direction} = {knot}, but the {what} on its two sides are in another \
+         ratio there than elsewhere along it (by more than {SMOOTH}), so that the shell cannot be kept smooth: lower the \
+         multiplicity of that knot (remove it, or write it once less), or make the ratio the same all along"
+    )]
+    UnevenJoint {
+        /// u or v.
+        direction: &'static str,
+        /// The knot, of a range from 0 to 1.
+        knot: String,
+        /// Where.
+        at: String,
+        /// Weights or speeds.
+        what: &'static str,
     },
     /// The surface has no normal at a point.
     #[error(
-        "the surface has no normal at ({x}, {y}, {z}) mm: an edge collapses there, or control points coincide; leave a small hole"
+        "the surface has no normal at {at}: an edge collapses there, or control points coincide; move them apart, and at a \
+         pole leave a small hole"
     )]
     Collapsed {
-        /// x, mm.
-        x: String,
-        /// y, mm.
-        y: String,
-        /// z, mm.
-        z: String,
+        /// Where.
+        at: String,
+    },
+    /// The normal turns over between two points that lie next to each other.
+    #[error(
+        "the surface folds over itself between {from} and {to}: its normal turns by {}°; control points are listed with v \
+         running fastest, and lines of them must not turn back or cross",
+        significant(*angle_deg, 3)
+    )]
+    FoldsOver {
+        /// Where.
+        from: String,
+        /// The point beside it.
+        to: String,
+        /// Angle between the normals, degrees.
+        angle_deg: f64,
+    },
+    /// The control points make a sound surface where they are taken in the other order.
+    #[error(
+        "{fault}. Taken in the other order these control points make a sound surface: they are listed with u running fastest, \
+         and v has to; exchange the two loops that write them"
+    )]
+    ListedUFastest {
+        /// What is wrong with the surface as it stands.
+        fault: Box<ModelError>,
+    },
+    /// Opposite edges coincide, and the scene does not say what happens there.
+    #[error(
+        "the edges {edges} coincide (the largest distance is {gap_mm} mm, and up to {tolerance_mm} mm is taken for none): \
+         write `seam = \"smooth\"` in [geometry] for a closed shell, or `seam = \"free\"` for one that is slit there"
+    )]
+    EdgesMeet {
+        /// The two.
+        edges: &'static str,
+        /// Largest distance, mm.
+        gap_mm: String,
+        /// Tolerance, mm.
+        tolerance_mm: String,
+    },
+    /// Opposite edges coincide in opposite directions.
+    #[error(
+        "the edges {edges} coincide in opposite directions, as those of a Möbius strip: no smooth seam closes them; write \
+         `seam = \"free\"` in [geometry] for a shell that is slit there"
+    )]
+    EdgesMeetReversed {
+        /// The two.
+        edges: &'static str,
+    },
+    /// A seam is asked for, and no edges coincide.
+    #[error(
+        "`seam` is given in [geometry], and no opposite edges coincide: u-start and u-end are up to {} mm apart, v-start and \
+         v-end up to {} mm (up to {tolerance_mm} mm is taken for none); leave it out, or close the control net",
+        gaps_mm[0],
+        gaps_mm[1]
+    )]
+    NoSeam {
+        /// Largest distances in u and in v, mm.
+        gaps_mm: [String; 2],
+        /// Tolerance, mm.
+        tolerance_mm: String,
+    },
+    /// Fewer elements than the surface has spans.
+    #[error(
+        "{asked} element(s) in {direction} are fewer than the {least} spans between the knots of the surface there: write at \
+         least {least} for the model (mesh.elements)"
+    )]
+    TooFewElements {
+        /// u or v.
+        direction: &'static str,
+        /// Elements asked for.
+        asked: usize,
+        /// Spans.
+        least: usize,
     },
     /// A mesh of lower degree than the surface has.
     #[error(
@@ -170,7 +303,8 @@ pub const MOST_CONTROL_POINTS: usize = 500_000;
 /// Builds the starting mesh.
 ///
 /// # Errors
-/// Where the ends of a tape spring leave no free control points between them, or the mesh is too large.
+/// Where the ends of a tape spring leave no free control points between them, the mesh is too large, the surface is none
+/// that a shell can have, or something is not its own mirror image at a plane of symmetry.
 pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     let shape = shape(scene)?;
     if scene.end_rotation().is_some() {
@@ -184,27 +318,7 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     if count > MOST_CONTROL_POINTS {
         return Err(ModelError::TooManyControlPoints { elements: shape.elements, count });
     }
-    Ok(subdivide(shape.mesh, shape.elements))
-}
-
-/// Inserts uniform knots so that there are at least `elements` each way, the same number in each span of the mesh.
-fn subdivide(mesh: Mesh, elements: [usize; 2]) -> Mesh {
-    let new = [0, 1].map(|direction| {
-        let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
-        let pieces = elements[direction].div_ceil(bounds.len());
-        let total = (pieces * bounds.len()) as f64;
-        let inside = |(span, [from, to]): (usize, &[f64; 2])| {
-            let uniform = (bounds.len() as f64 * from - span as f64).abs() < 1e-12;
-            let (from, to) = (*from, *to);
-            // Uniform spans are divided as multiples of one number, so that equal meshes have equal bits.
-            (1..pieces)
-                .map(move |k| match uniform {
-                    true => (span * pieces + k) as f64 / total,
-                    false => from + (to - from) * k as f64 / pieces as f64,
-                })
-                .collect::<Vec<f64>>()
-        };
-        bounds.iter().enumerate().flat_map(inside).collect()
-    });
-    mesh.with_knots(&new)
+    let mesh = subdivide(shape.mesh, shape.elements)?;
+    check_mirror_images(scene, &mesh)?;
+    Ok(mesh)
 }

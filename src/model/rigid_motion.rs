@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, Matrix3xX, SMatrix};
 
 use crate::model::Unknowns;
 use crate::model::supports::Supports;
-use crate::shell::{cross, dot, norm, scaled, sub};
+use crate::shell::{add, cross, dot, norm, scaled, sub};
 
 /// Squares of how much a motion is held, relative to the most held one, below which it is free. A lever of a millionth of
 /// the shell holds nothing.
@@ -124,8 +124,8 @@ fn words(basis: &DMatrix<f64>, middle: [f64; 3], size: f64) -> String {
     let shift = vector(&motion, 0);
     // The axis passes through middle + ω × t / |ω|².
     let offset = scaled(1.0 / dot(turn, turn), cross(turn, shift));
-    let at = [0, 1, 2].map(|c| crate::units::rounded(middle[c] + offset[c]));
-    format!("it can turn about an axis along {} through ({}, {}, {}) mm", direction(turn), at[0], at[1], at[2])
+    let at = crate::units::place(add(middle, offset));
+    format!("it can turn about an axis along {} through {at}", direction(turn))
 }
 
 fn direction(vector: [f64; 3]) -> String {

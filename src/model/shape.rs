@@ -3,7 +3,9 @@
 use nalgebra::DMatrix;
 
 use crate::model::ModelError;
-use crate::scene::{Geometry, NurbsPatch, Scene};
+use crate::model::joint::smoothed;
+use crate::model::soundness::{check_normals, check_seam, closed_directions};
+use crate::scene::{Geometry, NurbsPatch, Scene, Seam};
 use crate::spline::{
     HomogeneousCurve, Mesh, basis_derivatives, basis_derivatives_len, circular_arc, find_span, straight_line,
 };
@@ -20,7 +22,7 @@ pub(super) struct Shape {
 /// apex; its half-length model x in [0, L/2], its half-arc model φ in [0, α/2].
 ///
 /// # Errors
-/// Where the degree of the mesh is below that of the surface.
+/// Where the degree of the mesh is below that of the surface, or the surface is none that a shell can have.
 pub(super) fn shape(scene: &Scene) -> Result<Shape, ModelError> {
     let [p, q] = scene.mesh.degree;
     let elements = scene.mesh.elements;
@@ -88,8 +90,41 @@ fn product(u: &HomogeneousCurve, v: &HomogeneousCurve, point: impl Fn(&[f64; 3],
     Mesh { degree: [u.degree, v.degree], knots: [u.knots.clone(), v.knots.clone()], control_points }
 }
 
-/// The user's patch on [0, 1]², raised to the degree of the mesh.
+/// The user's patch on [0, 1]², raised to the degree of the mesh, smooth to rounding.
 fn nurbs(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
+    let mesh = sound(patch, degree).map_err(|fault| match fault {
+        ModelError::DegreeTooLow { .. } => fault,
+        _ if sound(&listed_the_other_way(patch), degree).is_ok() => {
+            ModelError::ListedUFastest { fault: Box::new(fault) }
+        }
+        _ => fault,
+    })?;
+    check_seam(&mesh, patch.seam)?;
+    Ok(mesh)
+}
+
+/// The surface of a patch, where a shell can have it.
+fn sound(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
+    let mesh = raised_to(patch, degree)?;
+    let closed = closed_directions(&mesh).map(|closed| closed && patch.seam == Some(Seam::Smooth));
+    let mesh = smoothed(mesh, closed)?;
+    check_normals(&mesh)?;
+    Ok(mesh)
+}
+
+/// The patch whose points are listed with u running fastest.
+fn listed_the_other_way(patch: &NurbsPatch) -> NurbsPatch {
+    let n1 = patch.knots_u.len() - patch.degrees[0] - 1;
+    let n2 = patch.knots_v.len() - patch.degrees[1] - 1;
+    let source = |k: usize| k % n2 * n1 + k / n2;
+    NurbsPatch {
+        control_points_mm: (0..n1 * n2).map(|k| patch.control_points_mm[source(k)]).collect(),
+        weights: (0..n1 * n2).map(|k| patch.weights[source(k)]).collect(),
+        ..patch.clone()
+    }
+}
+
+fn raised_to(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
     let unit = |knots: &[f64]| {
         let (first, last) = (knots[0], knots[knots.len() - 1]);
         knots.iter().map(|knot| (knot - first) / (last - first)).collect::<Vec<f64>>()
@@ -168,7 +203,7 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
 mod tests {
     use super::*;
     use crate::model::starting_mesh;
-    use crate::scene::{Seam, parse};
+    use crate::scene::parse;
     use crate::shell::{cross, dot, norm};
     use crate::spline::mid_surface_point;
 
@@ -227,6 +262,7 @@ mod tests {
                 [4.0, 3.0, 0.0],
             ],
             weights: vec![1.0, half, 1.0, 1.0, half, 1.0],
+            seam: None,
         };
         let mesh = meshed(Geometry::Nurbs(patch), [3, 5]);
         check(&mesh, |[_, y, z]| y.hypot(z) - 3.0, |[_, y, z]| [0.0, y, z]);

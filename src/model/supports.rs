@@ -4,16 +4,23 @@
 //! needs only its own row of control points; its slope (a clamp, a plane of symmetry) also needs the row beside it.
 
 use crate::model::ModelError;
-use crate::model::edge::{EdgeRows, edge_rows, symmetry_plane};
+use crate::model::edge::{EdgeRows, edge_rows};
 use crate::model::elimination::Expression;
 use crate::model::expressions::control_expressions;
 use crate::model::joint::{Joint, joints, seam};
+use crate::model::mirror::Mirror;
 use crate::model::rigid_support::HeldMotions;
+use crate::model::soundness::closed_directions;
 use crate::scene::{
-    Edge, Geometry, History, Hold, Load, Motion, ParametricDirection, Place, Scene, Seam, Sense, Support,
+    Edge, Geometry, History, Hold, Load, Motion, NurbsPatch, ParametricDirection, Place, Scene, Seam, Sense, Support,
 };
 use crate::shell::{dot, norm, sub};
 use crate::spline::Mesh;
+
+/// Components of a plane's normal below which a motion along an axis lies in the plane.
+const KEPT: f64 = 1e-9;
+/// Motions of a rigid section, as they stand in a scene.
+const MOTIONS: [&str; 6] = ["x_mm", "y_mm", "z_mm", "rotation_x_deg", "rotation_y_deg", "rotation_z_deg"];
 
 /// A given motion as a function of the scene's parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,18 +125,21 @@ impl Supports {
                 supports.hold_rigidly(index, support, &ties.rows(mesh, edge)?, &points)?;
             }
         }
+        let mut mirrors = Mirror::all(scene, &all, mesh)?.into_iter();
         for (index, support) in all.iter().enumerate() {
             match (&support.hold, support.on) {
                 (Hold::Rigid { .. } | Hold::RigidMotions, _) => {}
-                (Hold::Symmetric, Place::Edge(edge)) => supports.mirror(index, mesh, edge)?,
-                (Hold::Symmetric, Place::Line(direction, fraction)) => {
-                    supports.mirror_line(index, scene, mesh, direction, fraction)?;
+                (Hold::Symmetric, on) => {
+                    let Some(mirror) = mirrors.next() else { continue };
+                    match on {
+                        Place::Edge(edge) => supports.mirror(index, &edge_rows(mesh, edge)?, &mirror)?,
+                        _ => supports.mirror_line(index, mesh, &mirror)?,
+                    }
                 }
                 (Hold::Displacement { displacement_mm }, on) => {
                     let places = control_expressions(scene, mesh, on)?;
                     supports.displace(index, support, *displacement_mm, &places, &points)?;
                 }
-                (Hold::Symmetric, _) => return Err(ModelError::NotAnEdge { support: support.name.clone() }),
             }
         }
         supports.tie(&ties, mesh);
@@ -214,12 +224,9 @@ impl Supports {
     }
 
     /// A plane of symmetry: no displacement across it, and slopes that go on evenly behind it.
-    fn mirror(&mut self, index: usize, mesh: &Mesh, edge: Edge) -> Result<(), ModelError> {
-        let rows = edge_rows(mesh, edge)?;
-        let name = &self.traces[index].name;
-        let normal = symmetry_plane(mesh, edge)
-            .map_err(|reason| ModelError::NotASymmetryPlane { support: name.clone(), reason: reason.to_string() })?;
-        self.check_sections_keep(index, &rows.outer, normal)?;
+    fn mirror(&mut self, index: usize, rows: &EdgeRows, mirror: &Mirror) -> Result<(), ModelError> {
+        let normal = mirror.normal;
+        self.check_sections_keep(&rows.outer, mirror)?;
         let [first, second] = in_plane(normal);
         for (outer, inner) in rows.outer.iter().zip(&rows.inner) {
             self.push(Some(index), along(*outer, normal));
@@ -231,20 +238,24 @@ impl Supports {
         }
         self.traces[index].points = rows.outer.iter().chain(&rows.inner).copied().collect();
         self.traces[index].pole = rows.centroid;
-        self.traces[index].mirrored = rows.outer;
+        self.traces[index].mirrored = rows.outer.clone();
         Ok(())
     }
 
     /// Refuses a plane of symmetry that a section could leave.
-    pub(super) fn check_sections_keep(
-        &self,
-        index: usize,
-        points: &[usize],
-        normal: [f64; 3],
-    ) -> Result<(), ModelError> {
-        let mut sections = points.iter().filter_map(|point| self.section_of[*point]);
-        let leaving = sections.find(|section| !self.sections[*section].keeps_plane(normal));
-        leaving.map_or(Ok(()), |section| Err(self.overlap(index, section)))
+    pub(super) fn check_sections_keep(&self, points: &[usize], mirror: &Mirror) -> Result<(), ModelError> {
+        for section in points.iter().filter_map(|point| self.section_of[*point]) {
+            let motions = self.sections[section].motions_out_of_plane(mirror.normal);
+            if !motions.is_empty() {
+                let held = self.traces.iter().find(|trace| trace.section == Some(section));
+                return Err(ModelError::SectionLeavesPlane {
+                    section: held.map_or_else(String::new, |trace| trace.name.clone()),
+                    support: mirror.support.clone(),
+                    motions,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Given components of a displacement, for each of some weighted sums of control points.
@@ -343,19 +354,19 @@ impl Supports {
 }
 
 impl Section {
-    /// Whether all that the section can do keeps a plane through its centre with this normal in place.
-    fn keeps_plane(&self, normal: [f64; 3]) -> bool {
-        let still = |law: &Option<Law>| law.as_ref().is_some_and(|law| law.at_one == 0.0);
-        let moving = |offset: usize| [0, 1, 2].map(|c| if still(&self.motions[offset + c]) { 0.0 } else { 1.0 });
-        let (translation, rotation) = (moving(0), moving(3));
-        let across = (0..3).all(|c| translation[c] * normal[c] == 0.0);
-        let turns: Vec<usize> = (0..3).filter(|c| rotation[*c] != 0.0).collect();
-        across && turns.iter().all(|c| (normal[*c].abs() - 1.0).abs() < 1e-12)
+    /// The motions that would take a plane with this normal out of its place, as they stand in a scene.
+    fn motions_out_of_plane(&self, normal: [f64; 3]) -> Vec<&'static str> {
+        let still = |k: usize| self.motions[k].as_ref().is_some_and(|law| law.at_one == 0.0);
+        let keeps = |k: usize| match k {
+            0..3 => normal[k].abs() < KEPT,
+            _ => normal[k - 3].abs() > 1.0 - KEPT,
+        };
+        (0..6).filter(|k| !still(*k) && !keeps(*k)).map(|k| MOTIONS[k]).collect()
     }
 }
 
 /// The supports of a scene in words of its own, or those that turning ends come to.
-fn supports_of(scene: &Scene) -> Vec<Support> {
+pub(super) fn supports_of(scene: &Scene) -> Vec<Support> {
     let (Load::EndRotation(load), Geometry::TapeSpring { length_mm, radius_mm, arc_deg }) =
         (&scene.load, &scene.geometry)
     else {
@@ -415,6 +426,7 @@ impl Ties {
             Geometry::CylinderPanel { seam: Some(Seam::Smooth), .. }
             | Geometry::Annulus { seam: Some(Seam::Smooth), .. } => [false, true],
             Geometry::SphereZone { seam: Some(Seam::Smooth), .. } => [true, false],
+            Geometry::Nurbs(NurbsPatch { seam: Some(Seam::Smooth), .. }) => closed_directions(mesh),
             _ => [false, false],
         };
         let closing = |way: usize| if closed[way] { seam(mesh, way).map(|joint| vec![joint]) } else { Ok(vec![]) };

@@ -10,19 +10,22 @@
 //! The undeformed surface must meet them itself; then so does the deformed one, at any rotation.
 
 use crate::model::ModelError;
-use crate::model::edge::{NoPlane, PLANE};
 use crate::model::elimination::Expression;
-use crate::model::place::parameters_of;
+use crate::model::mirror::{ANGLE, Mirror, NoPlane};
+use crate::model::soundness::POSITION;
 use crate::model::supports::{Supports, along, in_plane};
-use crate::scene::{ParametricDirection, Scene};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::{Mesh, basis_derivatives, basis_derivatives_len, find_span};
+use crate::units::place;
 
 /// Weighted sums of control points.
 type Sums = Vec<Vec<(usize, f64)>>;
 
+/// Shares of weights along a line that differ by less are rounding.
+const EVEN: f64 = 1e-9;
+
 /// A line of a mesh.
-struct Line {
+pub(super) struct Line {
     /// Its displacement: one sum for each of its control points as a curve; weights of 1 in all.
     places: Sums,
     /// The derivative of its displacement across it, alike, in parts of the largest weight.
@@ -31,32 +34,25 @@ struct Line {
 
 impl Supports {
     /// No displacement across the plane of a line, and slopes that are even on both sides of it.
-    pub(super) fn mirror_line(
-        &mut self,
-        index: usize,
-        scene: &Scene,
-        mesh: &Mesh,
-        direction: ParametricDirection,
-        fraction: f64,
-    ) -> Result<(), ModelError> {
-        let way = if direction == ParametricDirection::U { 0 } else { 1 };
-        let parameter = parameters_of(&scene.geometry, [fraction; 2])[way];
-        let no_plane = |reason: NoPlane| ModelError::NotASymmetryPlane {
-            support: self.traces[index].name.clone(),
+    pub(super) fn mirror_line(&mut self, index: usize, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
+        let line = Line::new(mesh, mirror.way, mirror.parameter).map_err(|reason| ModelError::NotASymmetryPlane {
+            support: mirror.support.clone(),
             reason: reason.to_string(),
-        };
-        let line = Line::new(mesh, way, parameter).map_err(no_plane)?;
-        let (normal, middle) = line.plane(mesh).map_err(no_plane)?;
+        })?;
         let points: Vec<usize> = line.places.iter().chain(&line.slopes).flatten().map(|(point, _)| *point).collect();
-        self.check_sections_keep(index, &points, normal)?;
+        self.check_sections_keep(&points, mirror)?;
         let directed = |sum: &[(usize, f64)], direction: [f64; 3]| -> Expression {
             let of_point = |(point, factor): &(usize, f64)| along(*point, scaled(*factor, direction));
             sum.iter().flat_map(of_point).collect()
         };
         for (place, slope) in line.places.iter().zip(&line.slopes) {
-            self.push(Some(index), directed(place, normal));
-            in_plane(normal).into_iter().for_each(|direction| self.push(Some(index), directed(slope, direction)));
+            self.push(Some(index), directed(place, mirror.normal));
+            let tangents = in_plane(mirror.normal);
+            tangents.into_iter().for_each(|direction| self.push(Some(index), directed(slope, direction)));
         }
+        let curve = sums_of(mesh, &line.places);
+        let share = 1.0 / curve.len() as f64;
+        let middle = curve.iter().fold([0.0; 3], |sum, x| add(sum, scaled(share, *x)));
         let trace = &mut self.traces[index];
         (trace.points, trace.pole, trace.is_inner_mirror) = (points, middle, true);
         Ok(())
@@ -64,7 +60,11 @@ impl Supports {
 }
 
 impl Line {
-    fn new(mesh: &Mesh, way: usize, parameter: f64) -> Result<Self, NoPlane> {
+    /// The line on which the parameter of direction `way` has a value.
+    ///
+    /// # Errors
+    /// Where no spline keeps its slope there.
+    pub(super) fn new(mesh: &Mesh, way: usize, parameter: f64) -> Result<Self, NoPlane> {
         let degree = mesh.degree[way];
         let span = find_span(&mesh.knots[way], degree, parameter);
         let mut basis = vec![0.0; basis_derivatives_len(degree)];
@@ -85,7 +85,7 @@ impl Line {
             let steepest = slope.iter().map(|(_, factor)| factor.abs()).fold(0.0, f64::max);
             let total = sum(&value);
             let rate = *rate.get_or_insert(sum(&slope) / total);
-            if (sum(&slope) - rate * total).abs() > PLANE * steepest {
+            if (sum(&slope) - rate * total).abs() > EVEN * steepest {
                 return Err(NoPlane::UnevenWeights);
             }
             let even = slope
@@ -99,26 +99,38 @@ impl Line {
         Ok(line)
     }
 
-    /// Unit normal of the plane of symmetry, and the mean of the line's control points, mm.
-    fn plane(&self, mesh: &Mesh) -> Result<([f64; 3], [f64; 3]), NoPlane> {
-        let at = |sum: &Vec<(usize, f64)>| {
-            sum.iter().fold([0.0; 3], |to, (point, factor)| {
-                let [x, y, z, w] = mesh.control_points[*point];
-                add(to, scaled(factor / w, [x, y, z]))
-            })
-        };
-        let curve: Vec<[f64; 3]> = self.places.iter().map(at).collect();
-        let across: Vec<[f64; 3]> = self.slopes.iter().map(at).collect();
+    /// Unit normal of the plane of symmetry.
+    ///
+    /// # Errors
+    /// Where it lies in none.
+    pub(super) fn normal(&self, mesh: &Mesh) -> Result<[f64; 3], NoPlane> {
+        let curve = sums_of(mesh, &self.places);
+        let across = sums_of(mesh, &self.slopes);
         let steepest = across.iter().fold([0.0; 3], |best, x| if norm(*x) > norm(best) { *x } else { best });
         let normal = scaled(1.0 / norm(steepest), steepest);
+        let off_axis = |slope: [f64; 3]| norm(cross(slope, normal)).atan2(dot(slope, normal));
+        let angles = across.iter().map(|slope| off_axis(*slope)).zip(&curve);
+        let (off, at) = angles.fold((0.0, &curve[0]), |worst, one| if one.0 > worst.0 { one } else { worst });
+        if off > ANGLE {
+            return Err(NoPlane::Skewed { off_deg: off.to_degrees(), at: place(*at) });
+        }
         let size = curve.iter().map(|x| norm(sub(*x, curve[0]))).fold(norm(steepest), f64::max);
-        if across.iter().any(|slope| norm(cross(*slope, normal)) > PLANE * norm(steepest)) {
-            return Err(NoPlane::Skewed);
+        let distances = curve.iter().map(|x| dot(sub(*x, curve[0]), normal).abs()).zip(&curve);
+        let (off_mm, at) = distances.fold((0.0, &curve[0]), |worst, one| if one.0 > worst.0 { one } else { worst });
+        match off_mm > POSITION * size {
+            true => Err(NoPlane::NotPlane { off_mm, at: place(*at), tolerance_mm: POSITION * size }),
+            false => Ok(normal),
         }
-        if curve.iter().any(|x| dot(sub(*x, curve[0]), normal).abs() > PLANE * size) {
-            return Err(NoPlane::NotPlane);
-        }
-        let share = 1.0 / curve.len() as f64;
-        Ok((normal, curve.iter().fold([0.0; 3], |sum, x| add(sum, scaled(share, *x)))))
     }
+}
+
+/// Weighted sums of the control points, mm.
+fn sums_of(mesh: &Mesh, sums: &Sums) -> Vec<[f64; 3]> {
+    let of_sum = |sum: &Vec<(usize, f64)>| {
+        sum.iter().fold([0.0; 3], |to, (point, factor)| {
+            let [x, y, z, w] = mesh.control_points[*point];
+            add(to, scaled(factor / w, [x, y, z]))
+        })
+    };
+    sums.iter().map(of_sum).collect()
 }

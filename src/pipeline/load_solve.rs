@@ -102,6 +102,7 @@ impl Stages {
         let (reached, attempted) = (parameter.shown(state.parameter), parameter.shown(attempt.target_deg));
         let (step, cause) = (state.step + 1, Box::new(cause));
         match state.control.jump_seen_at_deg {
+            Some(_) if state.step == 0 => StageError::NoStart { step, attempted, cause },
             Some(_) => StageError::JumpNotFollowed { step, reached, attempted, cause },
             None => {
                 let least = self.scene.least_increment();

@@ -58,6 +58,8 @@ impl CriticalPoint {
     /// What it is.
     pub fn name(&self) -> &'static str {
         match (self.limit_point, self.is_bifurcation()) {
+            // The parameter turns back, and stability stays as it is.
+            (true, _) if self.turns_back_alone() => "turning point",
             (true, false) => "limit point",
             (true, true) => "limit point and bifurcation",
             (false, _) => "bifurcation",

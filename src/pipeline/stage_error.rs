@@ -26,10 +26,24 @@ pub enum StageError {
         /// Why the last attempt failed.
         cause: Box<SolveError>,
     },
-    /// The shell jumps, the jump is located, and the solver did not reach the shape beyond it.
+    /// Not even the first step has an equilibrium.
     #[error(
-        "step {step}, solve: the shell jumps between {reached} and {attempted}, and the shape beyond was not reached: \
-         {cause}; raise solver.max_iterations"
+        "step {step}, solve: no equilibrium was found near the undeformed shell, at {attempted}, nor at larger increments: \
+         {cause}; look at sizes and units of loads, thickness and geometry, and at what the supports leave free; then take a \
+         smaller increment or raise solver.max_iterations"
+    )]
+    NoStart {
+        /// Load step.
+        step: u64,
+        /// Where the last attempt would have stood.
+        attempted: String,
+        /// Why the last attempt failed.
+        cause: Box<SolveError>,
+    },
+    /// The shell jumps or loses its stability, where is located, and the solver did not reach the shape beyond it.
+    #[error(
+        "step {step}, solve: the shell jumps or loses its stability between {reached} and {attempted}, and no equilibrium \
+         beyond was reached: {cause}; raise solver.max_iterations"
     )]
     JumpNotFollowed {
         /// Load step.

@@ -9,6 +9,11 @@ use super::error::{Checked, Direction, Fault, Place, Problem, SceneError, Source
 use super::key_table as keys;
 use super::read::{Found, Reader};
 use super::{actions, general, names, stage_order};
+use crate::units::significant;
+
+/// Length of the layer in which a cylinder feels its held end, in units of sqrt(R t): pi decay lengths of
+/// sqrt(R t)/(3(1 - nu^2))^(1/4), after which 4 % are left (Timoshenko & Woinowsky-Krieger, section 114), at nu = 0.3.
+const BOUNDARY_LAYER: f64 = 2.4;
 
 /// Reads a scene from TOML. `file_name` is only what errors call the text.
 ///
@@ -45,6 +50,7 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
     let material = material(reader, &geometry)?;
     let (mesh, symmetry) = mesh(reader)?;
     let (load, increments) = load(reader, &geometry)?;
+    check_length(reader, &geometry, &material, &load)?;
     let (supports, actions, probes) = structure(reader, &load, (&geometry, &material))?;
     let pipeline = stages(reader)?;
     let adapt = adapt(reader, &pipeline, &geometry)?;
@@ -75,6 +81,27 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
         pipeline,
         output,
     })
+}
+
+/// Refuses a spring that the boundary layers of its two ends fill: between rigid ends so near to each other no fold forms.
+fn check_length(reader: &Reader<'_, '_>, geometry: &Geometry, material: &Material, load: &Load) -> Checked<()> {
+    let (Geometry::TapeSpring { length_mm, radius_mm, .. }, Load::EndRotation(_)) = (geometry, load) else {
+        return Ok(());
+    };
+    let layer_mm = BOUNDARY_LAYER * (radius_mm * material.thickness_mm()).sqrt();
+    if *length_mm >= 2.0 * layer_mm {
+        return Ok(());
+    }
+    let table = reader.document.table("geometry");
+    let problem = format!(
+        "a spring of {length_mm} mm is all boundary layer: each end takes {BOUNDARY_LAYER} sqrt(R t) = {} mm of it",
+        significant(layer_mm, 3)
+    );
+    let remedy = format!(
+        "make it longer than {} mm, by far; radius_mm is {radius_mm}: are the two exchanged?",
+        significant(2.0 * layer_mm, 3)
+    );
+    Err(table.wrong(table.place_of("length_mm").as_ref(), problem, remedy))
 }
 
 /// Supports, actions and probes, and whether they make a problem.

@@ -155,6 +155,8 @@ impl Direction {
 pub enum SyntaxSlip {
     /// A key or a table stands twice.
     Twice,
+    /// A table of which there may be several stands twice, in single brackets.
+    TwiceInSingleBrackets,
     /// A word without quotes.
     BareWord,
     /// A unit, or something else, behind a number.

@@ -3,10 +3,11 @@
 
 use super::actions::has_centre;
 use super::data::{
-    Axis, Component, Edge, Geometry, History, Hold, Load, LoadSteps, Material, Motion, NurbsPatch, OrthotropicLaw,
+    Axis, Component, Edge, Geometry, History, Hold, Load, LoadSteps, Material, Motion, OrthotropicLaw,
     ParametricDirection, Place, Ply, Probe, ProbeKind, Reaction, Seam, Support,
 };
 use super::error::Checked;
+use super::nurbs::nurbs;
 use super::table::{ANY, LENGTH, Range, Table};
 
 /// Kinds of geometry that are read here.
@@ -15,12 +16,42 @@ pub(super) const GEOMETRIES: [&str; 5] = ["plate", "cylinder-panel", "annulus", 
 pub(super) const MATERIALS: [&str; 2] = ["orthotropic", "laminate"];
 /// Kinds of load that are read here.
 pub(super) const LOADS: [&str; 1] = ["steps"];
+/// Keys that tables of these kinds have and those of the first kind, which the table of keys knows, have not.
+const KEYS_OF_KINDS: [(&str, &str, &[&str]); 8] = [
+    ("geometry", "plate", &["width_mm"]),
+    ("geometry", "cylinder-panel", &["seam"]),
+    ("geometry", "annulus", &["inner_radius_mm", "outer_radius_mm", "seam"]),
+    ("geometry", "sphere-zone", &["latitude_deg", "seam"]),
+    ("geometry", "nurbs", &["degrees", "knots_u", "knots_v", "control_points_mm", "weights", "file", "seam"]),
+    (
+        "material",
+        "orthotropic",
+        &["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa", "angle_deg"],
+    ),
+    (
+        "material",
+        "laminate",
+        &["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa"],
+    ),
+    ("load", "steps", &["increment", "longest_increment", "factor", "least_increment", "snap_tolerance"]),
+];
+
+/// The kinds of a table that have a key which those of its first kind have not.
+pub(super) fn kinds_with(section: &str, key: &str) -> Vec<&'static str> {
+    let with = KEYS_OF_KINDS.iter().filter(|(of, _, keys)| *of == section && keys.contains(&key));
+    with.map(|(_, kind, _)| *kind).collect()
+}
+
+/// Words of `seam`.
+pub(super) const SEAMS: [(&str, Seam); 2] = [("smooth", Seam::Smooth), ("free", Seam::Free)];
 /// Arrays of tables.
 pub(super) const ARRAYS: [&str; 4] = ["ply", "support", "action", "probe"];
 
 const ARC: Range = Range { above: 0.0, most: 360.0, reason: "an arc is more than 0 and at most 360 degrees" };
 const FROM: Range = Range { above: -360.0, most: 360.0, reason: "an arc starts between -360 and 360 degrees" };
 const DENSITY: Range = Range { above: 0.0, most: 1e12, reason: "densities are positive, in kg/m3 (steel: 7850)" };
+/// A gap of a full turn that is smaller is rounding of coordinates: 1e-4 rad.
+const NEAR_FULL_TURN_DEG: f64 = 0.006;
 const MODULUS: Range = Range { above: 0.0, most: 1e13, reason: "moduli are positive, in MPa" };
 
 /// A geometry of one of [`GEOMETRIES`].
@@ -74,7 +105,15 @@ pub(super) fn geometry(table: Table<'_, '_>, folder: &std::path::Path) -> Checke
 }
 
 fn seam(table: &Table<'_, '_>, arc_deg: f64) -> Checked<Option<Seam>> {
-    let given = table.maybe_word("seam", &[("smooth", Seam::Smooth), ("free", Seam::Free)])?;
+    let given = table.maybe_word("seam", &SEAMS)?;
+    let short_deg = 360.0 - arc_deg;
+    if short_deg > 0.0 && short_deg < NEAR_FULL_TURN_DEG {
+        return Err(table.wrong(
+            table.place_of("arc_deg").as_ref(),
+            format!("an arc of {arc_deg} degrees is {short_deg:.1e} degrees short of a full turn"),
+            "write `arc_deg = 360.0` and a `seam`, or leave a gap that can be seen (0.006 degrees)",
+        ));
+    }
     match (given, arc_deg == 360.0) {
         (None, true) => Err(table.wrong(
             None,
@@ -90,127 +129,12 @@ fn seam(table: &Table<'_, '_>, arc_deg: f64) -> Checked<Option<Seam>> {
     }
 }
 
-/// The keys of a NURBS surface in a file of its own.
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct NurbsFile {
-    degrees: [usize; 2],
-    knots_u: Vec<f64>,
-    knots_v: Vec<f64>,
-    control_points_mm: Vec<[f64; 3]>,
-    #[serde(default)]
-    weights: Vec<f64>,
-}
-
-fn nurbs(table: &Table<'_, '_>, folder: &std::path::Path) -> Checked<NurbsPatch> {
-    let file = match table.maybe_text("file")? {
-        Some(name) => {
-            let path = folder.join(&name);
-            let wrong = |error: String| {
-                let problem = format!("{} cannot be read: {error}", path.display());
-                table.wrong(table.place_of("file").as_ref(), problem, "the path is relative to the scene file; the file is a JSON object with the keys degrees, knots_u, knots_v, control_points_mm, weights")
-            };
-            let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
-            serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?
-        }
-        None => {
-            let degrees: [f64; 2] = table.tuple("degrees", "[1, 2]")?;
-            let missing = |name: &str| {
-                table.wrong(
-                    None,
-                    format!("`{name}` is missing"),
-                    "a nurbs surface has degrees, knots_u, knots_v, control_points_mm and, if it is rational, weights",
-                )
-            };
-            NurbsFile {
-                degrees: degrees.map(|degree| degree.max(0.0) as usize),
-                knots_u: table.maybe_numbers("knots_u")?.ok_or_else(|| missing("knots_u"))?,
-                knots_v: table.maybe_numbers("knots_v")?.ok_or_else(|| missing("knots_v"))?,
-                control_points_mm: table
-                    .maybe_rows("control_points_mm", "[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]")?
-                    .ok_or_else(|| missing("control_points_mm"))?,
-                weights: table.maybe_numbers("weights")?.unwrap_or_default(),
-            }
-        }
-    };
-    let mut patch = NurbsPatch {
-        degrees: file.degrees,
-        knots_u: file.knots_u,
-        knots_v: file.knots_v,
-        control_points_mm: file.control_points_mm,
-        weights: file.weights,
-    };
-    if patch.weights.is_empty() {
-        patch.weights = vec![1.0; patch.control_points_mm.len()];
-    }
-    sound(&patch).map_err(|problem| {
-        table.wrong(None, problem, "knots are ascending and clamped: the first and the last stand degree + 1 times")
-    })?;
-    Ok(patch)
-}
-
-/// Whether a patch is a tensor-product surface.
-fn sound(patch: &NurbsPatch) -> Result<(), String> {
-    let mut expected = 1;
-    for (name, knots, degree) in [("u", &patch.knots_u, patch.degrees[0]), ("v", &patch.knots_v, patch.degrees[1])] {
-        if !(1..=5).contains(&degree) {
-            return Err(format!("degree {degree} in {name} is not offered: 1 to 5 are"));
-        }
-        if knots.len() < 2 * (degree + 1) {
-            return Err(format!(
-                "{} knots in {name} are too few for degree {degree}: at least {}",
-                knots.len(),
-                2 * (degree + 1)
-            ));
-        }
-        if knots.iter().any(|knot| !knot.is_finite()) || knots.windows(2).any(|pair| pair[1] < pair[0]) {
-            return Err(format!("the knots in {name} are not ascending numbers"));
-        }
-        let ends = [knots[0], knots[knots.len() - 1]];
-        for group in knots.chunk_by(|a, b| a == b) {
-            let at_end = ends.contains(&group[0]);
-            if at_end && group.len() != degree + 1 {
-                return Err(format!(
-                    "the knots in {name} are not clamped: {} stands {} times at an end, not {}",
-                    group[0],
-                    group.len(),
-                    degree + 1
-                ));
-            }
-            if !at_end && group.len() > degree {
-                return Err(format!(
-                    "knot {} in {name} stands {} times: the surface would tear",
-                    group[0],
-                    group.len()
-                ));
-            }
-        }
-        expected *= knots.len() - degree - 1;
-    }
-    if patch.control_points_mm.len() != expected {
-        return Err(format!(
-            "the knots ask for {expected} control points, and there are {}",
-            patch.control_points_mm.len()
-        ));
-    }
-    if patch.weights.len() != expected {
-        return Err(format!("there are {expected} control points and {} weights", patch.weights.len()));
-    }
-    if patch.weights.iter().any(|weight| !(weight.is_finite() && *weight > 0.0)) {
-        return Err("a weight is not a positive number".into());
-    }
-    if patch.control_points_mm.iter().flatten().any(|x| !x.is_finite()) {
-        return Err("a control point is not finite".into());
-    }
-    Ok(())
-}
-
 /// Moduli of one table; what is missing comes from `default`.
 fn law(table: &Table<'_, '_>, default: Option<OrthotropicLaw>) -> Checked<OrthotropicLaw> {
     let modulus = |name: &'static str, default: Option<f64>| {
         match (table.maybe_number(name, MODULUS)?, default) {
         (Some(value), _) | (None, Some(value)) => Ok(value),
-        (None, None) => Err(table.wrong(None, format!("`{name}` is missing"), "an orthotropic layer has youngs_modulus_1_mpa, youngs_modulus_2_mpa, poissons_ratio_12, shear_modulus_12_mpa")),
+        (None, None) => Err(table.missing(name, "an orthotropic layer has youngs_modulus_1_mpa, youngs_modulus_2_mpa, poissons_ratio_12, shear_modulus_12_mpa")),
     }
     };
     let ratio = Range { above: -10.0, most: 10.0, reason: "Poisson's ratio nu12 is below sqrt(E1/E2) in magnitude" };
@@ -221,11 +145,7 @@ fn law(table: &Table<'_, '_>, default: Option<OrthotropicLaw>) -> Checked<Orthot
             (Some(value), _) => value,
             (None, Some(law)) => law.poissons_ratio_12,
             (None, None) => {
-                return Err(table.wrong(
-                    None,
-                    "`poissons_ratio_12` is missing",
-                    "write for example `poissons_ratio_12 = 0.3`",
-                ));
+                return Err(table.missing("poissons_ratio_12", "write for example `poissons_ratio_12 = 0.3`"));
             }
         },
         shear_modulus_12_mpa: modulus("shear_modulus_12_mpa", default.map(|law| law.shear_modulus_12_mpa))?,
@@ -335,7 +255,7 @@ pub(super) fn steps(table: Table<'_, '_>) -> Checked<Load> {
 /// Where something is: an edge, a point or a line.
 pub(super) fn place(table: &Table<'_, '_>) -> Checked<Place> {
     let remedy = "write an edge (\"u-start\", \"u-end\", \"v-start\", \"v-end\"), a point (`on = [1.0, 0.5]`, fractions of u and v), or a line (`on = \"u=0.5\"`)";
-    let Some(entry) = table.entry("on") else { return Err(table.wrong(None, "`on` is missing", remedy)) };
+    let Some(entry) = table.entry("on") else { return Err(table.missing("on", remedy)) };
     let at = entry.value_place();
     let Some(text) = entry.value.get_ref().as_str() else {
         let [u, v] = point(table)?;
@@ -514,11 +434,7 @@ const REACTIONS: [(&str, Reaction); 6] = [
 /// One `[[probe]]`.
 pub(super) fn probe(table: Table<'_, '_>, supports: &[Support], geometry: &Geometry) -> Checked<Probe> {
     let Some(name) = table.maybe_text("name")? else {
-        return Err(table.wrong(
-            None,
-            "`name` is missing",
-            "write what reports should call it, such as `name = \"tip\"`",
-        ));
+        return Err(table.missing("name", "write what reports should call it, such as `name = \"tip\"`"));
     };
     let kinds = ["displacement", "reaction", "section-moment", "energy", "bending-strain"];
     let kind = match table.word("kind", &kinds.map(|kind| (kind, kind)))? {
@@ -536,7 +452,7 @@ pub(super) fn probe(table: Table<'_, '_>, supports: &[Support], geometry: &Geome
                 false => format!("the supports are {}", known.join(", ")),
             };
             let Some(support) = table.maybe_text("support")? else {
-                return Err(table.wrong(None, "`support` is missing", remedy));
+                return Err(table.missing("support", remedy));
             };
             if supports.iter().all(|known| known.name != support) {
                 return Err(table.wrong(

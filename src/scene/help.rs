@@ -42,7 +42,7 @@ pub fn help_text() -> String {
 }
 
 /// Kinds of tables whose keys depend on the kind.
-const GENERAL: &str = include_str!("general_help.txt");
+pub(super) const GENERAL: &str = include_str!("general_help.txt");
 
 /// A scene of such tables.
 const GENERAL_EXAMPLE: &str = include_str!("general_example.toml");

@@ -255,8 +255,8 @@ pub(super) static QUADRATURE: Key = Key {
             "as patch, and for stretching as many more as leave constant membrane forces in balance on the mesh in hand",
         ),
         choice("full", "Gauss-Legendre with degree + 1 points each way"),
-        choice("full+1", "degree + 2 points each way, to judge others by"),
-        choice("full+2", "degree + 3 points each way"),
+        choice("full-plus-one", "degree + 2 points each way, to judge others by"),
+        choice("full-plus-two", "degree + 3 points each way"),
         choice("reduced", "Gauss-Legendre with degree points each way"),
         choice(
             "patch",

@@ -12,6 +12,7 @@
 //! | `names`, `foreign_unit` | wrong names, and what was meant by them |
 //! | `read` | one entry to one value, within the limits of its key |
 //! | `table`, `general`, `actions` | tables whose keys depend on their kind: geometries, materials, supports, actions, probes |
+//! | `nurbs` | surfaces of the user's own |
 //! | `check`, `stage_order` | entries to a scene; what must hold between keys, and between stages |
 //! | `error`, `explain`, `render` | what can be wrong, in words, and with the text underlined |
 //! | `identity` | hash and differences of scenes |
@@ -30,6 +31,7 @@ mod identity;
 mod key_table;
 mod keys;
 mod names;
+mod nurbs;
 mod read;
 mod render;
 mod stage_order;

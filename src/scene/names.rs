@@ -4,9 +4,10 @@
 use super::document::{Document, Entry, Header};
 use super::error::{Checked, Fault, Place, Problem};
 use super::foreign_unit::ForeignUnit;
-use super::general::ARRAYS;
+use super::general::{ARRAYS, kinds_with};
+use super::help::GENERAL;
 use super::key_table::{KEYS, SECTIONS};
-use super::keys::{Key, Presence, Section, Unit, toml_float};
+use super::keys::{Key, Presence, Section, Unit, join_or, toml_float};
 use super::read;
 
 /// Bytes beyond which no name is compared with.
@@ -86,6 +87,10 @@ fn check_entry(document: &Document<'_>, entry: &Entry<'_>) -> Checked<()> {
     if here().any(|key| key.name == found) {
         return Ok(());
     }
+    let kinds = kinds_with(section.name, found);
+    if !kinds.is_empty() {
+        return Err(of_other_kind(document, entry, &kinds));
+    }
     // A setting takes the place of what is given; a line of the file does not.
     let given = |key: &Key| entry.place.source == 0 && document.entry(key.section, key.name).is_some();
     let elsewhere = || KEYS.iter().copied().filter(|key| key.section != section.name);
@@ -105,6 +110,27 @@ fn check_entry(document: &Document<'_>, entry: &Entry<'_>) -> Checked<()> {
         Some(key) if key.section == section.name && !given(key) => fault.edit(&entry.place, key.name),
         _ => fault,
     })
+}
+
+/// The error for a key that belongs to another kind than the table is of: most likely the kind is wrong.
+fn of_other_kind(document: &Document<'_>, entry: &Entry<'_>, kinds: &[&str]) -> Box<Fault> {
+    let section = &*entry.section;
+    let quoted: Vec<String> = kinds.iter().map(|kind| format!("kind = \"{kind}\"")).collect();
+    let kind = document.entry(section, "kind");
+    let found = kind.and_then(|kind| kind.value.get_ref().as_str());
+    let here = found.map_or("no kind is given".to_owned(), |kind| format!("the kind is \"{kind}\""));
+    let problem = Problem::Table {
+        table: format!("[{section}]"),
+        problem: format!("`{}` is a key of {}, and here {here}", entry.name, join_or(&quoted)),
+        remedy: format!("write {}, or take the key out", join_or(&quoted)),
+    };
+    Fault::new(problem, &entry.place).also(kind.map(Entry::value_place).as_ref())
+}
+
+/// Whether the help text of tables with kinds of their own names a key.
+pub(super) fn is_known(name: &str) -> bool {
+    let part_of_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    GENERAL.split(|c| !part_of_name(c)).any(|word| word == name)
 }
 
 fn in_other_unit(entry: &Entry<'_>, key: &'static Key, unit: &'static ForeignUnit) -> Box<Fault> {

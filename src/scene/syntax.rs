@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::error::{Fault, Place, Problem, SyntaxSlip};
+use super::general::ARRAYS;
 
 /// The error for a text that is not TOML; `base` is where the text begins.
 pub(super) fn fault(error: &toml::de::Error, text: &str, base: &Place) -> Box<Fault> {
@@ -14,10 +15,17 @@ pub(super) fn fault(error: &toml::de::Error, text: &str, base: &Place) -> Box<Fa
     let place = at(span.clone());
     let found = text.get(span.clone()).unwrap_or_default().trim();
     let line = line_around(text, span.start);
-    let slip = slip(found, line, error.message());
+    let slip = match slip(found, line, error.message()) {
+        Some(SyntaxSlip::Twice) if ARRAYS.contains(&found) && line.trim_start().starts_with('[') => {
+            Some(SyntaxSlip::TwiceInSingleBrackets)
+        }
+        slip => slip,
+    };
     let fault = Fault::new(Problem::Syntax { message: error.message().to_owned(), slip }, &place);
     match slip {
-        Some(SyntaxSlip::Twice) => fault.also(first_of_two(text, &span).map(at).as_ref()),
+        Some(SyntaxSlip::Twice | SyntaxSlip::TwiceInSingleBrackets) => {
+            fault.also(first_of_two(text, &span).map(at).as_ref())
+        }
         Some(SyntaxSlip::BareWord) if base.source == 0 => fault.edit(&place, format!("\"{found}\"")),
         Some(SyntaxSlip::Capitals) => fault.edit(&place, found.to_lowercase()),
         _ => fault,

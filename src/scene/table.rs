@@ -62,9 +62,25 @@ impl<'d, 't> Table<'d, 't> {
     }
 
     fn required(&self, name: &'static str, example: &str) -> Checked<&'d Entry<'t>> {
-        self.entry(name).ok_or_else(|| {
-            self.wrong(None, format!("`{name}` is missing"), format!("write for example `{name} = {example}`"))
-        })
+        self.entry(name).ok_or_else(|| self.missing(name, format!("write for example `{name} = {example}`")))
+    }
+
+    /// The error for a key that is not there. One that is no key at all most likely stands in its place, and is told first.
+    pub fn missing(&self, name: &str, remedy: impl Into<String>) -> Box<Fault> {
+        let remedy = remedy.into();
+        let asked = self.asked.borrow();
+        let known = |entry: &Entry<'_>| asked.contains(&entry.name.as_str()) || names::is_known(&entry.name);
+        match self.entries.iter().find(|entry| !known(entry)) {
+            None => self.wrong(None, format!("`{name}` is missing"), remedy),
+            Some(stray) => {
+                let meant = names::nearest(&stray.name, std::iter::once(name));
+                let remedy = match meant {
+                    Some(_) => format!("perhaps `{name}` is meant, which is missing: {remedy}"),
+                    None => format!("take it out; `{name}` is missing: {remedy}"),
+                };
+                self.wrong(Some(&stray.place), format!("`{}` is no key of it", stray.name), remedy)
+            }
+        }
     }
 
     fn not_a(&self, entry: &Entry<'_>, wanted: &str) -> Box<Fault> {

@@ -109,12 +109,12 @@ mod tests {
     use super::*;
     use crate::shell::Hessian;
     use crate::shell::lanes::{Lanes, Portable};
-    use crate::shell::point::tests::{laminate, sample_of};
+    use crate::shell::point::tests::sample;
 
     /// Three points against the slow way, whose bending is taken away.
     #[test]
     fn a_batch_is_the_stretching_of_its_points() {
-        let (whole, u) = sample_of(&laminate());
+        let (whole, u) = sample();
         let point = whole.stretching_alone();
         let batch = StretchingBatch::new(&[point; 3]);
         let mut hessian: Hessian = [[0.0; 16]; 15];

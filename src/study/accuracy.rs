@@ -182,6 +182,11 @@ fn curve(path: &[PathPoint], parameter: Parameter) -> Vec<CurvePoint> {
 }
 
 impl Measured {
+    /// What is compared: the moment of turning ends, or the name of the first probe with its unit.
+    pub fn quantity(&self) -> &str {
+        &self.quantity
+    }
+
     /// Beside a reference.
     ///
     /// # Errors

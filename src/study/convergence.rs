@@ -68,15 +68,24 @@ struct Point {
     passed_limit: bool,
 }
 
+/// Whether a scene has what is looked for.
+///
+/// # Errors
+/// Where it is not one of a tape spring whose ends turn.
+pub fn check_spring(scene: &Scene) -> Result<(), ConvergenceError> {
+    match scene.load {
+        Load::EndRotation(_) => Ok(()),
+        Load::Steps(_) => Err(ConvergenceError::NotASpring),
+    }
+}
+
 /// Follows the path of a scene on the uniform mesh that it starts with, and reads off it.
 ///
 /// # Errors
 /// Where the scene is not one of a tape spring, or its path is lost.
 pub fn converge(scene: &Scene, unstable_at_deg: f64) -> Result<ConvergenceRow, ConvergenceError> {
+    check_spring(scene)?;
     let mut scene = scene.clone();
-    if !matches!(scene.load, Load::EndRotation(_)) {
-        return Err(ConvergenceError::NotASpring);
-    }
     scene.adapt = None;
     scene.pipeline = vec![Stage::Solve];
     let limits =

@@ -7,7 +7,7 @@ use super::TapeSpring;
 use super::summary::{FoldMean, MeshChange, PeakFound};
 use crate::pipeline::{Parameter, Reading};
 use crate::scene::Sense;
-use crate::units::{count, duration, rounded, signed};
+use crate::units::{count, duration, reading, rounded, signed};
 
 impl Display for Summary {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -85,7 +85,7 @@ impl Summary {
     fn write_readings(&self, f: &mut Formatter<'_>) -> fmt::Result {
         for Reading { name, value, unit, at } in &self.probes {
             let place = at.map_or(String::new(), |[u, v]| format!("  at u {u:.3}, v {v:.3}"));
-            writeln!(f, "  {name:<17}  {value:>14.6} {unit}{place}")?;
+            writeln!(f, "  {name:<17}  {:>14} {unit}{place}", reading(*value, 6))?;
         }
         for snap in &self.snaps {
             writeln!(
@@ -105,8 +105,10 @@ impl Summary {
         let off = signed(100.0 * (balance.work_n_mm - stored) / scale, 2);
         writeln!(
             f,
-            "  {:<17}  {:>14.6} N·mm of loads and given motions (trapezoidal rule over the steps), strain energy {stored:.6}: {off} %",
-            "work", balance.work_n_mm
+            "  {:<17}  {:>14} N·mm of loads and given motions (trapezoidal rule over the steps), strain energy {}: {off} %",
+            "work",
+            reading(balance.work_n_mm, 6),
+            reading(stored, 6)
         )
     }
 
@@ -164,7 +166,7 @@ impl Summary {
             let value = match (self.driven_by, point.probe, self.probes.first()) {
                 (Parameter::Rotation, ..) => format!("{:8.3}°  {:.3} N·mm", point.parameter, point.moment_n_mm),
                 (_, Some(value), Some(first)) => {
-                    format!("{:14.6}  {} {value:.6} {}", point.parameter, first.name, first.unit)
+                    format!("{:14.6}  {} {} {}", point.parameter, first.name, reading(value, 6), first.unit)
                 }
                 _ => format!("{:14.6}", point.parameter),
             };

@@ -55,7 +55,7 @@ fn wrong_usage() {
       because: No such file or directory (os error 2)
     ");
     insta::assert_snapshot!(refusal(&["run", "a.toml", "--until", "-3"], 2), @r"
-    error: invalid value '-3' for '--until <DEG>': a rotation or a load factor above 0 is wanted; by arc length it counts on both sides of 0
+    error: invalid value '-3' for '--until <AT>': a rotation or a load factor above 0 is wanted; by arc length it counts on both sides of 0
 
     For more information, try '--help'.
     ");
@@ -64,6 +64,16 @@ fn wrong_usage() {
 
     For more information, try '--help'.
     ");
+    for arguments in [
+        &["run", "a.toml", "-o", "-"][..],
+        &["recover", "a.mcap", "-o", "-"],
+        &["plot", "a.mcap", "-o", "-"],
+        &["replay", "a.mcap", "--from-scratch", "--trace", "-"],
+        &["stability", "a.mcap", "--step", "1", "-o", "-"],
+    ] {
+        let said = refusal(arguments, 2);
+        assert!(said.contains("not to standard output; ./- is a file of that name"), "{said}");
+    }
     refusal(&["run", "a.toml", "--threads", "0"], 2);
     refusal(&["run", "a.toml", "--quiet", "--json"], 2);
     refusal(&["inspect"], 2);
@@ -89,6 +99,35 @@ fn a_full_disk_is() {
     let output = foldline(&["help"]).stdout(full).stderr(Stdio::piped()).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write to standard output"));
+}
+
+/// What is no text, or no surface that a shell can have, or no tape spring, is refused before anything starts or is printed.
+#[test]
+fn files_that_are_no_scenes() {
+    let place = crate::program::Place::new();
+    let plate = include_str!("../verification/scenes/net-u-fastest.toml");
+    place.write("log.toml", b"\x89MCAP0\r\n");
+    place.write("latin.toml", b"# L\xe4nge\n");
+    let utf_16: Vec<u8> = [0xFEFF].into_iter().chain(plate.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    place.write("wide.toml", &utf_16);
+    place.write("plate.toml", plate);
+    let right_order = "[geometry]\nkind = \"nurbs\"\nfile = \"plate.json\"\n";
+    let rest = plate.split_once("[material]").unwrap().1;
+    place.write("marked.toml", format!("\u{feff}{right_order}[material]{rest}"));
+    let json = "\u{feff}{\"degrees\": [1, 1], \"knots_u\": [0, 0, 1, 1], \"knots_v\": [0, 0, 1, 1], \
+                \"control_points_mm\": [[0, 0, 0], [0, 40, 0], [100, 0, 0], [100, 40, 0]]}";
+    place.write("plate.json", json);
+    let says = |arguments: &str, pieces: &[&str]| {
+        let said = place.foldline(arguments).ends(2).says(pieces);
+        assert!(said.out.is_empty(), "{}", said.out);
+    };
+    says("run log.toml -o a.mcap", &["it is a log", "foldline resume"]);
+    says("run latin.toml -o a.mcap", &["line 1 holds the byte 0xE4", "save it as UTF-8"]);
+    says("run wide.toml -o a.mcap", &["UTF-16", "save it as UTF-8"]);
+    says("run plate.toml -o a.mcap", &["listed with u running fastest"]);
+    says("converge marked.toml", &["only a tape spring whose ends turn"]);
+    assert_eq!(place.logs(), ["plate.json"]);
+    place.foldline("run marked.toml -o a.mcap -q").ends(0);
 }
 
 /// A shell with nothing left free is refused before anything starts.

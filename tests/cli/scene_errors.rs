@@ -490,6 +490,7 @@ fn general_geometry() {
             ("length_mm = 100.0\nwidth_mm", "width_mm"),
             (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 3.0\narc_deg = 400.0"),
             (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 3.0\narc_deg = 360.0"),
+            (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 3.0\narc_deg = 359.9999"),
             (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 3.0\narc_deg = 90.0\nseam = \"free\""),
             (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 0.1\narc_deg = 90.0"),
             (PLATE, "kind = \"annulus\"\ninner_radius_mm = 9.0\nouter_radius_mm = 3.0\narc_deg = 90.0"),
@@ -511,6 +512,56 @@ fn general_geometry() {
             ),
         ]),
     );
+}
+
+/// Surfaces of the user's own: knots, weights, degrees.
+#[test]
+fn nurbs() {
+    let surface = |knots: &str, rest: &str| {
+        let keys = format!("kind = \"nurbs\"\ndegrees = [2, 1]\nknots_u = {knots}\nknots_v = [0, 0, 1, 1]");
+        let points = [0, 10, 20, 30, 40, 50].map(|x| format!("[{x}, 0, 0], [{x}, 9, 0]"));
+        // One control point a function in u.
+        let count = knots.matches(',').count() - 2;
+        format!("{keys}\ncontrol_points_mm = [{}]\n{rest}", points[..count].join(", "))
+    };
+    const TWO_SPANS: &str = "[0, 0, 0, 0.5, 1, 1, 1]";
+    let wrong = [
+        surface("[0, 0, 0, 0.5, 0.50000001, 1, 1, 1]", ""),
+        surface("[0, 0, 1e-9, 0.5, 1, 1, 1]", ""),
+        surface("[0, 0, 0, 0.7, 0.3, 1, 1, 1]", ""),
+        surface("[0, 0, 0, 0.5, 0.5, 0.5, 1, 1, 1]", ""),
+        surface("[0, 0, 0.2, 0.5, 1, 1, 1]", ""),
+        surface(TWO_SPANS, "weights = [1, 1, 1, 0, 1, 1, 1, 1]"),
+        surface(TWO_SPANS, "weights = [1, 1, 1]"),
+        surface(TWO_SPANS, "seam = \"closed\""),
+        surface(TWO_SPANS, "weigths = [1, 1, 1, 1, 1, 1, 1, 1]"),
+        surface(TWO_SPANS, "").replace("[2, 1]", "[2.5, 1]"),
+        surface(TWO_SPANS, "").replace("[2, 1]", "[6, 1]"),
+    ];
+    let slips: Vec<(&str, &str)> = wrong.iter().map(|text| (PLATE, text.as_str())).collect();
+    pin("nurbs", &general_errors(&slips));
+    assert!(parse(&GENERAL.replace(PLATE, &surface(TWO_SPANS, "")), "scene.toml").is_ok());
+}
+
+/// Keys of another kind, keys that stand in the place of others, a spring without a middle.
+#[test]
+fn another_kind_is_meant() {
+    let of_springs = errors(&[
+        ("youngs_modulus_mpa = 131000.0", "youngs_modulus_1_mpa = 131000.0\nyoungs_modulus_2_mpa = 9000.0"),
+        ("poissons_ratio = 0.3", "poissons_ratio = 0.3\nangle_deg = 45.0"),
+        ("arc_deg = 110.0", "arc_deg = 110.0\nseam = \"free\""),
+        ("increment_deg = 0.4", "increment = 0.4"),
+        ("length_mm = 300.0", "length_mm = 0.25"),
+        ("length_mm = 300.0\nradius_mm = 10.0", "length_mm = 10.0\nradius_mm = 300.0"),
+    ]);
+    let of_plates = general_errors(&[
+        ("youngs_modulus_1_mpa = 140000.0", "youngs_modulus_mpa = 140000.0"),
+        ("increment = 0.25", "increment_deg = 0.25"),
+        ("force_n_per_mm", "force_kn_per_mm"),
+        ("[[ply]]\nthickness_mm = 0.125\nangle_deg = 0.0", "[ply]\nthickness_mm = 0.1\n[ply]\nthickness_mm = 0.2"),
+        ("name = \"side\"\non = \"v-start\"", "name = \"side\"\nat = \"v-start\""),
+    ]);
+    pin("another_kind_is_meant", &(of_springs + "\n" + &of_plates));
 }
 
 #[test]

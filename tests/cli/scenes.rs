@@ -41,7 +41,7 @@ fn the_cases_of_the_paper_differ_from_the_baseline_in_their_sizes_alone() {
     assert_eq!(sizes(&baseline), [300.0, 10.0, 0.1]);
     assert_eq!(baseline.end_rotation().unwrap().sense, Sense::Opposite);
     assert_eq!(baseline.mesh.elements, [4, 4]);
-    assert_eq!(baseline.mesh.quadrature, Quadrature::Patch);
+    assert_eq!(baseline.mesh.quadrature, Quadrature::Balanced);
     assert_eq!(baseline.pipeline, Stage::REFINING);
     assert_eq!(baseline.adapt.as_ref().unwrap().length_limit, LengthLimit::SqrtRadiusThickness);
     let cases = [

@@ -131,7 +131,7 @@ fn one_step_with_its_mode() {
     let said = place.foldline(&format!("stability run.mcap --step {last} -o pictures")).ends(0);
     pin("stability_of_a_step", &words(&said.out));
     // The free end moves most, out of the plane.
-    said.says(&["moves most at (100.0,", "lowest eigenvalue    -"]);
+    said.says(&["moves most at (100, ", "lowest eigenvalue    -"]);
     let svg = String::from_utf8(place.read("pictures/mode.svg")).unwrap();
     assert!(svg.contains("<svg") && svg.contains("Softest mode"), "{svg}");
     assert!(String::from_utf8(place.read("pictures/mode.vtu")).unwrap().contains("UnstructuredGrid"));

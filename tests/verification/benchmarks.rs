@@ -71,6 +71,7 @@ fn rolled_cantilever_askew() {
         knots_v: vec![0.0, 0.0, 1.0, 1.0],
         control_points_mm: vec![point(0.0, 0.0), point(0.0, 1.0), point(1.0, 0.0), point(1.0, 1.0)],
         weights: vec![1.0; 4],
+        seam: None,
     });
     scene.mesh.elements = [24, 1];
     let components = [foldline::scene::Component::X, foldline::scene::Component::Y, foldline::scene::Component::Z];

@@ -208,7 +208,7 @@ fn linear(scene: &Scene, mesh: &Arc<Mesh>, forces: &[[f64; 3]]) -> Vec<[f64; 3]>
 /// fine.
 fn varying_error(ratio: f64, degree: usize, count: usize, graded: bool, quadrature: &str) -> f64 {
     let scene = tube(Part::Quarter, ratio, degree, quadrature);
-    let exact_scene = tube(Part::Quarter, ratio, degree, "full+2");
+    let exact_scene = tube(Part::Quarter, ratio, degree, "full-plus-two");
     let single = starting_mesh(&scene).unwrap();
     let coarse = Arc::new(single.with_knots(&[vec![], cut(&single, 1, &sizes(count, graded))]));
     let new = [vec![], cut(&coarse, 1, &[1.0; 8])];
@@ -245,7 +245,7 @@ fn check_varying(degrees: &[usize], ratios: &[f64], counts: &[usize]) {
             for count in counts {
                 for graded in [false, true] {
                     let [found, exact] =
-                        ["balanced", "full+1"].map(|rule| varying_error(*ratio, *degree, *count, graded, rule));
+                        ["balanced", "full-plus-one"].map(|rule| varying_error(*ratio, *degree, *count, graded, rule));
                     println!(
                         "degree {degree}, R/t {ratio}, {count} elements, graded {graded}: {:.3} %, p + 2 points {:.3} %",
                         100.0 * found,
@@ -365,7 +365,7 @@ fn difference(found: &[[f64; 3]], exact: &[[f64; 3]]) -> f64 {
 fn check_shells(degrees: &[usize], ratios: &[f64], counts: &[usize], reference: usize, print: bool) {
     for (name, size, text) in SHELLS {
         for ratio in ratios {
-            let exact = sampled(&shell(text, size, *ratio, 5, "full+1"), &sizes(reference, false));
+            let exact = sampled(&shell(text, size, *ratio, 5, "full-plus-one"), &sizes(reference, false));
             for degree in degrees {
                 for (count, graded) in counts.iter().flat_map(|count| [(*count, false), (*count, true)]) {
                     let error = |rule: &str| {
@@ -374,7 +374,7 @@ fn check_shells(degrees: &[usize], ratios: &[f64], counts: &[usize], reference: 
                         (difference(&found, &exact), begin.elapsed().as_secs_f64())
                     };
                     let what = format!("{name}, R/t {ratio}, degree {degree}, {count} elements, graded {graded}");
-                    let (found, exact) = (error("balanced"), error("full+1"));
+                    let (found, exact) = (error("balanced"), error("full-plus-one"));
                     if print {
                         let others = ["patch", "reduced", "full"].map(error);
                         let row = others
@@ -404,6 +404,6 @@ fn shells_that_are_no_tubes() {
 #[test]
 #[ignore = "minutes; a table"]
 fn table_of_rules() {
-    println!("columns: patch, reduced, full, balanced, full+1 (degree + 2 points)");
+    println!("columns: patch, reduced, full, balanced, full-plus-one (degree + 2 points)");
     check_shells(&[2, 3, 4], &[30.0, 300.0, 3000.0], &[4, 8, 16], 32, true);
 }

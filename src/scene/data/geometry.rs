@@ -110,4 +110,7 @@ pub struct NurbsPatch {
     pub control_points_mm: Vec<[f64; 3]>,
     /// Weights of the control points, > 0, in the same order.
     pub weights: Vec<f64>,
+    /// What the surface does where opposite edges coincide; given exactly where some do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seam: Option<Seam>,
 }

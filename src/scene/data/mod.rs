@@ -74,10 +74,8 @@ pub enum Quadrature {
     /// Gauss–Legendre with degree + 1 points each way.
     Full,
     /// Gauss–Legendre with degree + 2 points each way.
-    #[serde(rename = "full+1")]
     FullPlusOne,
     /// Gauss–Legendre with degree + 3 points each way.
-    #[serde(rename = "full+2")]
     FullPlusTwo,
     /// Gauss–Legendre with degree points each way; degree + 1 in a direction that has one element.
     Reduced,
@@ -93,8 +91,8 @@ impl Quadrature {
     pub fn name(self) -> &'static str {
         match self {
             Quadrature::Full => "full",
-            Quadrature::FullPlusOne => "full+1",
-            Quadrature::FullPlusTwo => "full+2",
+            Quadrature::FullPlusOne => "full-plus-one",
+            Quadrature::FullPlusTwo => "full-plus-two",
             Quadrature::Reduced => "reduced",
             Quadrature::Patch => "patch",
             Quadrature::Balanced => "balanced",

@@ -11,6 +11,11 @@ pub(super) fn not_toml(message: &str, slip: Option<SyntaxSlip>) -> Explanation {
         Some(SyntaxSlip::Twice) => {
             Explanation::new("a key or table is given twice", "again").also("first here").help("keep one of the two")
         }
+        Some(SyntaxSlip::TwiceInSingleBrackets) => {
+            Explanation::new("there may be several tables of this name, and each stands in two brackets", "again")
+                .also("first here")
+                .help("write `[[ply]]`, `[[support]]`, `[[action]]` or `[[probe]]`, each time")
+        }
         Some(SyntaxSlip::BareWord) => Explanation::new("a word stands without quotes", "")
             .example("words stand in double quotes")
             .fix("with quotes"),

@@ -1,0 +1,173 @@
+//! Whether a surface that a user gives is one that a shell can have: it does not fold over itself, has a normal everywhere,
+//! and edges that coincide are said to.
+//!
+//! Normals are looked at on a grid: points of every span and its ends. From one to the next they turn by less than a quarter
+//! turn, or do once the step between them is halved often enough; where they never do the surface turns over. Between
+//! points, the area of a parameter square is followed to its least value, which a fold or a collapse takes to zero.
+
+use crate::model::ModelError;
+use crate::scene::Seam;
+use crate::shell::{cross, dot, norm, scaled, sub};
+use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
+use crate::units::{place, significant};
+
+/// Distances, relative to the size of what they are distances of, that are rounding of coordinates given to five digits.
+pub const POSITION: f64 = 1e-4;
+/// Areas of a parameter square, relative to the largest, that are none.
+const NO_AREA: f64 = 1e-9;
+/// Halvings of a step after which a normal that still turns over does so for good.
+const HALVINGS: usize = 12;
+/// An area that is this share of those beside it may lie next to a fold.
+const DIP: f64 = 0.9;
+/// Steps towards the least area between two points; each leaves two thirds of the interval.
+const LEAST_AREA_STEPS: usize = 40;
+
+/// A point of the grid.
+#[derive(Clone, Copy)]
+struct Sample {
+    at: [f64; 2],
+    position: [f64; 3],
+    /// A₁ × A₂.
+    area: [f64; 3],
+}
+
+impl Sample {
+    fn new(mesh: &Mesh, at: [f64; 2]) -> Self {
+        let SurfacePoint { position, derivatives } = mid_surface_point(mesh, &[], at);
+        Self { at, position, area: cross(derivatives[0], derivatives[1]) }
+    }
+
+    fn between(mesh: &Mesh, one: &Sample, other: &Sample, share: f64) -> Self {
+        Self::new(mesh, [0, 1].map(|way| one.at[way] + share * (other.at[way] - one.at[way])))
+    }
+}
+
+/// Refuses a surface that folds over itself or has no normal somewhere.
+///
+/// # Errors
+/// Where it does.
+pub fn check_normals(mesh: &Mesh) -> Result<(), ModelError> {
+    let [along, across] = [0, 1].map(|way| parameters(mesh, way));
+    let grid: Vec<Vec<Sample>> =
+        along.iter().map(|u| across.iter().map(|v| Sample::new(mesh, [*u, *v])).collect()).collect();
+    let largest = grid.iter().flatten().map(|sample| norm(sample.area)).fold(0.0, f64::max);
+    let least = NO_AREA * largest;
+    let columns = (0..across.len()).map(|j| grid.iter().map(|row| row[j]).collect::<Vec<Sample>>());
+    let lines: Vec<Vec<Sample>> = grid.iter().cloned().chain(columns).collect();
+    // Where there is no area there is no normal either: that is told of the point itself.
+    let has_area = |pair: &&[Sample]| pair.iter().all(|sample| norm(sample.area) > least);
+    let mut pairs = lines.iter().flat_map(|line| line.windows(2)).filter(has_area);
+    if let Some(pair) = pairs.find(|pair| turns_over(mesh, &pair[0], &pair[1], HALVINGS)) {
+        return Err(folds(&pair[0], &pair[1]));
+    }
+    if let Some(point) = grid.iter().flatten().find(|sample| norm(sample.area) <= least) {
+        return Err(ModelError::Collapsed { at: place(point.position) });
+    }
+    let threes = lines.iter().flat_map(|line| line.windows(3));
+    threes.map(|three| check_area(mesh, [&three[0], &three[1], &three[2]], least)).collect()
+}
+
+/// Parameters of the grid: both ends of every span, and more in between than an area that is a polynomial has turning points.
+fn parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
+    let steps = 2 * mesh.degree[way] + 1;
+    let bounds = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
+    let inside = |[from, to]: [f64; 2]| (0..steps).map(move |k| from + (to - from) * k as f64 / steps as f64);
+    bounds.into_iter().flat_map(inside).chain([1.0]).collect()
+}
+
+/// Whether the normal turns over between two points, however near to each other.
+fn turns_over(mesh: &Mesh, one: &Sample, other: &Sample, halvings: usize) -> bool {
+    if dot(one.area, other.area) > 0.0 {
+        return false;
+    }
+    if halvings == 0 {
+        return true;
+    }
+    let middle = Sample::between(mesh, one, other, 0.5);
+    turns_over(mesh, one, &middle, halvings - 1) || turns_over(mesh, &middle, other, halvings - 1)
+}
+
+/// Where the middle of three points has the least area of them, follows it to the least one between the outer two, seen
+/// along the normal of the middle.
+fn check_area(mesh: &Mesh, [before, middle, after]: [&Sample; 3], least: f64) -> Result<(), ModelError> {
+    let size = norm(middle.area);
+    let beside = [before, after].map(|sample| norm(sample.area));
+    if size > beside[0].min(beside[1]) || size > DIP * beside[0].max(beside[1]) {
+        return Ok(());
+    }
+    let normal = scaled(1.0 / size, middle.area);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..LEAST_AREA_STEPS {
+        let [one, other] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+        let [first, second] = [one, other].map(|share| Sample::between(mesh, before, after, share));
+        if let Some(found) = [&first, &second].into_iter().find(|sample| dot(sample.area, normal) <= least) {
+            return Err(match dot(found.area, normal) < -least {
+                true => folds(middle, found),
+                false => ModelError::Collapsed { at: place(found.position) },
+            });
+        }
+        match dot(first.area, normal) < dot(second.area, normal) {
+            true => high = other,
+            false => low = one,
+        }
+    }
+    Ok(())
+}
+
+fn folds(one: &Sample, other: &Sample) -> ModelError {
+    let angle_deg = norm(cross(one.area, other.area)).atan2(dot(one.area, other.area)).to_degrees();
+    ModelError::FoldsOver { from: place(one.position), to: place(other.position), angle_deg }
+}
+
+/// Largest distances of the two edges across each direction, mm: as they are, and with one of them reversed.
+struct Gaps {
+    same: [f64; 2],
+    reversed: [f64; 2],
+    tolerance: f64,
+}
+
+impl Gaps {
+    fn new(mesh: &Mesh) -> Self {
+        let first = mesh.control_points[0];
+        let corner = [first[0] / first[3], first[1] / first[3], first[2] / first[3]];
+        let arms = mesh.control_points.iter().map(|[x, y, z, w]| sub([x / w, y / w, z / w], corner));
+        let tolerance = POSITION * arms.map(norm).fold(0.0, f64::max);
+        let gap = |way: usize, reversed: bool| {
+            let on =
+                |end: f64, at: f64| mid_surface_point(mesh, &[], if way == 0 { [end, at] } else { [at, end] }).position;
+            let distance = |at: f64| norm(sub(on(0.0, at), on(1.0, if reversed { 1.0 - at } else { at })));
+            parameters(mesh, 1 - way).into_iter().map(distance).fold(0.0, f64::max)
+        };
+        Self { same: [gap(0, false), gap(1, false)], reversed: [gap(0, true), gap(1, true)], tolerance }
+    }
+}
+
+/// Directions in which the surface closes: the edge at the end of the direction is that at its begin.
+pub fn closed_directions(mesh: &Mesh) -> [bool; 2] {
+    let gaps = Gaps::new(mesh);
+    gaps.same.map(|gap| gap <= gaps.tolerance)
+}
+
+/// Holds what a scene says of a seam against the edges.
+///
+/// # Errors
+/// Where opposite edges coincide and no seam is given, or the other way round.
+pub fn check_seam(mesh: &Mesh, seam: Option<Seam>) -> Result<(), ModelError> {
+    const EDGES: [&str; 2] = ["u-start and u-end", "v-start and v-end"];
+    let gaps = Gaps::new(mesh);
+    let shown = |gap: f64| significant(gap, 3);
+    let meeting = (0..2).find(|way| gaps.same[*way] <= gaps.tolerance);
+    let reversed = (0..2).find(|way| gaps.reversed[*way] <= gaps.tolerance);
+    match (seam, meeting, reversed) {
+        (None, Some(way), _) => Err(ModelError::EdgesMeet {
+            edges: EDGES[way],
+            gap_mm: shown(gaps.same[way]),
+            tolerance_mm: shown(gaps.tolerance),
+        }),
+        (None | Some(Seam::Smooth), _, Some(way)) => Err(ModelError::EdgesMeetReversed { edges: EDGES[way] }),
+        (Some(_), None, None) => {
+            Err(ModelError::NoSeam { gaps_mm: gaps.same.map(shown), tolerance_mm: shown(gaps.tolerance) })
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,179 @@
+//! A NURBS surface as the user gives it: in the scene, or in a file of its own.
+
+use super::data::NurbsPatch;
+use super::error::Checked;
+use super::general::SEAMS;
+use super::keys::number;
+use super::table::Table;
+
+/// Knots that differ by less than this share of their range are meant to be one: text of seven digits does not say more.
+const NEAR: f64 = 1e-6;
+
+/// The keys of a surface in a file of its own.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NurbsFile {
+    degrees: [usize; 2],
+    knots_u: Vec<f64>,
+    knots_v: Vec<f64>,
+    control_points_mm: Vec<[f64; 3]>,
+    #[serde(default)]
+    weights: Vec<f64>,
+}
+
+/// A geometry of kind `nurbs`.
+pub(super) fn nurbs(table: &Table<'_, '_>, folder: &std::path::Path) -> Checked<NurbsPatch> {
+    let file = match table.maybe_text("file")? {
+        Some(name) => {
+            let path = folder.join(&name);
+            let wrong = |error: String| {
+                let problem = format!("{} cannot be read: {error}", path.display());
+                table.wrong(table.place_of("file").as_ref(), problem, "the path is relative to the scene file; the file is a JSON object with the keys degrees, knots_u, knots_v, control_points_mm, weights")
+            };
+            let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
+            // Some programs put a byte-order mark in front, which JSON does not know.
+            let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+            serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?
+        }
+        None => {
+            let degrees: [f64; 2] = table.tuple("degrees", "[1, 2]")?;
+            let missing = |name: &str| {
+                table.missing(
+                    name,
+                    "a nurbs surface has degrees, knots_u, knots_v, control_points_mm and, if it is rational, weights",
+                )
+            };
+            if degrees.iter().any(|degree| degree.fract() != 0.0) {
+                let problem =
+                    format!("degrees are whole numbers, not {} and {}", number(degrees[0]), number(degrees[1]));
+                return Err(table.wrong(table.place_of("degrees").as_ref(), problem, "1 to 5 are offered"));
+            }
+            NurbsFile {
+                degrees: degrees.map(|degree| degree.max(0.0) as usize),
+                knots_u: table.maybe_numbers("knots_u")?.ok_or_else(|| missing("knots_u"))?,
+                knots_v: table.maybe_numbers("knots_v")?.ok_or_else(|| missing("knots_v"))?,
+                control_points_mm: table
+                    .maybe_rows("control_points_mm", "[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]")?
+                    .ok_or_else(|| missing("control_points_mm"))?,
+                weights: table.maybe_numbers("weights")?.unwrap_or_default(),
+            }
+        }
+    };
+    let mut patch = NurbsPatch {
+        degrees: file.degrees,
+        knots_u: file.knots_u,
+        knots_v: file.knots_v,
+        control_points_mm: file.control_points_mm,
+        weights: file.weights,
+        seam: table.maybe_word("seam", &SEAMS)?,
+    };
+    if patch.weights.is_empty() {
+        patch.weights = vec![1.0; patch.control_points_mm.len()];
+    }
+    sound(&patch).map_err(|Unsound { key, problem, remedy }| {
+        table.wrong(table.place_of("file").or(table.place_of(key)).as_ref(), problem, remedy)
+    })?;
+    Ok(patch)
+}
+
+/// Why a patch is no tensor-product surface.
+struct Unsound {
+    /// The key that is most likely wrong.
+    key: &'static str,
+    problem: String,
+    remedy: String,
+}
+
+impl Unsound {
+    fn new(key: &'static str, problem: String, remedy: impl Into<String>) -> Self {
+        Self { key, problem, remedy: remedy.into() }
+    }
+}
+
+const CLAMPED: &str = "knots are ascending and clamped: the first and the last stand degree + 1 times";
+
+fn sound(patch: &NurbsPatch) -> Result<(), Unsound> {
+    check_knots("u", "knots_u", &patch.knots_u, patch.degrees[0])?;
+    check_knots("v", "knots_v", &patch.knots_v, patch.degrees[1])?;
+    let counts = [(&patch.knots_u, patch.degrees[0]), (&patch.knots_v, patch.degrees[1])]
+        .map(|(knots, degree)| knots.len() - degree - 1);
+    let expected = counts[0] * counts[1];
+    if patch.control_points_mm.len() != expected {
+        return Err(Unsound::new(
+            "control_points_mm",
+            format!("the knots ask for {expected} control points, and there are {}", patch.control_points_mm.len()),
+            format!(
+                "each direction has as many as it has knots, less degree and 1: {} in u times {} in v",
+                counts[0], counts[1]
+            ),
+        ));
+    }
+    if patch.weights.len() != expected {
+        let problem = format!("there are {expected} control points and {} weights", patch.weights.len());
+        return Err(Unsound::new("weights", problem, "each control point has one weight, in the same order"));
+    }
+    if let Some(index) = patch.weights.iter().position(|weight| !(weight.is_finite() && *weight > 0.0)) {
+        return Err(Unsound::new(
+            "weights",
+            format!("weight {} is {}, and weights are positive", index + 1, number(patch.weights[index])),
+            "a weight of 1 is that of an ordinary control point; take `weights` out where the surface is not rational",
+        ));
+    }
+    if let Some(index) = patch.control_points_mm.iter().position(|point| point.iter().any(|x| !x.is_finite())) {
+        let problem = format!("control point {} is not finite", index + 1);
+        return Err(Unsound::new("control_points_mm", problem, "coordinates are numbers in mm"));
+    }
+    Ok(())
+}
+
+fn check_knots(name: &str, key: &'static str, knots: &[f64], degree: usize) -> Result<(), Unsound> {
+    let wrong = |problem: String| Err(Unsound::new(key, problem, CLAMPED));
+    if !(1..=5).contains(&degree) {
+        let problem = format!("degree {degree} in {name} is not offered: 1 to 5 are");
+        return Err(Unsound::new("degrees", problem, "write a surface of a higher degree as one of degree 5 or less"));
+    }
+    let least = 2 * (degree + 1);
+    if knots.len() < least {
+        return wrong(format!("{} knots in {name} are too few for degree {degree}: at least {least}", knots.len()));
+    }
+    if let Some(index) = knots.iter().position(|knot| !knot.is_finite()) {
+        return wrong(format!("knot {} in {name} is not a finite number", index + 1));
+    }
+    if let Some(pair) = knots.windows(2).find(|pair| pair[1] < pair[0]) {
+        return wrong(format!(
+            "the knots in {name} do not ascend: {} stands behind {}",
+            number(pair[1]),
+            number(pair[0])
+        ));
+    }
+    let ends = [knots[0], knots[knots.len() - 1]];
+    let range = ends[1] - ends[0];
+    if let Some(pair) = knots.windows(2).find(|pair| pair[1] > pair[0] && pair[1] - pair[0] < NEAR * range) {
+        let problem = format!(
+            "the knots {} and {} in {name} are neither equal nor apart: they differ by {:.1e} of the range",
+            pair[0],
+            pair[1],
+            (pair[1] - pair[0]) / range
+        );
+        let remedy = format!("write the same number for both, or put them apart by {NEAR:e} of the range or more");
+        return Err(Unsound::new(key, problem, remedy));
+    }
+    for group in knots.chunk_by(|a, b| a == b) {
+        let (knot, times) = (number(group[0]), group.len());
+        let at_end = ends.contains(&group[0]);
+        if at_end && times != degree + 1 {
+            return wrong(format!(
+                "the knots in {name} are not clamped: {knot} stands {times} times at an end, not {}",
+                degree + 1
+            ));
+        }
+        if !at_end && times > degree {
+            return Err(Unsound::new(
+                key,
+                format!("knot {knot} in {name} stands {times} times: the surface would tear"),
+                format!("inside, a knot stands at most as often as the degree: {degree} times"),
+            ));
+        }
+    }
+    Ok(())
+}
