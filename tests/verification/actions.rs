@@ -196,7 +196,7 @@ fn a_free_tube_under_pressure() {
     }
 }
 
-/// A ring pulled at its outer edge (Lamé): u = q b [(1 − ν) b² + (1 + ν) a²]/(E t (b² − a²)), and a third of its half alike.
+/// A ring pulled at its outer edge (Lamé): u = q b [(1 − ν) b² + (1 + ν) a²]/(E t (b² − a²)), and a sixth of it alike.
 #[test]
 fn a_ring_pulled_outward() {
     let (a, b, q) = (30.0_f64, 50.0_f64, 1e-3);
@@ -360,6 +360,23 @@ fn lines_that_are_no_planes_of_symmetry_are_refused() {
     // The equator is one.
     let around = zone.replace("[0.0, 60.0]", "[-18.0, 42.0]");
     Stages::new(shell(&around, 0.5, [3, 3], &format!("{clamp}{push}"))).start().unwrap();
+}
+
+#[test]
+fn what_the_words_of_a_scene_come_to_is_said() {
+    let said = |geometry: &str, tables: &str| {
+        let stages = Stages::new(shell(geometry, 0.5, [4, 6], tables));
+        stages.remarks(&stages.start().unwrap()).unwrap().join("; ")
+    };
+    let pressure = "[[action]]\nname = \"p\"\nkind = \"pressure\"\npressure_mpa = -1e-4\nfollower = false\n";
+    let tube = said(TUBE, &format!("{FREE}{pressure}"));
+    assert!(tube.contains("\"free\" holds all six rigid motions"), "{tube}");
+    assert!(tube.contains("\"p\" pushes towards the axis, keeps that direction"), "{tube}");
+    let planes =
+        "[[support]]\non = \"v-start\"\nkind = \"symmetric\"\n[[support]]\non = \"u-start\"\nkind = \"clamped\"\n";
+    let push = "[[action]]\nname = \"q\"\nkind = \"area-force\"\nforce_n_per_mm2 = 1e-4\nalong = \"normal\"\n";
+    let plate = said("kind = \"plate\"\nlength_mm = 60.0\nwidth_mm = 40.0", &format!("{planes}{push}"));
+    assert_eq!(plate, "action \"q\" pushes towards +z, and keeps that direction");
 }
 
 /// New words, written and read again.
