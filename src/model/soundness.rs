@@ -63,8 +63,8 @@ pub fn check_normals(mesh: &Mesh) -> Result<(), ModelError> {
     if let Some(point) = grid.iter().flatten().find(|sample| norm(sample.area) <= least) {
         return Err(ModelError::Collapsed { at: place(point.position) });
     }
-    let threes = lines.iter().flat_map(|line| line.windows(3));
-    threes.map(|three| check_area(mesh, [&three[0], &three[1], &three[2]], least)).collect()
+    let mut threes = lines.iter().flat_map(|line| line.windows(3));
+    threes.try_for_each(|three| check_area(mesh, [&three[0], &three[1], &three[2]], least))
 }
 
 /// Parameters of the grid: both ends of every span, and more in between than an area that is a polynomial has turning points.

@@ -117,6 +117,11 @@ fn of_other_kind(document: &Document<'_>, entry: &Entry<'_>, kinds: &[&str]) -> 
     let section = &*entry.section;
     let quoted: Vec<String> = kinds.iter().map(|kind| format!("kind = \"{kind}\"")).collect();
     let kind = document.entry(section, "kind");
+    if let (Some(kind), Some(key)) = (kind, key(&format!("{section}.kind")))
+        && let Err(fault) = read::known_word(key, kind)
+    {
+        return fault;
+    }
     let found = kind.and_then(|kind| kind.value.get_ref().as_str());
     let here = found.map_or("no kind is given".to_owned(), |kind| format!("the kind is \"{kind}\""));
     let problem = Problem::Table {
@@ -127,10 +132,14 @@ fn of_other_kind(document: &Document<'_>, entry: &Entry<'_>, kinds: &[&str]) -> 
     Fault::new(problem, &entry.place).also(kind.map(Entry::value_place).as_ref())
 }
 
-/// Whether the help text of tables with kinds of their own names a key.
+/// Whether the help text of tables with kinds of their own names a key: with a value behind it, or in a list of them.
 pub(super) fn is_known(name: &str) -> bool {
     let part_of_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    GENERAL.split(|c| !part_of_name(c)).any(|word| word == name)
+    GENERAL.match_indices(name).any(|(at, _)| {
+        let (before, after) = (&GENERAL[..at], &GENERAL[at + name.len()..]);
+        let whole = !before.ends_with(part_of_name) && !after.starts_with(part_of_name);
+        whole && (name.contains('_') || after.trim_start().starts_with('='))
+    })
 }
 
 fn in_other_unit(entry: &Entry<'_>, key: &'static Key, unit: &'static ForeignUnit) -> Box<Fault> {

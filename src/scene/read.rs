@@ -86,20 +86,7 @@ impl<'d, 't> Reader<'d, 't> {
 
     /// One of the words of a key, as it stands in the key's table.
     pub fn bare_word(&self, key: &'static Key) -> Checked<Found<&'static str>> {
-        let Kind::Word(choices) = &key.kind else { unreachable!("{} is not a word", key.path()) };
-        self.read(key, |entry| {
-            let place = entry.value_place();
-            let found = entry.value.get_ref().as_str().ok_or_else(|| wrong_type(key, entry))?;
-            let words = choices.iter().map(|choice| choice.word);
-            words.clone().find(|word| *word == found).ok_or_else(|| {
-                let meant = names::nearest(found, words);
-                let fault = Fault::new(Problem::UnknownWord { key, found: found.into(), meant }, &place);
-                match meant {
-                    Some(meant) => fault.edit(&place, entry.written(meant)),
-                    None => fault,
-                }
-            })
-        })
+        self.read(key, |entry| known_word(key, entry))
     }
 
     /// true or false.
@@ -135,6 +122,22 @@ impl<'d, 't> Reader<'d, 't> {
             None => fault,
         }
     }
+}
+
+/// The value of an entry as one of the words of its key.
+pub(super) fn known_word(key: &'static Key, entry: &Entry<'_>) -> Checked<&'static str> {
+    let Kind::Word(choices) = &key.kind else { unreachable!("{} is not a word", key.path()) };
+    let place = entry.value_place();
+    let found = entry.value.get_ref().as_str().ok_or_else(|| wrong_type(key, entry))?;
+    let words = choices.iter().map(|choice| choice.word);
+    words.clone().find(|word| *word == found).ok_or_else(|| {
+        let meant = names::nearest(found, words);
+        let fault = Fault::new(Problem::UnknownWord { key, found: found.into(), meant }, &place);
+        match meant {
+            Some(meant) => fault.edit(&place, entry.written(meant)),
+            None => fault,
+        }
+    })
 }
 
 fn whole(key: &'static Key, limits: &Limits, entry: &Entry<'_>, item: &Spanned<DeValue<'_>>) -> Checked<usize> {
