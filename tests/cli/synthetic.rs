@@ -74,6 +74,7 @@ impl Script {
             probes: vec![],
             path_length_mm: None,
             critical_point: None,
+            warnings: vec![],
             stage: Stage::Solve,
             outcome: Outcome::Done,
             parameter: 0.0,
