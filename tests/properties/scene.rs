@@ -154,6 +154,9 @@ fn another_value(key: &Key) -> Option<&'static str> {
         "expect.outcome" => "no-equilibrium",
         "expect.least_bits" => "11",
         "expect.same_as" => "\"other.toml\"",
+        "expect.peak" => "292.0",
+        "expect.last" => "-28.3",
+        "expect.inexact" => "\"too coarse\"",
         path => panic!("{path} needs a value here"),
     })
 }
@@ -185,7 +188,10 @@ fn free_are_the_outputs_the_target_and_what_is_expected_alone() {
             "output.mesh_history",
             "expect.outcome",
             "expect.same_as",
-            "expect.least_bits"
+            "expect.least_bits",
+            "expect.peak",
+            "expect.last",
+            "expect.inexact"
         ]
     );
 }
