@@ -75,7 +75,7 @@ impl Warning {
         match self {
             Self::CoarseElements { .. } => "coarse elements",
             Self::RefinementBlocked { .. } => "refinement blocked",
-            Self::EnergyChangedByRefining { .. } => "energy changed by refining",
+            Self::EnergyChangedByRefining { .. } => "energy changed",
         }
     }
 

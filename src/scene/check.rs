@@ -335,7 +335,9 @@ fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>, geometry: &Geome
     }
     let length_limit = match length {
         Some(_) => LengthLimit::Millimetres(one_or_pair(reader, &keys::LENGTH_LIMIT_MM)?),
-        None => reader.word(&keys::LENGTH_LIMIT)?.value,
+        None if rule.is_some() => reader.word(&keys::LENGTH_LIMIT)?.value,
+        None if matches!(geometry, Geometry::TapeSpring { .. }) => LengthLimit::SqrtRadiusThickness,
+        None => LengthLimit::HalfDecayLength,
     };
     if pipeline.value.contains(&Stage::EvaluateIndicators) {
         let flat = matches!(geometry, Geometry::Plate { .. } | Geometry::Annulus { .. });
@@ -344,7 +346,7 @@ fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>, geometry: &Geome
             return Err(table.wrong(
                 None,
                 "a flat shell has no radius to limit the elements by",
-                "write `length_limit_mm`, a number or one for each direction",
+                "write \"half-decay-length\", or `length_limit_mm`, a number or one for each direction",
             ));
         }
         return Ok(Some(Adapt { threshold, length_limit }));

@@ -366,8 +366,11 @@ pub(super) static LENGTH_LIMIT: Key = Key {
     section: "adapt",
     name: "length_limit",
     unit: None,
-    kind: Kind::Word(&[choice("sqrt-radius-thickness", "sqrt(R t), the decay length of bending in the cross-section")]),
-    presence: Default("\"sqrt-radius-thickness\""),
+    kind: Kind::Word(&[
+        choice("sqrt-radius-thickness", "sqrt(R t), the decay length of bending in the cross-section"),
+        choice("half-decay-length", "half of that, with the shorter side of the shell where it is less than R"),
+    ]),
+    presence: Follows("\"sqrt-radius-thickness\" for tape springs, \"half-decay-length\" for other shells"),
     reach: Steps,
     meaning: "Rule for the length below which elements are not halved.",
     example: "\"sqrt-radius-thickness\"",

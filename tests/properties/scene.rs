@@ -123,7 +123,7 @@ fn is_line_of(line: &str, key: &Key) -> bool {
 /// For each key a value that differs from that of the scene and goes with the other keys.
 fn another_value(key: &Key) -> Option<&'static str> {
     Some(match key.path().as_str() {
-        "geometry.kind" | "material.kind" | "load.kind" | "adapt.length_limit" => return None, // one choice only
+        "geometry.kind" | "material.kind" | "load.kind" => return None, // one choice only
         "geometry.length_mm" => "301",
         "geometry.radius_mm" => "11",
         "geometry.arc_deg" => "111",
@@ -139,6 +139,7 @@ fn another_value(key: &Key) -> Option<&'static str> {
         "load.increment_deg" => "0.5",
         "load.longest_increment_deg" => "1.6",
         "adapt.threshold" => "0.02",
+        "adapt.length_limit" => "half-decay-length",
         "adapt.length_limit_mm" => "2",
         "solver.tolerance" => "1e-8",
         "solver.max_iterations" => "101",
