@@ -21,8 +21,6 @@ pub struct Halving {
     pub integrated: f64,
     /// What finding equilibrium there would release, to first order.
     pub released: f64,
-    /// Negative pivots of the stiffness there.
-    pub negative_pivots: usize,
 }
 
 impl Halving {
@@ -38,13 +36,17 @@ impl Halving {
         let mut work = Workspace::new(scene, &finer).ok()?;
         let integrated = work.energy(&displacement);
         let at = Standing { displacement: &displacement, ..Standing::of(state) };
-        let (released, negative_pivots) = work.linear_release(at).ok()?;
+        let released = work.linear_release(at).ok()?;
         let energy = state.strain_energy_n_mm / scene.symmetry.copies() as f64;
-        Some(Self { energy, integrated, released, negative_pivots })
+        Some(Self { energy, integrated, released })
     }
 
-    /// Change of the strain energy by halving, relative to it.
-    pub fn energy_change(&self) -> f64 {
-        (self.integrated - self.released) / self.energy - 1.0
+    /// What halving changes, relative to the strain energy: what the finer quadrature makes of the shape, or what equilibrium
+    /// would release, whichever is more. Where elements lock, the two are large and nearly cancel: the baseline on 4 × 4
+    /// quadratic elements with full quadrature has 60 and 66 % at 20°, where it should have snapped; before the snap 4 × 4
+    /// cubic elements have 0.05 and 0.6 %, next to the limit point too.
+    pub fn energy_share(&self) -> f64 {
+        let quadrature = (self.integrated / self.energy - 1.0).abs();
+        quadrature.max((self.released / self.energy).abs())
     }
 }

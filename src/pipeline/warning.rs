@@ -29,8 +29,8 @@ pub enum Warning {
         parameter: f64,
         /// Elements each way of the model there.
         elements: [usize; 2],
-        /// Change of the strain energy, relative to it, to first order.
-        energy_change: f64,
+        /// What halving them would change of the strain energy, relative to it ([`Halving::energy_share`]).
+        energy_share: f64,
     },
     /// The length limit keeps spans that are far longer than their bending allows.
     RefinementBlocked {
@@ -96,10 +96,10 @@ impl Warning {
     /// A sentence with the numbers, and the way out.
     pub fn in_words(&self) -> String {
         match *self {
-            Self::CoarseElements { elements: [n1, n2], energy_change, .. } => format!(
-                "{n1} × {n2} elements cannot show this shape: halving each would change the strain energy by {} %; write more \
-                 elements or a higher degree in [mesh], or a lower adapt.threshold",
-                signed(100.0 * energy_change, 1)
+            Self::CoarseElements { elements: [n1, n2], energy_share, .. } => format!(
+                "{n1} × {n2} elements cannot show this shape: halving each would change some {:.0} % of the strain energy; write \
+                 more elements or a higher degree in [mesh], or a lower adapt.threshold",
+                100.0 * energy_share
             ),
             Self::RefinementBlocked { spans: [n1, n2], decay_lengths, over_threshold, .. } => format!(
                 "the length limit keeps {} along u and {n2} along v up to {decay_lengths:.1} times as long as the decay of \
@@ -130,8 +130,9 @@ impl Stages {
     }
 
     fn coarse_elements(&self, state: &State) -> Option<Warning> {
-        let energy_change = Halving::of(&self.scene, state)?.energy_change();
+        let energy_share = Halving::of(&self.scene, state)?.energy_share();
         let (parameter, elements) = (state.parameter, state.mesh.element_counts());
-        (energy_change.abs() > LARGE).then_some(Warning::CoarseElements { parameter, elements, energy_change })
+        let is_said = energy_share.is_finite() && energy_share > LARGE;
+        is_said.then_some(Warning::CoarseElements { parameter, elements, energy_share })
     }
 }
