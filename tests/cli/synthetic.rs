@@ -263,8 +263,9 @@ pub fn coarse_records() -> Vec<Record> {
         script.warn(&[Warning::EnergyChangedByRefining { parameter, elements, energy_change }]);
         script.evaluate([0, 0]);
     }
+    script.step(CURVE[8]);
     script.solve(CURVE[9], true);
-    script.warn(&[Warning::CoarseElements { parameter: CURVE[2].0, elements: [4, 4], energy_share: 0.64 }]);
+    script.warn(&[Warning::CoarseElements { parameter: CURVE[8].0, elements: [4, 4], energy_share: 0.64 }]);
     script.evaluate([0, 0]);
     let (parameter, spans) = (CURVE[9].0, [1, 4]);
     script.warn(&[Warning::RefinementBlocked { parameter, spans, decay_lengths: 4.31, over_threshold: 93.2 }]);
