@@ -192,9 +192,8 @@ mod tests {
     #[test]
     fn the_error_is_that_of_the_peak_and_of_the_last_result() {
         let records = records();
-        let [.., before, last] = &records.iter().filter(|record| is_equilibrium(record)).collect::<Vec<_>>()[..] else {
-            panic!("two equilibria")
-        };
+        let equilibria: Vec<&Record> = records.iter().filter(|record| is_equilibrium(record)).collect();
+        let [.., before, last] = equilibria[..] else { panic!("two equilibria") };
         let (before, last) = (before.report.moment_n_mm, last.report.moment_n_mm);
         let error =
             |peak, end| largest_error(&Expectation { peak, last: end, ..Expectation::default() }, records.iter());
