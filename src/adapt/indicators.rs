@@ -21,6 +21,11 @@ use crate::spline::Spans;
 /// spans by 60°).
 const WORST_FIRST: f64 = 0.5;
 
+/// Of the spans above the threshold that the length limit keeps, those are said to be blocked that are longer than this, in
+/// decay lengths √(t/κ) of their own bending: layers of that length stand wherever bending changes, and a fold of
+/// curvature 1/R has √(R t).
+const LONGEST: f64 = 3.0;
+
 /// What the indicators say of a state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Indicators {
@@ -28,6 +33,19 @@ pub struct Indicators {
     pub largest: [f64; 2],
     /// Knots to insert each way: the middles of the marked spans.
     pub marked: [Vec<f64>; 2],
+    /// What is too coarse and is not marked, as the length limit says; `None` where that is not far from fine enough.
+    pub blocked: Option<Blocked>,
+}
+
+/// Spans that are too coarse by far and that the length limit keeps from being halved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blocked {
+    /// Spans each way.
+    pub spans: [usize; 2],
+    /// Length of the longest, in decay lengths √(t/κ) of its bending κ.
+    pub decay_lengths: f64,
+    /// Their largest indicator, over its threshold.
+    pub over_threshold: f64,
 }
 
 /// Evaluates the indicators at the quadrature points of every element.
@@ -37,53 +55,104 @@ pub fn evaluate_indicators(
     discretization: &Discretization,
     displacement: &[[f64; 3]],
 ) -> Indicators {
-    let tables = &discretization.tables;
-    let mesh = &discretization.mesh;
+    let elements = discretization.tables.elements;
     let limit = length_limit(scene, discretization, adapt.length_limit);
-    let count = tables.elements[0] * tables.elements[1];
-    let values: Vec<[f64; 2]> =
-        (0..count).into_par_iter().map(|element| element_indicators(discretization, displacement, element)).collect();
-
-    let is_too_coarse = |element: usize, axis: usize| {
-        values[element][axis] > adapt.threshold[axis] && tables.lengths[element][axis] / 2.0 > limit[axis]
+    let values: Vec<[f64; 2]> = (0..elements[0] * elements[1])
+        .into_par_iter()
+        .map(|element| element_indicators(discretization, displacement, element))
+        .collect();
+    let judged = Judged { adapt, limit, lengths: &discretization.tables.lengths, values: &values };
+    let largest = values.iter().fold([0.0_f64; 2], |most, value| [0, 1].map(|axis| most[axis].max(value[axis])));
+    let worst = [0, 1].map(|axis| {
+        let too_coarse = (0..values.len()).filter(|element| judged.is_too_coarse(*element, axis));
+        too_coarse.map(|element| values[element][axis]).fold(0.0, f64::max)
+    });
+    let is_marked = |element: usize, axis: usize| {
+        judged.is_too_coarse(element, axis) && values[element][axis] >= WORST_FIRST * worst[axis]
     };
-    let mut largest = [0.0_f64; 2];
-    let mut worst = [0.0_f64; 2];
-    for (element, value) in values.iter().enumerate() {
-        for axis in 0..2 {
-            largest[axis] = largest[axis].max(value[axis]);
-            if is_too_coarse(element, axis) {
-                worst[axis] = worst[axis].max(value[axis]);
-            }
-        }
-    }
-    let mut spans_marked = tables.elements.map(|n| vec![false; n]);
-    for (element, value) in values.iter().enumerate() {
-        let place = [element / tables.elements[1], element % tables.elements[1]];
-        for axis in 0..2 {
-            if is_too_coarse(element, axis) && value[axis] >= WORST_FIRST * worst[axis] {
-                spans_marked[axis][place[axis]] = true;
-            }
-        }
-    }
+    let mesh = &discretization.mesh;
     let marked = [0, 1].map(|axis| {
         let bounds = Spans::of(&mesh.knots[axis], mesh.degree[axis]).bounds;
-        let marks = bounds.iter().zip(&spans_marked[axis]);
-        marks.filter(|(_, marked)| **marked).map(|([from, to], _)| 0.5 * (from + to)).collect()
+        let marks = bounds.iter().zip(spans_where(elements, axis, is_marked));
+        marks.filter(|(_, marked)| *marked).map(|([from, to], _)| 0.5 * (from + to)).collect()
     });
-    Indicators { largest, marked }
+    Indicators { largest, marked, blocked: judged.blocked(elements, scene.material.thickness_mm()) }
+}
+
+/// Spans of a direction in which an element is as asked.
+fn spans_where(elements: [usize; 2], axis: usize, holds: impl Fn(usize, usize) -> bool) -> Vec<bool> {
+    let mut spans = vec![false; elements[axis]];
+    for element in 0..elements[0] * elements[1] {
+        spans[[element / elements[1], element % elements[1]][axis]] |= holds(element, axis);
+    }
+    spans
+}
+
+/// The indicators beside what they are held against.
+struct Judged<'a> {
+    adapt: &'a Adapt,
+    /// Elements are not halved below this each way, mm.
+    limit: [f64; 2],
+    lengths: &'a [[f64; 2]],
+    values: &'a [[f64; 2]],
+}
+
+impl Judged<'_> {
+    fn is_above(&self, element: usize, axis: usize) -> bool {
+        self.values[element][axis] > self.adapt.threshold[axis]
+    }
+
+    fn may_be_halved(&self, element: usize, axis: usize) -> bool {
+        self.lengths[element][axis] / 2.0 > self.limit[axis]
+    }
+
+    fn is_too_coarse(&self, element: usize, axis: usize) -> bool {
+        self.is_above(element, axis) && self.may_be_halved(element, axis)
+    }
+
+    /// What the limit keeps far too long.
+    fn blocked(&self, elements: [usize; 2], thickness: f64) -> Option<Blocked> {
+        let decay_lengths =
+            |element: usize, axis: usize| (self.values[element][axis] * self.lengths[element][axis] / thickness).sqrt();
+        let is_blocked = |element: usize, axis: usize| {
+            self.is_above(element, axis) && !self.may_be_halved(element, axis) && decay_lengths(element, axis) > LONGEST
+        };
+        let spans = [0, 1].map(|axis| spans_where(elements, axis, is_blocked).into_iter().filter(|is| *is).count());
+        let places = (0..self.values.len()).flat_map(|element| [(element, 0), (element, 1)]);
+        let blocked = places.filter(|(element, axis)| is_blocked(*element, *axis));
+        let found = blocked.map(|(element, axis)| {
+            [decay_lengths(element, axis), self.values[element][axis] / self.adapt.threshold[axis]]
+        });
+        let [decay_lengths, over_threshold] = found.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])?;
+        Some(Blocked { spans, decay_lengths, over_threshold })
+    }
 }
 
 /// Elements are not halved below this, mm.
+///
+/// Beside forces on points and free edges √(R t) is not enough. Largest error of the deflection under the force, cubic
+/// elements from 4 × 4 on, threshold 0.019, with √(R t), half of it and a quarter: open cylinder pulled at two points (R/t =
+/// 53) 6.3, 1.6, 0.7 %; pinched hemisphere (R/t = 250) 1.3, 0.06, 0.06 %.
 fn length_limit(scene: &Scene, discretization: &Discretization, rule: LengthLimit) -> [f64; 2] {
     let radius = match scene.geometry {
         Geometry::TapeSpring { radius_mm, .. } => radius_mm,
         _ => 1.0 / largest_curvature(discretization),
     };
+    let decay_length = |radius: f64| (radius * scene.material.thickness_mm()).sqrt();
     match rule {
-        LengthLimit::SqrtRadiusThickness => [(radius * scene.material.thickness_mm()).sqrt(); 2],
+        LengthLimit::SqrtRadiusThickness => [decay_length(radius); 2],
+        LengthLimit::HalfDecayLength => [0.5 * decay_length(radius.min(shorter_side(discretization))); 2],
         LengthLimit::Millimetres(length) => length,
     }
+}
+
+/// The longest line of elements each way, and of these the shorter, mm.
+fn shorter_side(discretization: &Discretization) -> f64 {
+    let [n1, n2] = discretization.tables.elements;
+    let lengths = &discretization.tables.lengths;
+    let along = (0..n2).map(|j| (0..n1).map(|i| lengths[i * n2 + j][0]).sum());
+    let across = (0..n1).map(|i| (0..n2).map(|j| lengths[i * n2 + j][1]).sum());
+    along.fold(0.0, f64::max).min(across.fold(0.0, f64::max))
 }
 
 /// Largest principal curvature of the undeformed surface at the quadrature points, 1/mm.

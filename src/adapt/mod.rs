@@ -1,7 +1,9 @@
 //! Refinement: where bending concentrates, knots are inserted, and the displacement is carried over exactly.
 
+mod halving;
 mod indicators;
 mod refinement;
 
-pub use indicators::{Indicators, element_strains, evaluate_indicators};
+pub use halving::Halving;
+pub use indicators::{Blocked, Indicators, element_strains, evaluate_indicators};
 pub use refinement::project_displacements;

@@ -9,9 +9,9 @@ use crate::journal::{Completeness, Log, Manifest, ReadError};
 use crate::pipeline::Record;
 use crate::scene::Scene;
 
-/// Defaults as they once were, for scenes in logs of that time that leave them out. Laid over any other scene they would
-/// change its hash, which the log holds.
-const DEFAULTS_BEFORE: [&str; 1] = ["mesh.quadrature=full"];
+/// Defaults as they once were, for scenes in logs of that time that leave them out: any of them, as not all changed at once.
+/// Laid over any other scene they would change its hash, which the log holds.
+const DEFAULTS_BEFORE: [&str; 2] = ["mesh.quadrature=full", "adapt.length_limit=sqrt-radius-thickness"];
 
 /// A log as far as it can be trusted, with the scene that its last stretch was run with.
 pub(super) struct ReadLog {
@@ -92,8 +92,10 @@ pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
 pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
     let expected = log.entries()[index].record.commit.scene_hash;
     for manifest in log.manifests().iter().rev().filter(|manifest| manifest.first_ordinal <= index as u64) {
-        for defaults in [&[][..], &DEFAULTS_BEFORE] {
-            let as_then: Vec<String> = defaults.iter().map(ToString::to_string).collect();
+        for chosen in 0..1 << DEFAULTS_BEFORE.len() {
+            let is_chosen = |index: usize| chosen >> index & 1 == 1;
+            let defaults = DEFAULTS_BEFORE.iter().enumerate().filter(|(index, _)| is_chosen(*index));
+            let as_then: Vec<String> = defaults.map(|(_, default)| default.to_string()).collect();
             if scene_in(manifest, path, &as_then).is_ok_and(|scene| scene.hash() == expected) {
                 return scene_in(manifest, path, &[&as_then[..], settings].concat());
             }

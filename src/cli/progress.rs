@@ -43,6 +43,8 @@ pub struct Shown<'a, S> {
     inner: S,
     display: Display<'a>,
     records: Vec<Record>,
+    /// Kinds of warnings that were shown.
+    warned: Vec<&'static str>,
 }
 
 enum Display<'a> {
@@ -73,18 +75,18 @@ impl<'a, S: Sink> Shown<'a, S> {
             Manner::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
             Manner::Json => Display::Json(Some(Box::new(io::stdout()))),
         };
-        Self { inner, display, records: Vec::new() }
+        Self { inner, display, records: Vec::new(), warned: Vec::new() }
     }
 
     /// Writes lines as [`Manner::Lines`] to `out`.
     pub fn lines(inner: S, scene: &Scene, out: impl Write + 'a) -> Self {
         let display = Display::Lines { out: Box::new(out), gatherer: Gatherer::new(scene) };
-        Self { inner, display, records: Vec::new() }
+        Self { inner, display, records: Vec::new(), warned: Vec::new() }
     }
 
     /// Writes lines as [`Manner::Json`] to `out`.
     pub fn json(inner: S, out: impl Write + 'a) -> Self {
-        Self { inner, display: Display::Json(Some(Box::new(out))), records: Vec::new() }
+        Self { inner, display: Display::Json(Some(Box::new(out))), records: Vec::new(), warned: Vec::new() }
     }
 
     /// Ends the display, however the run ended. Gives back the sink within and the stages that were shown.
@@ -107,12 +109,14 @@ impl<'a, S: Sink> Shown<'a, S> {
     }
 
     fn show(&mut self, record: &Record) -> Result<(), SinkError> {
+        let warnings = self.new_warnings(record);
         match &mut self.display {
             Display::Quiet => {}
             Display::Live { bar, target_deg, gatherer } => {
                 for step in gatherer.take(record).into_iter().filter(|step| step.is_eventful()) {
                     bar.println(step.line());
                 }
+                warnings.iter().for_each(|line| bar.println(line));
                 bar.set_position(thousandths(record.report.parameter));
                 bar.set_prefix(live_prefix(record.report.driven_by, record.report.parameter, *target_deg));
                 bar.set_message(live_message(&record.report));
@@ -121,6 +125,7 @@ impl<'a, S: Sink> Shown<'a, S> {
                 for step in gatherer.take(record) {
                     write_or_forget(out, &step.line());
                 }
+                warnings.iter().for_each(|line| write_or_forget(out, line));
             }
             Display::Json(out) => {
                 let Some(open) = out else { return Ok(()) };
@@ -139,6 +144,21 @@ impl<'a, S: Sink> Shown<'a, S> {
             }
         }
         Ok(())
+    }
+}
+
+impl<S> Shown<'_, S> {
+    /// Lines for warnings of kinds that were not shown yet; how often each was said stands in the summary.
+    fn new_warnings(&mut self, record: &Record) -> Vec<String> {
+        let mut lines = Vec::new();
+        for warning in &record.report.warnings {
+            if !self.warned.contains(&warning.name()) {
+                self.warned.push(warning.name());
+                let at = record.report.driven_by.shown_short(warning.parameter());
+                lines.push(format!("warning at {at}: {}", warning.in_words()));
+            }
+        }
+        lines
     }
 }
 
@@ -222,6 +242,7 @@ mod tests {
             probes: vec![],
             path_length_mm: None,
             critical_point: None,
+            warnings: vec![],
             parameter: 9.6,
             attempted_parameter: 9.615,
             moment_n_mm: 289.1247,

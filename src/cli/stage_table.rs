@@ -29,7 +29,7 @@ const COLUMNS: [Column; 14] = [
 /// A row a stage, in columns that are as wide as they need to be; a run of a thousand stages fits 120 characters.
 ///
 /// `mesh` is elements along the length × along the arc, `free` the free unknowns, `neg` the negative pivots; blank is
-/// zero. The last column says what else happened; ✗ is a solve turned down, at the rotation that it tried.
+/// zero. The last column says what else happened; ✗ is a solve turned down, at the rotation that it tried, ! a warning.
 pub fn stage_table(records: &[Record]) -> String {
     let steps = records.first().is_some_and(|record| record.report.driven_by == Parameter::LoadFactor);
     // Where no ends turn, the first probe stands in the place of their moment.
@@ -83,8 +83,15 @@ fn cells(record: &Record) -> [String; COLUMNS.len()] {
     ]
 }
 
-/// What else happened, in few words.
+/// What else happened, in few words; warnings after it.
 fn note(report: &Report) -> String {
+    let mut notes = vec![happened(report)];
+    notes.extend(report.warnings.iter().map(|warning| format!("! {}", warning.name())));
+    notes.retain(|note| !note.is_empty());
+    notes.join(", ")
+}
+
+fn happened(report: &Report) -> String {
     let attempted = report.attempted_parameter;
     let degree = if report.driven_by == Parameter::Rotation { "°" } else { "" };
     match report.outcome {
@@ -192,6 +199,7 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
             ("largest max|κ| h", format!("{r1} along the length, {r2} along the arc")),
         ]);
     }
+    lines.extend(report.warnings.iter().map(|warning| ("warning", warning.in_words())));
     lines.extend([
         ("wall time", format!("{wall_s:.6} s")),
         ("state", commit.state_hash.to_string()),

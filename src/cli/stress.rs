@@ -42,6 +42,8 @@ const COLUMNS: &str = "\
 Columns:
   outcome    finished, or the kind of stop; an error stands below
   as stated  whether it ended as its [expect] says, and all numbers are sound
+  error      largest error of the peak before the first jump and of the last result (moment, first probe,
+             strain energy) against those that [expect] states; above 2 % the reason stands below
   steps      load steps with an equilibrium
   iter       Newton iterations, those of solves that were turned down included
   residual   largest |residual| / |reactions| of all equilibria
@@ -142,7 +144,8 @@ impl StressTable {
 
     /// The heads of the columns.
     pub fn head(&self) -> String {
-        let cells = ["outcome", "as stated", "steps", "iter", "residual", "W - E", "cond", "asym", "bits", "wall"];
+        let cells =
+            ["outcome", "as stated", "error", "steps", "iter", "residual", "W - E", "cond", "asym", "bits", "wall"];
         self.line("scene", cells.map(str::to_owned))
     }
 
@@ -155,6 +158,7 @@ impl StressTable {
             [
                 row.outcome.name().to_owned(),
                 if row.as_stated { "yes" } else { "NO" }.to_owned(),
+                row.error.map_or_else(|| "-".to_owned(), |error| format!("{:.2} %", 100.0 * error)),
                 row.load_steps.to_string(),
                 row.iterations.to_string(),
                 small(row.worst_residual),
@@ -166,17 +170,18 @@ impl StressTable {
             ],
         );
         let message = row.message.iter().map(|message| format!("    {message}\n"));
+        let reason = row.inexact.iter().map(|reason| format!("    inexact: {reason}\n"));
         let faults = row.faults.iter().map(|fault| format!("    NO: {fault}\n"));
-        text.extend(message.chain(faults));
+        text.extend(message.chain(reason).chain(faults));
         text
     }
 
-    fn line(&self, name: &str, cells: [String; 10]) -> String {
+    fn line(&self, name: &str, cells: [String; 11]) -> String {
         let width = self.name_width;
-        let [outcome, stated, steps, iterations, residual, balance, condition, asymmetry, bits, wall] = cells;
+        let [outcome, stated, error, steps, iterations, residual, balance, condition, asymmetry, bits, wall] = cells;
         format!(
-            "{name:<width$}  {outcome:<19} {stated:<9} {steps:>5} {iterations:>6} {residual:>8} {balance:>7} {condition:>6} \
-             {asymmetry:>6} {bits:>4} {wall:>8}\n"
+            "{name:<width$}  {outcome:<19} {stated:<9} {error:>7} {steps:>5} {iterations:>6} {residual:>8} {balance:>7} \
+             {condition:>6} {asymmetry:>6} {bits:>4} {wall:>8}\n"
         )
     }
 }

@@ -8,6 +8,7 @@ mod equations;
 mod external;
 mod gmres;
 mod kernel;
+mod linear_release;
 mod metric;
 mod newton;
 mod pattern;

@@ -8,7 +8,7 @@ use std::fmt;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 
 use super::format::FORMAT_VERSION;
 use crate::pipeline::{Commit, Parameter, Record, Report, WrittenReport};
@@ -333,8 +333,29 @@ pub fn schema_of<M: JsonSchema>(title: &str) -> Vec<u8> {
     schema.to_string().into_bytes()
 }
 
-/// Turns `oneOf` constants into one `enum` of words.
+/// The object with the entries of all objects of a `oneOf`; an entry that is a constant in each becomes a choice.
+fn one_object(schema: &Value) -> Option<Value> {
+    let choices = schema.get("oneOf")?.as_array()?;
+    let mut entries = Map::new();
+    for choice in choices {
+        for (name, entry) in choice.get("properties")?.as_object()? {
+            match (entries.get_mut(name), entry.get("const")) {
+                (Some(known), Some(word)) => known["enum"].as_array_mut()?.push(word.clone()),
+                (None, Some(word)) => _ = entries.insert(name.clone(), json!({ "type": "string", "enum": [word] })),
+                (Some(_), None) => {}
+                (None, None) => _ = entries.insert(name.clone(), entry.clone()),
+            }
+        }
+    }
+    Some(json!({ "description": schema["description"], "type": "object", "properties": entries }))
+}
+
+/// Turns `oneOf` constants into one `enum` of words, and `oneOf` objects that a constant tells apart into one object with the
+/// entries of all.
 fn plain_choices(schema: &mut Value) {
+    if let Some(whole) = one_object(schema) {
+        *schema = whole;
+    }
     let words: Option<Vec<Value>> = schema.get("oneOf").and_then(Value::as_array).and_then(|choices| {
         let constant = |choice: &Value| choice.get("const").filter(|word| word.is_string()).cloned();
         choices.iter().map(constant).collect()

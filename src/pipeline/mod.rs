@@ -11,6 +11,7 @@ mod sink;
 mod stage_error;
 mod stages;
 mod step_control;
+mod warning;
 
 pub use path_control::CriticalPoint;
 pub use record::{Commit, Record};
@@ -21,3 +22,4 @@ pub use stage_error::StageError;
 pub use stages::Stages;
 pub use step_control::next_stage;
 pub(crate) use step_control::{is_jump, next_attempt};
+pub use warning::Warning;

@@ -3,8 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::pipeline::CriticalPoint;
+use crate::pipeline::{CriticalPoint, Warning};
 use crate::scene::{Scene, Stage};
+use crate::units::rounded;
 
 /// What a stage reports beside the state that it made. Pure: holds no clock and no host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,6 +55,8 @@ pub struct Report {
     pub path_length_mm: Option<f64>,
     /// Arc length: what the step passed, where it is located.
     pub critical_point: Option<CriticalPoint>,
+    /// Where the mesh cannot show what the shell does.
+    pub warnings: Vec<Warning>,
 }
 
 /// What drives a run.
@@ -76,6 +79,14 @@ impl Parameter {
         match self {
             Parameter::Rotation => format!("{value}°"),
             Parameter::LoadFactor => format!("load factor {value}"),
+        }
+    }
+
+    /// The same with no more decimals than say something.
+    pub fn shown_short(self, value: f64) -> String {
+        match self {
+            Parameter::Rotation => format!("{}°", rounded(value)),
+            Parameter::LoadFactor => format!("load factor {}", rounded(value)),
         }
     }
 }
@@ -160,6 +171,9 @@ pub struct WrittenReport {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "CriticalPoint")]
     critical_point: Option<CriticalPoint>,
+    /// Where the mesh cannot show what the shell does; only where there is such a thing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    warnings: Vec<Warning>,
 }
 
 impl From<WrittenReport> for Report {
@@ -188,6 +202,7 @@ impl From<WrittenReport> for Report {
             probes: written.probes,
             path_length_mm: written.path_length_mm,
             critical_point: written.critical_point,
+            warnings: written.warnings,
         }
     }
 }
@@ -220,6 +235,7 @@ impl From<Report> for WrittenReport {
             probes: report.probes,
             path_length_mm: report.path_length_mm,
             critical_point: report.critical_point,
+            warnings: report.warnings,
         }
     }
 }

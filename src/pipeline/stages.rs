@@ -8,7 +8,7 @@ use crate::model::{
     MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, check_balance, free_motion, remarks, starting_mesh,
 };
 use crate::pipeline::probes::read_probes;
-use crate::pipeline::{Outcome, Parameter, Reading, Report, StageError};
+use crate::pipeline::{Outcome, Parameter, Reading, Report, StageError, Warning};
 use crate::scene::{Scene, Stage};
 use crate::spline::Mesh;
 use crate::state::{PathMemory, Previous, State, StepControl};
@@ -82,10 +82,11 @@ impl Stages {
                 _ => self.relax(state, observer),
             },
         };
-        result.map(|(mut state, mut report)| {
-            state.stage = Some(stage);
+        result.map(|(mut next, mut report)| {
+            next.stage = Some(stage);
             report.stage = stage;
-            (state, report)
+            self.warn(state, &next, &mut report);
+            (next, report)
         })
     }
 
@@ -120,6 +121,8 @@ impl Stages {
         let indicators = evaluate_indicators(scene, &adapt, work.discretization(), &state.displacement);
         report.marked = [indicators.marked[0].len(), indicators.marked[1].len()];
         report.largest_indicator = indicators.largest;
+        let blocked = indicators.blocked.filter(|_| report.marked == [0, 0]);
+        report.warnings.extend(blocked.map(|blocked| Warning::of_blocked(state, blocked)));
         Ok((State { marked: indicators.marked, ..state.clone() }, report))
     }
 
@@ -209,6 +212,7 @@ impl Stages {
             largest_indicator: [0.0; 2],
             path_length_mm: state.path.as_ref().map(|path| path.travelled_mm),
             critical_point: None,
+            warnings: Vec::new(),
         }
     }
 }

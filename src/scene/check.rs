@@ -62,6 +62,9 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
         outcome: reader.word(&keys::OUTCOME)?.value,
         same_as: reader.maybe_text(&keys::SAME_AS)?,
         least_bits: reader.count(&keys::LEAST_BITS)?.value,
+        peak: maybe_number(reader, &keys::PEAK)?,
+        last: maybe_number(reader, &keys::LAST)?,
+        inexact: reader.maybe_text(&keys::INEXACT)?,
     };
     let expect = reader.document.header(keys::OUTCOME.section).map(|_| expect);
     let pipeline = pipeline.value;
@@ -341,6 +344,11 @@ fn stages(reader: &Reader<'_, '_>) -> Checked<Found<Vec<Stage>>> {
     Ok(Found { value, place: None })
 }
 
+/// A number that may be left out.
+fn maybe_number(reader: &Reader<'_, '_>, key: &'static super::Key) -> Checked<Option<f64>> {
+    reader.entry(key).map(|_| reader.number(key).map(|found| found.value)).transpose()
+}
+
 /// A number for both directions, or one for each.
 fn one_or_pair(reader: &Reader<'_, '_>, key: &'static super::Key) -> Checked<[f64; 2]> {
     if reader.entry(key).is_some_and(|entry| entry.value.get_ref().as_array().is_some()) {
@@ -364,7 +372,9 @@ fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>, geometry: &Geome
     }
     let length_limit = match length {
         Some(_) => LengthLimit::Millimetres(one_or_pair(reader, &keys::LENGTH_LIMIT_MM)?),
-        None => reader.word(&keys::LENGTH_LIMIT)?.value,
+        None if rule.is_some() => reader.word(&keys::LENGTH_LIMIT)?.value,
+        None if matches!(geometry, Geometry::TapeSpring { .. }) => LengthLimit::SqrtRadiusThickness,
+        None => LengthLimit::HalfDecayLength,
     };
     if pipeline.value.contains(&Stage::EvaluateIndicators) {
         let flat = matches!(geometry, Geometry::Plate { .. } | Geometry::Annulus { .. });
@@ -373,7 +383,7 @@ fn adapt(reader: &Reader<'_, '_>, pipeline: &Found<Vec<Stage>>, geometry: &Geome
             return Err(table.wrong(
                 None,
                 "a flat shell has no radius to limit the elements by",
-                "write `length_limit_mm`, a number or one for each direction",
+                "write \"half-decay-length\", or `length_limit_mm`, a number or one for each direction",
             ));
         }
         return Ok(Some(Adapt { threshold, length_limit }));

@@ -21,7 +21,7 @@ pub static SECTIONS: [Section; 11] = [
 ];
 
 /// The keys of a scene file, table by table.
-pub static KEYS: [&Key; 35] = [
+pub static KEYS: [&Key; 38] = [
     &GEOMETRY_KIND,
     &LENGTH,
     &RADIUS,
@@ -57,6 +57,9 @@ pub static KEYS: [&Key; 35] = [
     &OUTCOME,
     &SAME_AS,
     &LEAST_BITS,
+    &PEAK,
+    &LAST,
+    &INEXACT,
 ];
 
 const fn section(name: &'static str, required: bool, meaning: &'static str) -> Section {
@@ -385,8 +388,11 @@ pub(super) static LENGTH_LIMIT: Key = Key {
     section: "adapt",
     name: "length_limit",
     unit: None,
-    kind: Kind::Word(&[choice("sqrt-radius-thickness", "sqrt(R t), the decay length of bending in the cross-section")]),
-    presence: Default("\"sqrt-radius-thickness\""),
+    kind: Kind::Word(&[
+        choice("sqrt-radius-thickness", "sqrt(R t), the decay length of bending in the cross-section"),
+        choice("half-decay-length", "half of that, with the shorter side of the shell where it is less than R"),
+    ]),
+    presence: Follows("\"sqrt-radius-thickness\" for tape springs, \"half-decay-length\" for other shells"),
     reach: Steps,
     meaning: "Rule for the length below which elements are not halved.",
     example: "\"sqrt-radius-thickness\"",
@@ -626,4 +632,43 @@ pub(super) static LEAST_BITS: Key = Key {
               shell has several ways to fall and rounding decides between them.",
     example: "10",
     aliases: &["bits", "significant_bits"],
+};
+
+const ANY_NUMBER: Limits = Limits { low: Limit::excluded(f64::NEG_INFINITY, ""), high: Limit::NONE };
+
+pub(super) static PEAK: Key = Key {
+    section: "expect",
+    name: "peak",
+    unit: None,
+    kind: Kind::Number(ANY_NUMBER),
+    presence: Follows("nothing to be held against"),
+    reach: Free,
+    meaning: "The largest moment before the first jump (N mm; of other scenes the first probe, or else the strain energy), \
+              from a closed form or a finer mesh.",
+    example: "292.0",
+    aliases: &["largest", "maximum"],
+};
+
+pub(super) static LAST: Key = Key {
+    section: "expect",
+    name: "last",
+    unit: None,
+    kind: Kind::Number(ANY_NUMBER),
+    presence: Follows("nothing to be held against"),
+    reach: Free,
+    meaning: "The same at the last equilibrium.",
+    example: "28.3",
+    aliases: &["value", "reference"],
+};
+
+pub(super) static INEXACT: Key = Key {
+    section: "expect",
+    name: "inexact",
+    unit: None,
+    kind: Kind::Text,
+    presence: Follows("right to 2 %"),
+    reach: Free,
+    meaning: "Why the run may be off `peak` or `last` by more than 2 %.",
+    example: "\"elements of 75 mm hold no fold\"",
+    aliases: &["because", "reason"],
 };

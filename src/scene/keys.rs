@@ -202,6 +202,7 @@ impl std::fmt::Display for Limits {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (low, high) = (number(self.low.value), number(self.high.value));
         match (self.low.included, self.high.included) {
+            _ if self.low.value.is_infinite() && self.high.value.is_infinite() => write!(f, "of any size"),
             (true, true) => write!(f, "from {low} to {high}"),
             (false, true) => write!(f, "greater than {low} and at most {high}"),
             (false, false) if self.high.value.is_infinite() => write!(f, "greater than {low}"),

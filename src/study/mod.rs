@@ -22,5 +22,5 @@ pub use path::{Passed, PathPoint, Snap, equilibrium_path, snaps};
 pub use stress::{StressRow, StressSuite};
 pub use stress_fault::StressFault;
 pub use stress_run::StressEnd;
-pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, StageWork, Summary};
+pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, Said, StageWork, Summary};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

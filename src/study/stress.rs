@@ -11,7 +11,7 @@ use crate::equilibrium::{Condition, Equilibrium, Standing, SymmetryError, Worksp
 use crate::pipeline::Record;
 use crate::scene::{Expectation, ExpectedOutcome, Scene};
 use crate::state::State;
-use crate::study::stress_curve::{Curve, energy_balance, is_equilibrium, nudged, significant_bits};
+use crate::study::stress_curve::{Curve, energy_balance, is_equilibrium, largest_error, nudged, significant_bits};
 use crate::study::stress_fault::StressFault;
 use crate::study::stress_run::{Done, StressEnd};
 
@@ -36,6 +36,10 @@ pub struct StressRow {
     pub as_stated: bool,
     /// What is wrong.
     pub faults: Vec<StressFault>,
+    /// Largest relative error of what the scene states: see [`Expectation::peak`] and [`Expectation::last`].
+    pub error: Option<f64>,
+    /// Why that may be large, as the scene states it.
+    pub inexact: Option<String>,
     /// Load steps with an equilibrium.
     pub load_steps: usize,
     /// Newton iterations, those of solves that were turned down included.
@@ -64,6 +68,8 @@ impl StressRow {
             outcome,
             as_stated: false,
             faults: Vec::new(),
+            error: None,
+            inexact: None,
             load_steps: 0,
             iterations: 0,
             worst_residual: None,
@@ -137,6 +143,11 @@ impl StressSuite {
             row.faults.push(StressFault::NoStep);
         }
         judge_numbers(scene, &done, &mut row);
+        row.error = largest_error(&expectation, done.records());
+        row.inexact = expectation.inexact.clone();
+        if let (Some(error), None) = (row.error.filter(is_beyond(Expectation::MOST_ERROR)), &row.inexact) {
+            row.faults.push(StressFault::Inexact { error, most: Expectation::MOST_ERROR });
+        }
         let curve = Curve::of(scene, done.records());
         if let Some(other) = &expectation.same_as {
             row.faults.extend(self.compare(&curve, other));
@@ -157,6 +168,11 @@ impl StressSuite {
         }
         curve.differs_from(&self.curves[other], other)
     }
+}
+
+/// Whether a number is more than the most, or none.
+fn is_beyond(most: f64) -> impl Fn(&f64) -> bool {
+    move |value| value.is_nan() || *value > most
 }
 
 /// The larger, and not a number where one of the two is not.
@@ -257,6 +273,20 @@ mod tests {
         wrong.expect = Some(Expectation { outcome: ExpectedOutcome::NoEquilibrium, ..Expectation::default() });
         let found = row(wrong);
         assert!(matches!(found.faults[..], [StressFault::EndedOtherwise { .. }]), "{:?}", found.faults);
+    }
+
+    #[test]
+    fn a_wrong_result_is_explained_or_a_fault() {
+        let expecting = |last, inexact| Scene {
+            expect: Some(Expectation { last: Some(last), inexact, ..Expectation::default() }),
+            ..scene()
+        };
+        let found = row(expecting(1.0, None));
+        assert!(matches!(found.faults[..], [StressFault::Inexact { .. }]), "{:?}", found.faults);
+        // 2EI/L for 0.8 degrees; the section flattens by less than 2 %.
+        assert!(row(expecting(2771.9 * 0.8_f64.to_radians(), None)).as_stated);
+        let found = row(expecting(1.0, Some("nobody would expect it".to_owned())));
+        assert!(found.as_stated && found.error.unwrap() > 1.0, "{found:?}");
     }
 
     #[test]

@@ -1,7 +1,8 @@
-//! What of a run can be held against another run: its dimensionless curve, and the digits of its last result.
+//! What of a run can be held against another run, or against numbers: its dimensionless curve, the digits of its last result,
+//! its peak.
 
 use crate::pipeline::{Outcome, Parameter, Record};
-use crate::scene::{Geometry, Material, Scene, Stage};
+use crate::scene::{Expectation, Geometry, Material, Scene, Stage};
 use crate::study::stress_fault::StressFault;
 
 /// Curves that differ by less, relative to the largest value, are one.
@@ -119,6 +120,17 @@ pub(super) fn significant_bits<'r>(
     Some((-((a - b).abs() / a.abs().max(b.abs())).log2()).clamp(0.0, ALL_BITS))
 }
 
+/// The largest relative error of a run against what a scene states: of the largest result before the first jump, and of the
+/// last one. `None` where it states neither, or the run has none.
+pub(super) fn largest_error<'r>(expected: &Expectation, records: impl Iterator<Item = &'r Record>) -> Option<f64> {
+    let equilibria: Vec<&Record> = records.filter(|record| is_equilibrium(record)).collect();
+    let smooth = equilibria.iter().take_while(|record| !record.report.jumped);
+    let peak = smooth.map(|record| result(record).1).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let last = equilibria.last().map(|record| result(record).1);
+    let pairs = [expected.peak.zip(peak), expected.last.zip(last)];
+    pairs.into_iter().flatten().map(|(right, found)| (found / right - 1.0).abs()).reduce(f64::max)
+}
+
 /// Parameter and result of an equilibrium: the moment, or the first probe, or the strain energy.
 fn result(Record { report, .. }: &Record) -> (f64, f64) {
     let value = match (report.driven_by, report.probes.first()) {
@@ -175,6 +187,23 @@ mod tests {
         let bits = significant_bits(ours.iter(), theirs.iter()).unwrap();
         assert!((bits - 10.0).abs() < 0.01, "{bits}");
         assert_eq!(significant_bits(ours.iter(), [].iter()), None);
+    }
+
+    #[test]
+    fn the_error_is_that_of_the_peak_and_of_the_last_result() {
+        let records = records();
+        let equilibria: Vec<&Record> = records.iter().filter(|record| is_equilibrium(record)).collect();
+        let [.., before, last] = equilibria[..] else { panic!("two equilibria") };
+        let (before, last) = (before.report.moment_n_mm, last.report.moment_n_mm);
+        let error =
+            |peak, end| largest_error(&Expectation { peak, last: end, ..Expectation::default() }, records.iter());
+        assert_eq!(error(None, None), None);
+        assert_eq!(error(Some(last), Some(last)), Some(0.0));
+        assert!((error(Some(last / 1.1), Some(last)).unwrap() - 0.1).abs() < 1e-12);
+        let mut snapped = records.clone();
+        snapped.iter_mut().rfind(|record| is_equilibrium(record)).unwrap().report.jumped = true;
+        let expected = Expectation { peak: Some(before), last: Some(last), ..Expectation::default() };
+        assert_eq!(largest_error(&expected, snapped.iter()), Some(0.0));
     }
 
     #[test]

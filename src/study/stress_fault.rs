@@ -96,6 +96,19 @@ pub enum StressFault {
         /// How.
         ended: &'static str,
     },
+    /// The result is not what it should be, and the scene does not say why.
+    #[error(
+        "the result is {:.1} % off `expect.peak` or `expect.last`, and {:.0} % is the most: refine the mesh, or say why in \
+         `expect.inexact`",
+        100.0 * error,
+        100.0 * most
+    )]
+    Inexact {
+        /// Relative error.
+        error: f64,
+        /// The most.
+        most: f64,
+    },
     /// `same_as` names no scene.
     #[error("expect.same_as = \"{other}\" is no scene of this folder")]
     NoOtherScene {

@@ -1,6 +1,6 @@
 //! The summary of a run: what it found, beside what theory says, and what it cost.
 
-use crate::pipeline::{Outcome, Parameter, Reading, Record};
+use crate::pipeline::{Outcome, Parameter, Reading, Record, Warning};
 use crate::scene::{Geometry, Scene, Stage};
 use crate::study::{Passed, PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
 use crate::units::rounded;
@@ -42,6 +42,10 @@ pub struct Summary {
     pub meshes: Vec<MeshChange>,
     /// What each stage that ran has cost, in the order of [`Stage::ALL`].
     pub work: Vec<StageWork>,
+    /// Where the mesh cannot show what the shell does, a line for each kind of warning.
+    pub warnings: Vec<Said>,
+    /// Whether a warning says that the peak is wrong.
+    pub peak_in_doubt: bool,
     /// Solves that were turned down.
     pub rejections: usize,
     /// Load steps that ended in an equilibrium.
@@ -81,6 +85,15 @@ pub struct FoldMean {
     pub range_deg: [f64; 2],
     /// Load steps in it.
     pub points: usize,
+}
+
+/// A kind of warning, and how often it was said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Said {
+    /// The first one.
+    pub first: Warning,
+    /// How many there are.
+    pub count: usize,
 }
 
 /// A mesh, and where the run came to it.
@@ -154,6 +167,8 @@ impl Summary {
                 .filter(|record| record.report.stage == Stage::SwitchBranch)
                 .map(|record| [record.report.parameter, record.report.energy_released_n_mm])
                 .collect(),
+            warnings: warnings(records),
+            peak_in_doubt: before_jump_and_with_it(records).any(Warning::doubts_results),
             meshes: mesh_changes(records),
             work: work(records),
             rejections: records.iter().filter(|record| record.report.outcome != Outcome::Done).count(),
@@ -290,6 +305,25 @@ fn fold_mean(path: &[PathPoint], snap: Option<&Snap>) -> Option<FoldMean> {
         range_deg: [points.first()?.parameter, last.parameter],
         points: points.len(),
     })
+}
+
+/// Each kind of warning once, in the order in which they were first said.
+fn warnings(records: &[Record]) -> Vec<Said> {
+    let mut said: Vec<Said> = Vec::new();
+    for warning in records.iter().flat_map(|record| &record.report.warnings) {
+        match said.iter_mut().find(|said| said.first.name() == warning.name()) {
+            Some(said) => said.count += 1,
+            None => said.push(Said { first: *warning, count: 1 }),
+        }
+    }
+    said
+}
+
+/// Warnings up to the load step of the first jump: those of the equilibria before it are said there.
+fn before_jump_and_with_it(records: &[Record]) -> impl Iterator<Item = &Warning> {
+    let jump = records.iter().find(|record| record.report.jumped).map(|record| record.report.step);
+    let in_time = records.iter().take_while(move |record| jump.is_none_or(|jump| record.report.step <= jump));
+    in_time.flat_map(|record| &record.report.warnings)
 }
 
 /// The first mesh and every change after it, each once.

@@ -4,7 +4,7 @@ use std::fmt::{self, Display, Formatter};
 
 use super::Summary;
 use super::TapeSpring;
-use super::summary::{FoldMean, MeshChange, PeakFound};
+use super::summary::{FoldMean, MeshChange, PeakFound, Said};
 use crate::pipeline::{Parameter, Reading};
 use crate::scene::Sense;
 use crate::units::{count, duration, reading, rounded, signed};
@@ -15,6 +15,10 @@ impl Display for Summary {
         if self.last.is_some() {
             writeln!(f)?;
             self.write_findings(f)?;
+        }
+        if !self.warnings.is_empty() {
+            writeln!(f)?;
+            self.write_warnings(f)?;
         }
         if !self.meshes.is_empty() {
             writeln!(f)?;
@@ -75,10 +79,7 @@ impl Summary {
 
     /// A value of the parameter with its unit.
     fn at(&self, parameter: f64) -> String {
-        match self.driven_by {
-            Parameter::Rotation => format!("{}°", rounded(parameter)),
-            Parameter::LoadFactor => format!("load factor {}", rounded(parameter)),
-        }
+        self.driven_by.shown_short(parameter)
     }
 
     /// Probes at the last equilibrium, jumps, and the balance of work and energy.
@@ -210,12 +211,15 @@ impl Summary {
             None => "   none before the jump".into(),
         };
         let law = spring.peak();
+        let place = law.map(|law| format!("at {:.2}°", law.parameter));
+        let doubt = (self.peak.is_some() && self.peak_in_doubt).then(|| "the mesh is too coarse for it".to_owned());
+        let note: Vec<String> = place.into_iter().chain(doubt).collect();
         Line {
             name: "peak",
             measured,
             law: Some(("Wuest", law.map_or("   none".into(), |law| format!("{:7.1}", law.moment_n_mm)))),
             off: self.peak.zip(law).map(|(peak, law)| peak.moment_n_mm / law.moment_n_mm),
-            note: &law.map_or(String::new(), |law| format!("at {:.2}°", law.parameter)),
+            note: &note.join("; "),
         }
         .write(f)
     }
@@ -241,6 +245,18 @@ impl Summary {
                 note: "",
             }
             .write(f)?;
+        }
+        Ok(())
+    }
+
+    /// Each kind of warning once.
+    fn write_warnings(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for Said { first, count } in &self.warnings {
+            let more = match count {
+                1 => String::new(),
+                n => format!(" (the first of {n})"),
+            };
+            writeln!(f, "  warning at {}{more}: {}", self.at(first.parameter()), first.in_words())?;
         }
         Ok(())
     }

@@ -38,6 +38,11 @@ fn a_line_for_each_solve_of_a_uniform_run() {
 }
 
 #[test]
+fn a_warning_is_shown_once() {
+    insta::assert_snapshot!(lines(&synthetic::scene(), &synthetic::coarse_records()));
+}
+
+#[test]
 fn a_step_cut_short_is_shown_at_the_end() {
     let mut script = Script::new();
     script.solve(CURVE[0], false);

@@ -584,7 +584,7 @@ fn general_material_and_load() {
             ("increment = 0.25", "increment = 0.25\nlongest_increment = 0.1"),
             ("[adapt]", "[solver]\nleast_increment_deg = 1e-5\n[adapt]"),
             ("[adapt]", "[symmetry]\npart = \"quarter\"\n[adapt]"),
-            ("\nlength_limit_mm = [4.0, 8.0]", ""),
+            ("length_limit_mm = [4.0, 8.0]", "length_limit = \"sqrt-radius-thickness\""),
             ("length_limit_mm = [4.0, 8.0]", "length_limit_mm = [4.0, 8.0, 9.0]"),
         ]),
     );

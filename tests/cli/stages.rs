@@ -66,3 +66,9 @@ fn json_numbers_come_back_bit_for_bit() {
         assert_eq!(report, record.report);
     }
 }
+
+#[test]
+fn warnings_stand_beside_their_stages() {
+    let records = synthetic::coarse_records();
+    insta::assert_snapshot!(stage_table(&records) + &step_in_full(&records, 5));
+}

@@ -14,6 +14,8 @@ fn row(scene: &str, outcome: StressEnd) -> StressRow {
         outcome,
         as_stated: true,
         faults: vec![],
+        error: Some(0.0021),
+        inexact: None,
         load_steps: 23,
         iterations: 261,
         worst_residual: Some(9.6e-8),
@@ -29,6 +31,7 @@ fn row(scene: &str, outcome: StressEnd) -> StressRow {
 fn table() {
     let stopped = |outcome| StressEnd::Stopped { outcome, message: "step 21, solve: the shell jumps".into() };
     let refused = StressRow {
+        error: None,
         load_steps: 0,
         iterations: 0,
         worst_residual: None,
@@ -45,6 +48,8 @@ fn table() {
             StressFault::EndedOtherwise { expected: ExpectedOutcome::Finished, limit_s: 120.0 },
             StressFault::Noise { bits: 5.2, least: 10.0 },
         ],
+        error: Some(0.38),
+        inexact: Some("elements of 1 mm, and the fold has layers of 0.14 mm".into()),
         significant_bits: Some(5.2),
         wall_s: 133.08,
         ..row("radius-over-thickness-5000", StressEnd::OutOfTime)

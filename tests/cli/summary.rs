@@ -125,3 +125,8 @@ fn a_fall_in_stages_is_one_jump() {
     assert_eq!(path.iter().filter(|point| point.jumped).count(), 1);
     assert_eq!(path.len(), 11);
 }
+
+#[test]
+fn run_on_a_mesh_that_is_too_coarse() {
+    insta::assert_snapshot!(text(&synthetic::scene(), &synthetic::coarse_records()));
+}

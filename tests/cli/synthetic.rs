@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use foldline::pipeline::{Commit, Outcome, Parameter, Record, Report};
+use foldline::pipeline::{Commit, Outcome, Parameter, Record, Report, Warning};
 use foldline::scene::{
     Adapt, EndRotation, Geometry, LengthLimit, Load, Material, MeshSpec, Output, Quadrature, Scene, Sense, Solver,
     Stage, Symmetry, SyncPolicy,
@@ -79,6 +79,7 @@ impl Script {
             probes: vec![],
             path_length_mm: None,
             critical_point: None,
+            warnings: vec![],
             stage: Stage::Solve,
             outcome: Outcome::Done,
             parameter: 0.0,
@@ -119,6 +120,7 @@ impl Script {
             marked: [0, 0],
             largest_indicator: [0.0, 0.0],
             outcome: Outcome::Done,
+            warnings: vec![],
             ..report.clone()
         };
         self.records.push(Record { report, commit, wall_s });
@@ -184,6 +186,12 @@ impl Script {
         self.push(report, 0.25);
     }
 
+    /// Warnings of the stage that was written last.
+    pub fn warn(&mut self, warnings: &[Warning]) {
+        let last = self.records.last_mut().expect("a stage");
+        last.report.warnings.extend_from_slice(warnings);
+    }
+
     /// A load step that needs no refinement.
     pub fn step(&mut self, point: (f64, f64, f64)) {
         self.solve(point, false);
@@ -246,4 +254,25 @@ pub fn state(record: &Record) -> State {
         path: None,
         previous: None,
     }
+}
+
+/// A run on a mesh that shows too little: energy that refining changes before the jump, blocked spans behind it.
+pub fn coarse_records() -> Vec<Record> {
+    let mut script = Script::new();
+    script.step(CURVE[0]);
+    for (point, energy_change) in [(CURVE[1], 0.121), (CURVE[2], -0.52)] {
+        script.solve(point, false);
+        script.evaluate([2, 2]);
+        script.refine([4, 4]);
+        let (parameter, elements) = (point.0, [4, 4]);
+        script.warn(&[Warning::EnergyChangedByRefining { parameter, elements, energy_change }]);
+        script.evaluate([0, 0]);
+    }
+    script.step(CURVE[8]);
+    script.solve(CURVE[9], true);
+    script.warn(&[Warning::CoarseElements { parameter: CURVE[8].0, elements: [4, 4], energy_share: 0.64 }]);
+    script.evaluate([0, 0]);
+    let (parameter, spans) = (CURVE[9].0, [1, 4]);
+    script.warn(&[Warning::RefinementBlocked { parameter, spans, decay_lengths: 4.31, over_threshold: 93.2 }]);
+    script.records()
 }

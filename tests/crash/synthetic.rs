@@ -86,6 +86,7 @@ pub fn next(state: &State) -> (State, Report) {
         probes: vec![],
         path_length_mm: None,
         critical_point: None,
+        warnings: vec![],
         parameter: new.parameter,
         attempted_parameter: new.parameter + 0.1,
         moment_n_mm: new.moment_n_mm,

@@ -123,7 +123,7 @@ fn is_line_of(line: &str, key: &Key) -> bool {
 /// For each key a value that differs from that of the scene and goes with the other keys.
 fn another_value(key: &Key) -> Option<&'static str> {
     Some(match key.path().as_str() {
-        "geometry.kind" | "material.kind" | "load.kind" | "adapt.length_limit" => return None, // one choice only
+        "geometry.kind" | "material.kind" | "load.kind" => return None, // one choice only
         "geometry.length_mm" => "301",
         "geometry.radius_mm" => "11",
         "geometry.arc_deg" => "111",
@@ -140,6 +140,7 @@ fn another_value(key: &Key) -> Option<&'static str> {
         "load.increment_deg" => "0.5",
         "load.longest_increment_deg" => "1.6",
         "adapt.threshold" => "0.02",
+        "adapt.length_limit" => "half-decay-length",
         "adapt.length_limit_mm" => "2",
         "solver.tolerance" => "1e-8",
         "solver.max_iterations" => "101",
@@ -155,6 +156,9 @@ fn another_value(key: &Key) -> Option<&'static str> {
         "expect.outcome" => "no-equilibrium",
         "expect.least_bits" => "11",
         "expect.same_as" => "\"other.toml\"",
+        "expect.peak" => "292.0",
+        "expect.last" => "-28.3",
+        "expect.inexact" => "\"too coarse\"",
         path => panic!("{path} needs a value here"),
     })
 }
@@ -186,7 +190,10 @@ fn free_are_the_outputs_the_target_and_what_is_expected_alone() {
             "output.mesh_history",
             "expect.outcome",
             "expect.same_as",
-            "expect.least_bits"
+            "expect.least_bits",
+            "expect.peak",
+            "expect.last",
+            "expect.inexact"
         ]
     );
 }

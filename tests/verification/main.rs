@@ -5,6 +5,7 @@ mod assembly;
 mod baseline;
 mod benchmarks;
 mod buckling;
+mod coarse;
 mod extreme;
 mod house;
 mod mirrors;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// What is to come of a run.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expectation {
     /// How it ends.
     pub outcome: ExpectedOutcome,
@@ -12,17 +12,35 @@ pub struct Expectation {
     pub same_as: Option<String>,
     /// Bits of the result that survive a change of an input in its last place, at least.
     pub least_bits: usize,
+    /// Largest moment before the first jump (other scenes: first probe, or strain energy), from a closed form or a finer mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak: Option<f64>,
+    /// The same at the last equilibrium.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last: Option<f64>,
+    /// Why the run may be farther off these than [`Self::MOST_ERROR`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inexact: Option<String>,
 }
 
 impl Default for Expectation {
     fn default() -> Self {
-        Self { outcome: ExpectedOutcome::default(), same_as: None, least_bits: Self::LEAST_BITS }
+        Self {
+            outcome: ExpectedOutcome::default(),
+            same_as: None,
+            least_bits: Self::LEAST_BITS,
+            peak: None,
+            last: None,
+            inexact: None,
+        }
     }
 }
 
 impl Expectation {
     /// Bits of a result below which it is noise, unless the scene says why it may have fewer: three digits.
     pub const LEAST_BITS: usize = 10;
+    /// Error, relative to what a closed form or a finer mesh gives, beyond which a scene says why.
+    pub const MOST_ERROR: f64 = 0.02;
 }
 
 /// How a run can end that somebody would expect to.

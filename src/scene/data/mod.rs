@@ -224,6 +224,9 @@ pub struct Adapt {
 pub enum LengthLimit {
     /// √(R t) with the least radius of curvature R of the undeformed shell: the decay length of bending.
     SqrtRadiusThickness,
+    /// ½ √(R t) with the least radius of curvature R of the undeformed shell, or with its shorter side where that is less:
+    /// forces on points and at free edges bend over a part of the decay length.
+    HalfDecayLength,
     /// A length each way in mm. One number in the JSON form where both are equal.
     #[serde(with = "one_or_pair")]
     Millimetres([f64; 2]),
