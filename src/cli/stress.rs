@@ -44,7 +44,7 @@ Columns:
   as stated  whether it ended as its [expect] says, and all numbers are sound
   steps      load steps with an equilibrium
   iter       Newton iterations, those of solves that were turned down included
-  residual   largest |residual| / |reactions| of all equilibria
+  residual   largest |residual| of all equilibria over the forces
   W - E      work less strain energy over the load steps that did not jump, relative to the largest
              strain energy; what jumps release and refinement changes is not counted
   cond       largest over smallest magnitude of the eigenvalues of the last stiffness (estimate)

@@ -196,7 +196,7 @@ impl<'a> Continuation<'a> {
         // A correction has no shorter step to fall back on.
         let most = if onwards.is_some() { MOST_CORRECTIONS } else { MOST_ITERATIONS };
         let mut effort = Effort::default();
-        let mut equations = Equations::of(work);
+        let mut equations = Equations::of(work, from);
         let point = loop {
             let point = equations.at(free, parameter, &mut effort)?;
             let last = point.iterate;
@@ -204,7 +204,7 @@ impl<'a> Continuation<'a> {
                 return Err(SolveError::Stopped { last, effort });
             }
             let (off, scale) = constraint.distance(&point, metric);
-            if last.residual <= scene.solver.tolerance * last.reactions && off.abs() <= ON_PLANE * scale {
+            if last.is_equilibrium(scene.solver.tolerance) && off.abs() <= ON_PLANE * scale {
                 break point;
             }
             if last.iteration >= most {
@@ -223,7 +223,7 @@ impl<'a> Continuation<'a> {
         let chord = motion(from.displacement, &point.displacement);
         let sense = onwards.unwrap_or(&chord);
         let end = tangent(&mut equations, &point, metric, Sense::Along(sense))?.direction;
-        let (last, ended) = (point.iterate, point.ended(&equations, effort));
+        let (last, ended) = (point.iterate, point.ended(&equations, from, effort));
         let mean: Vec<[f64; 3]> = heading.motion.iter().zip(&end.motion).map(|(a, b)| add(*a, *b)).collect();
         let lengths = metric.length(&chord) * metric.length(&mean);
         Ok(ContinuedPoint {

@@ -169,6 +169,8 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
     finite("moment", [state.moment_n_mm])?;
     finite("turn", state.turns.iter().flatten().copied())?;
     finite("strain energy", [state.strain_energy_n_mm])?;
+    finite("largest force", [state.largest_force_n])?;
+    finite("change on refining", state.refinement.iter().flat_map(|last| [last.changed_n_mm, last.growth]))?;
     if let Some(previous) = &state.previous {
         if previous.displacement.len() != expected {
             return Err(Flaw::Length { what: "displacements before", expected, found: previous.displacement.len() });

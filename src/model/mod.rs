@@ -11,6 +11,7 @@ mod reactions;
 mod rigid_motion;
 mod rotation;
 mod shape;
+mod strokes;
 mod supports;
 mod tables;
 mod unknowns;

@@ -1,9 +1,12 @@
 //! Solve and re-equilibrate where the load is prescribed, and the way from an unstable equilibrium to a stable one.
 
 use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
+use crate::pipeline::ripple::{Watch, is_ripple};
 use crate::pipeline::stages::{out_of_order, reject, settle};
-use crate::pipeline::step_control::{Attempt, energy_released, is_jump, is_jump_on_refinement, next_attempt};
-use crate::pipeline::{Outcome, Parameter, Report, StageError, Stages};
+use crate::pipeline::step_control::{
+    Attempt, energy_released, is_jump, is_jump_on_refinement, known_release, next_attempt,
+};
+use crate::pipeline::{CriticalPoint, Outcome, Parameter, Report, StageError, Stages};
 use crate::scene::Stage;
 use crate::shell::{norm, sub};
 use crate::state::{Previous, State};
@@ -20,9 +23,9 @@ const LEFT: f64 = 4.0;
 const MOST_MODES: usize = 8;
 
 /// Whether the shell moved much farther than it did before for as much load: it has left its path for another one, though
-/// next to a bifurcation that takes little energy. Known only where a jump was being located, by the equilibrium before.
+/// next to a bifurcation that takes little energy. Known by the equilibrium before.
 fn leaves_path(state: &State, to: f64, solved: &Solved) -> bool {
-    let (Some(_), Some(previous)) = (state.control.jump_seen_at_deg, &state.previous) else { return false };
+    let Some(previous) = &state.previous else { return false };
     let length = |from: &[[f64; 3]], to: &[[f64; 3]]| {
         from.iter().zip(to).map(|(u, v)| norm(sub(*v, *u)).powi(2)).sum::<f64>().sqrt()
     };
@@ -41,28 +44,26 @@ impl Stages {
         let step = state.step + 1;
         let attempt = next_attempt(&self.scene, state);
         let (scene, work) = self.workspace(&state.mesh, step, Stage::Solve)?;
-        // A run that stands on an unstable branch (and says so) follows it; what ends an attempt is a further loss of
-        // stability.
-        let mut unstable_on_the_way = false;
-        let mut watch = |iterate: &Iterate| {
-            observer(iterate);
-            let unstable = iterate.negative_pivots as u64 > state.negative_pivots;
-            unstable_on_the_way |= unstable;
-            !attempt.may_jump && unstable
-        };
+        let mut watch = Watch::new(state, scene.symmetry.copies());
         let solved = Equilibrium::new(scene, work).after(state.previous.as_ref()).advance(
             Standing::of(state),
             attempt.target_deg,
-            &mut watch,
+            &mut |iterate| {
+                observer(iterate);
+                watch.sees_jump(iterate) && !attempt.may_jump
+            },
         );
         let mut report = self.report(state, step);
         report.attempted_parameter = attempt.target_deg;
         match solved {
             Ok(solved) => {
                 let released = energy_released(state, &solved);
-                let left = unstable_on_the_way && leaves_path(state, attempt.target_deg, &solved);
+                let small = watch.unstable && is_ripple(state, released);
+                let bracketed = watch.unstable && state.control.jump_seen_at_deg.is_some();
+                let left = (small || bracketed) && leaves_path(state, attempt.target_deg, &solved);
                 let jumped = left || is_jump(released, state.strain_energy_n_mm, solved.energy);
-                if jumped && !attempt.may_jump {
+                let rippled = small && !jumped;
+                if (jumped || watch.unstable && !rippled) && !attempt.may_jump {
                     report.record_effort(solved.effort);
                     let control = attempt.control_after_jump(&state.control);
                     return Ok(reject(state, report, Outcome::RejectedJump, control));
@@ -73,13 +74,15 @@ impl Stages {
                 next.control = attempt.control_after_success(&self.scene, &state.control, solved.effort.iterations);
                 next.path = None;
                 // The path bends on from an equilibrium before only where it is one path, and where displacements say all.
-                let onwards = !jumped && state.negative_pivots == 0 && next.turns.is_empty();
+                let onwards = !jumped && !rippled && state.negative_pivots == 0 && next.turns.is_empty();
                 next.previous =
                     onwards.then(|| Previous { displacement: state.displacement.clone(), parameter: state.parameter });
                 report.record(&next, &solved);
                 report.probes = self.read_probes(&next)?;
                 report.jumped = jumped;
-                report.energy_released_n_mm = if jumped { released } else { 0.0 };
+                report.rippled = rippled;
+                report.critical_point = CriticalPoint::passed_by_load(state, &next).filter(|_| !jumped && !rippled);
+                report.energy_released_n_mm = if jumped || rippled { known_release(released) } else { Some(0.0) };
                 Ok((next, report))
             }
             Err(cause) => {
@@ -138,8 +141,11 @@ impl Stages {
         // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
         report.jumped = unstable_on_the_way && is_jump_on_refinement(released, state.strain_energy_n_mm);
         if report.jumped {
-            report.energy_released_n_mm = released;
+            report.energy_released_n_mm = known_release(released);
             next.previous = None;
+            next.refinement = None;
+        } else if let Some(refinement) = &mut next.refinement {
+            refinement.changed_n_mm += released.abs();
         }
         Ok((next, report))
     }
@@ -196,7 +202,7 @@ impl Stages {
                 report.record(&next, &Solved { effort, work: work_done, ..left });
                 report.probes = self.read_probes(&next)?;
                 report.jumped = is_jump(released, state.strain_energy_n_mm, next.strain_energy_n_mm);
-                report.energy_released_n_mm = released;
+                report.energy_released_n_mm = known_release(released);
                 return Ok((next, report));
             }
         }

@@ -159,10 +159,15 @@ impl Attempt {
     }
 }
 
-/// Work of loads and given motions (trapezoidal rule) from a state to an equilibrium that did not go into strain energy,
-/// N·mm.
+/// Work of loads and given motions from a state to an equilibrium that did not go into strain energy, N·mm.
 pub fn energy_released(state: &State, solved: &Solved) -> f64 {
     state.strain_energy_n_mm + solved.work - solved.energy
+}
+
+/// Energy that left the balance, where it can be right: what a shell releases is never negative, so that what is comes from
+/// loads whose work depends on a way that the solve did not take.
+pub fn known_release(released: f64) -> Option<f64> {
+    (released >= 0.0).then_some(released)
 }
 
 /// Whether energy that left the balance says that the shell jumped.

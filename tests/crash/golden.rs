@@ -148,7 +148,7 @@ fn read_scene(name: &str) -> (Scene, Manifest) {
 #[test]
 #[ignore = "writes to checkpoints/golden"]
 fn write_golden_logs_of_later_states() {
-    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch)), ("predicted", None), ("growing", None)]
+    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch)), ("predicted", None), ("growing", None), ("balanced", None)]
     {
         if path_of(what).exists() {
             continue;

@@ -1,6 +1,7 @@
 //! Physics against closed forms, published tables, independent solvers and finite differences.
 
 mod assembly;
+mod balance;
 mod baseline;
 mod benchmarks;
 mod buckling;
