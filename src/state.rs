@@ -41,7 +41,7 @@ pub struct State {
     /// The largest force that residuals were held against so far, N; 0 before the first equilibrium, and in states that
     /// were logged before residuals were held against it.
     pub largest_force_n: f64,
-    /// What the last refinement changed; `None` before the first, and where the shell jumped on it.
+    /// What the last refinement changed, and ripples since; `None` before the first, and where the shell jumped on it.
     pub refinement: Option<Refinement>,
 }
 
@@ -52,6 +52,10 @@ pub struct Refinement {
     pub changed_n_mm: f64,
     /// Elements that it added, as a share of those before.
     pub growth: f64,
+    /// What the refinement before it said of the whole mesh ([`Self::of_all_n_mm`]), N·mm.
+    pub expected_n_mm: Option<f64>,
+    /// What the last ripple of the mesh released, N·mm; 0 where there was none since the last jump.
+    pub ripple_n_mm: f64,
 }
 
 impl Refinement {
@@ -193,9 +197,10 @@ impl State {
             feed.bytes(b"largest force");
             feed.number(self.largest_force_n);
         }
-        if let Some(Refinement { changed_n_mm, growth }) = self.refinement {
+        if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = self.refinement {
             feed.bytes(b"refinement");
-            feed.numbers(&[changed_n_mm, growth]);
+            feed.numbers(&[changed_n_mm, growth, ripple_n_mm]);
+            feed.numbers(expected_n_mm.as_slice());
         }
         feed.finish()
     }

@@ -160,6 +160,11 @@ impl<'a> Descent<'a> {
         Ok(last)
     }
 
+    /// Work of the loads so far, with the means of their factors here and at the parameter that the solve started from.
+    pub(super) fn work_since(&self, parameter: f64) -> f64 {
+        self.discretization.loads.mean_work(&self.strokes, [parameter, self.parameter])
+    }
+
     /// Moves on from the point of `last`.
     pub(super) fn step(&mut self, last: &Iterate) -> Result<(), SolveError> {
         let indefinite = last.negative_pivots > 0;

@@ -47,6 +47,8 @@ pub struct Iterate {
     pub shift: f64,
     /// Control point with the largest residual.
     pub worst_point: usize,
+    /// Of a descent: energy of the model that has left the balance since its start, if reactions stay what they were, N·mm.
+    pub released: f64,
 }
 
 impl Iterate {
@@ -67,6 +69,7 @@ impl Iterate {
             step_length: 1.0,
             shift: 0.0,
             worst_point: unknowns.home_of(largest(gradient)),
+            released: 0.0,
         };
         match last.energy.is_finite() && last.residual.is_finite() {
             true => Ok(last),
@@ -249,9 +252,12 @@ pub struct Equilibrium<'a> {
 /// Watches iterates; `true` stops the solve.
 pub type Observer<'o> = &'o mut dyn FnMut(&Iterate) -> bool;
 
-/// Forces conjugate to the given coordinates at the start of a solve, N, for the work done on the way.
+/// The start of a solve, for the balance of energy on the way.
 pub(super) struct Before {
+    /// Forces conjugate to the given coordinates, N.
     reactions: Vec<f64>,
+    /// Strain energy of the model, N·mm.
+    energy: f64,
 }
 
 impl Before {
@@ -260,7 +266,8 @@ impl Before {
         let forces = work.forces(from);
         let Discretization { unknowns, .. } = &work.discretization;
         let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        Self { reactions: unknowns.place(&free, from.parameter).reactions(&forces) }
+        let reactions = unknowns.place(&free, from.parameter).reactions(&forces);
+        Self { reactions, energy: work.assembled.energy }
     }
 }
 
@@ -291,7 +298,8 @@ impl<'a> Equilibrium<'a> {
     pub fn relax(&mut self, from: Standing, observer: Observer) -> Result<Solved, SolveError> {
         let discretization = &self.work.discretization;
         let start = discretization.unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        let before = Before { reactions: vec![0.0; discretization.unknowns.given_count()] };
+        let reactions = vec![0.0; discretization.unknowns.given_count()];
+        let before = Before { reactions, energy: self.work.energy(from.displacement) };
         self.minimize(start, None, from, from.parameter, &before, observer)
     }
 
@@ -328,7 +336,7 @@ impl<'a> Equilibrium<'a> {
         let placement = unknowns.place(&old, from.parameter);
         let loads = External::forces_at(discretization, from.displacement, from.parameter);
         let forces = subtract(&assembled.residual, &loads);
-        let before = Before { reactions: placement.reactions(&forces) };
+        let before = Before { reactions: placement.reactions(&forces), energy: assembled.energy };
         if negative > 0 {
             return (old, None, before);
         }
@@ -396,6 +404,9 @@ impl<'a> Equilibrium<'a> {
         observer: Observer,
     ) -> Result<Solved, SolveError> {
         let (tolerance, max_iterations) = (self.scene.solver.tolerance, self.scene.solver.max_iterations);
+        let of_unknowns = &self.work.discretization.unknowns;
+        let (given, target) = (of_unknowns.given_at(from.parameter), of_unknowns.given_at(parameter));
+        let moved: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| m1 - m0).collect();
         self.work.factored_at = None;
         let is_bent = bent.is_some();
         let mut descent = Descent::new(self.work, from, parameter, bent.unwrap_or_else(|| unknowns.clone()));
@@ -405,8 +416,10 @@ impl<'a> Equilibrium<'a> {
             first = descent.iterate();
         }
         let mut first = Some(first);
+        let of_motions = product(&before.reactions, &moved);
         let last = loop {
-            let last = first.take().unwrap_or_else(|| descent.iterate())?;
+            let mut last = first.take().unwrap_or_else(|| descent.iterate())?;
+            last.released = before.energy + of_motions + descent.work_since(from.parameter) - last.energy;
             if observer(&last) {
                 return Err(SolveError::Stopped { last, effort: descent.effort });
             }
@@ -441,7 +454,7 @@ impl Workspace {
         let (given, target) = (unknowns.given_at(from.parameter), unknowns.given_at(parameter));
         let moved: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| 0.5 * (m1 - m0)).collect();
         let of_motions = product(&before.reactions, &moved) + product(&ended.reactions, &moved);
-        let of_loads = 0.5 * (loads.work(&ended.strokes, from.parameter) + loads.work(&ended.strokes, parameter));
+        let of_loads = loads.mean_work(&ended.strokes, [from.parameter, parameter]);
         let parts = scene.symmetry.copies() as f64;
         let moment = match scene.end_rotation() {
             // All given motions are proportional to θ in degrees.

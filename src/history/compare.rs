@@ -52,6 +52,7 @@ pub fn compare(a: &State, b: &State) -> Comparison {
     }
     if let (Some(p), Some(q)) = (&a.refinement, &b.refinement) {
         differences.extend(number("energy that refining changed", p.changed_n_mm, q.changed_n_mm));
+        differences.extend(number("energy of the last ripple", p.ripple_n_mm, q.ripple_n_mm));
     }
     if let (Some(p), Some(q)) = (&a.path, &b.path) {
         differences.extend(worst("direction of the path", &a.mesh, &p.heading, &q.heading));
@@ -100,7 +101,8 @@ fn structure(a: &State, b: &State) -> Option<String> {
     if a.previous.is_some() != b.previous.is_some() {
         return Some("only one of them remembers the equilibrium before".to_string());
     }
-    if a.refinement.map(|last| last.growth) != b.refinement.map(|last| last.growth) {
+    let growth = |state: &State| state.refinement.map(|last| (last.growth, last.expected_n_mm.is_some()));
+    if growth(a) != growth(b) {
         return Some("they were refined otherwise before".to_string());
     }
     if a.control != b.control {

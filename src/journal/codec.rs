@@ -164,8 +164,26 @@ struct StateV5<'a> {
 struct StateV6<'a> {
     after: StateV5<'a>,
     largest_force_n: f64,
-    /// Energy and growth.
-    refinement: Option<[f64; 2]>,
+    refinement: Option<RefinementV6>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct RefinementV6 {
+    changed_n_mm: f64,
+    growth: f64,
+    expected_n_mm: Option<f64>,
+    ripple_n_mm: f64,
+}
+
+impl RefinementV6 {
+    fn of(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }: Refinement) -> Self {
+        Self { changed_n_mm, growth, expected_n_mm, ripple_n_mm }
+    }
+
+    fn into_memory(self) -> Refinement {
+        let Self { changed_n_mm, growth, expected_n_mm, ripple_n_mm } = self;
+        Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -334,7 +352,7 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
     let previous_parameter = state.previous.as_ref().map(|previous| previous.parameter);
     let doublings = state.control.halvings.min(0).unsigned_abs();
     let state = if state.largest_force_n != 0.0 || state.refinement.is_some() {
-        let refinement = state.refinement.map(|Refinement { changed_n_mm, growth }| [changed_n_mm, growth]);
+        let refinement = state.refinement.map(RefinementV6::of);
         let after = StateV5 { after, previous_parameter, doublings };
         encode(6, &StateV6 { after, largest_force_n: state.largest_force_n, refinement })?
     } else if doublings > 0 {
@@ -425,7 +443,7 @@ pub fn decode_state<'a>(
         path: path.map(PathV3::into_memory),
         previous,
         largest_force_n,
-        refinement: refinement.map(|[changed_n_mm, growth]| Refinement { changed_n_mm, growth }),
+        refinement: refinement.map(RefinementV6::into_memory),
     };
     let found = state.hash();
     if found != expected {

@@ -39,6 +39,11 @@ impl Loads {
         let following = self.following.iter().map(|following| &following.history);
         dead.chain(following).zip(strokes).map(|(history, stroke)| history.at(parameter) * stroke).sum()
     }
+
+    /// The same with the means of their factors at two parameters, N·mm.
+    pub fn mean_work(&self, strokes: &[f64], parameters: [f64; 2]) -> f64 {
+        0.5 * parameters.map(|parameter| self.work(strokes, parameter)).iter().sum::<f64>()
+    }
 }
 
 impl Kind {

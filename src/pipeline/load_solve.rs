@@ -1,13 +1,15 @@
 //! Solve and re-equilibrate where the load is prescribed, and the way from an unstable equilibrium to a stable one.
 
-use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
+use crate::equilibrium::{
+    Continuation, Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Standing, Workspace, soft_mode,
+};
 use crate::pipeline::ripple::{Watch, is_ripple};
 use crate::pipeline::stages::{out_of_order, reject, settle};
 use crate::pipeline::step_control::{
     Attempt, energy_released, is_jump, is_jump_on_refinement, known_release, next_attempt,
 };
 use crate::pipeline::{CriticalPoint, Outcome, Parameter, Report, StageError, Stages};
-use crate::scene::Stage;
+use crate::scene::{Scene, Stage};
 use crate::shell::{norm, sub};
 use crate::state::{Previous, State};
 
@@ -33,6 +35,26 @@ fn leaves_path(state: &State, to: f64, solved: &Solved) -> bool {
     length(&state.displacement, &solved.displacement) > LEFT * rate * (to - state.parameter)
 }
 
+/// Equilibrium at another load. A descent leaves an unstable branch; a run that stands on one follows it by Newton's method, as
+/// far as that goes.
+fn reach(
+    scene: &Scene,
+    work: &mut Workspace,
+    state: &State,
+    target: f64,
+    observer: Observer,
+) -> Result<Solved, SolveError> {
+    let from = Standing::of(state);
+    if state.negative_pivots > 0 {
+        match Continuation::new(scene, work).begin(from, target, observer) {
+            Ok(point) => return Ok(point.solved),
+            Err(stopped @ SolveError::Stopped { .. }) => return Err(stopped),
+            Err(_) => {}
+        }
+    }
+    Equilibrium::new(scene, work).after(state.previous.as_ref()).advance(from, target, observer)
+}
+
 impl Stages {
     /// Moves the load on by one increment. Where that fails or jumps too coarsely, the state stays and only its step
     /// control changes.
@@ -44,21 +66,17 @@ impl Stages {
         let step = state.step + 1;
         let attempt = next_attempt(&self.scene, state);
         let (scene, work) = self.workspace(&state.mesh, step, Stage::Solve)?;
-        let mut watch = Watch::new(state, scene.symmetry.copies());
-        let solved = Equilibrium::new(scene, work).after(state.previous.as_ref()).advance(
-            Standing::of(state),
-            attempt.target_deg,
-            &mut |iterate| {
-                observer(iterate);
-                watch.sees_jump(iterate) && !attempt.may_jump
-            },
-        );
+        let mut watch = Watch::new(state, scene.symmetry.copies() as f64);
+        let solved = reach(scene, work, state, attempt.target_deg, &mut |iterate| {
+            observer(iterate);
+            watch.sees_jump(iterate) && !attempt.may_jump
+        });
         let mut report = self.report(state, step);
         report.attempted_parameter = attempt.target_deg;
         match solved {
             Ok(solved) => {
                 let released = energy_released(state, &solved);
-                let small = watch.unstable && is_ripple(state, released);
+                let small = watch.unstable && solved.negative_pivots == 0 && is_ripple(state, released);
                 let bracketed = watch.unstable && state.control.jump_seen_at_deg.is_some();
                 let left = (small || bracketed) && leaves_path(state, attempt.target_deg, &solved);
                 let jumped = left || is_jump(released, state.strain_energy_n_mm, solved.energy);
@@ -78,6 +96,9 @@ impl Stages {
                 next.previous =
                     onwards.then(|| Previous { displacement: state.displacement.clone(), parameter: state.parameter });
                 report.record(&next, &solved);
+                if let Some(refinement) = next.refinement.as_mut().filter(|_| jumped || rippled) {
+                    refinement.ripple_n_mm = if rippled { released.max(0.0) } else { 0.0 };
+                }
                 report.probes = self.read_probes(&next)?;
                 report.jumped = jumped;
                 report.rippled = rippled;
@@ -139,7 +160,7 @@ impl Stages {
         report.record(&next, &solved);
         report.probes = self.read_probes(&next)?;
         // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
-        report.jumped = unstable_on_the_way && is_jump_on_refinement(released, state.strain_energy_n_mm);
+        report.jumped = unstable_on_the_way && is_jump_on_refinement(state, released);
         if report.jumped {
             report.energy_released_n_mm = known_release(released);
             next.previous = None;

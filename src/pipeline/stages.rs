@@ -136,6 +136,8 @@ impl Stages {
         let refinement = self.scene.continuation.is_none().then(|| Refinement {
             changed_n_mm: (energy - state.strain_energy_n_mm).abs(),
             growth: after / before - 1.0,
+            expected_n_mm: state.refinement.map(|last| last.of_all_n_mm()),
+            ripple_n_mm: state.refinement.map_or(0.0, |last| last.ripple_n_mm),
         });
         let next = State {
             refined: Some(Arc::new(finer)),

@@ -96,7 +96,12 @@ fn state() -> impl Strategy<Value = State> {
                         parameter: energy,
                     }),
                     largest_force_n: if step % 5 == 0 { 0.0 } else { moment.abs() },
-                    refinement: (pivots % 5 == 0).then_some(Refinement { changed_n_mm: energy, growth: rotation }),
+                    refinement: (pivots % 5 == 0).then_some(Refinement {
+                        changed_n_mm: energy,
+                        growth: rotation,
+                        expected_n_mm: (pivots % 2 == 0).then_some(moment),
+                        ripple_n_mm: moment,
+                    }),
                 },
             )
         },
