@@ -78,8 +78,7 @@ impl<'w> Equations<'w> {
         };
         let forces = external.subtract_from(&self.assembled.residual);
         let gradient = placement.restrict(&forces);
-        let scale =
-            ForceScale::at(discretization, self.assembled, &external.forces, &displacement, self.largest_force);
+        let scale = ForceScale::at(discretization, self.assembled, &external.forces, &displacement, self.largest_force);
         let mut iterate = Iterate::at(&discretization.unknowns, self.assembled.energy, scale, &gradient, *effort)?;
         if let Some(negative) = ready {
             iterate.negative_pivots = negative;

@@ -97,7 +97,8 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     let copy = copy_seconds(repeats, 1);
     let bytes_per_s = |threads: usize| 16.0 * COPY_LEN as f64 / copy_seconds(repeats, threads);
 
-    let deformed = Standing { displacement: &solved.displacement, turns: &solved.turns, parameter: target, largest_force: 0.0 };
+    let deformed =
+        Standing { displacement: &solved.displacement, turns: &solved.turns, parameter: target, largest_force: 0.0 };
     let mut kernels = KernelRun::new(&mut work, deformed)?;
     let cost = kernels.cost();
     let sharing = threads.min(cost.factor_threads);

@@ -66,7 +66,8 @@ fn the_tolerance_bounds_the_error_of_a_twisted_plate() {
     for tolerance in [1e-5, 1e-6, 1e-7] {
         let found = moments(tolerance);
         let exact = |factor: f64| converged.iter().find(|[other, _]| *other == factor).map(|[_, moment]| *moment);
-        let pairs = found.iter().filter_map(|[factor, moment]| exact(*factor).map(|exact| (moment / exact - 1.0).abs()));
+        let pairs =
+            found.iter().filter_map(|[factor, moment]| exact(*factor).map(|exact| (moment / exact - 1.0).abs()));
         let errors: Vec<f64> = pairs.collect();
         assert!(errors.len() >= 15, "only {} load steps in common", errors.len());
         let worst = errors.into_iter().fold(0.0, f64::max);
