@@ -10,8 +10,9 @@
 //! and a prescribed motion shows in the displacements anyway. See [`Metric`] for how they are measured.
 
 use crate::equilibrium::equations::{Equations, Point};
+use crate::equilibrium::ledger::Before;
 use crate::equilibrium::metric::Metric;
-use crate::equilibrium::newton::{Before, Effort, Observer, Solved, Standing, Workspace};
+use crate::equilibrium::newton::{Effort, Observer, Solved, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 use crate::scene::Scene;
 use crate::shell::{add, scaled, sub};
@@ -232,7 +233,7 @@ impl<'a> Continuation<'a> {
             turn: metric.product(&heading.motion, &end.motion),
             heading: end,
             parameter,
-            solved: work.solved(scene, from, parameter, &before, ended, &last),
+            solved: work.solved(scene, parameter, &before, ended, &last),
         })
     }
 }

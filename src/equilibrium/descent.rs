@@ -28,6 +28,7 @@
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::external::External;
 use crate::equilibrium::force_scale::ForceScale;
+use crate::equilibrium::ledger::Before;
 use crate::equilibrium::newton::{Effort, Iterate, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
@@ -160,9 +161,9 @@ impl<'a> Descent<'a> {
         Ok(last)
     }
 
-    /// Work of the loads so far, with the means of their factors here and at the parameter that the solve started from.
-    pub(super) fn work_since(&self, parameter: f64) -> f64 {
-        self.discretization.loads.mean_work(&self.strokes, [parameter, self.parameter])
+    /// Energy of the model that has left the balance so far, N·mm.
+    pub(super) fn released_since(&self, before: &Before) -> f64 {
+        before.released(self.discretization, self.parameter, &self.strokes, self.assembled.energy)
     }
 
     /// Moves on from the point of `last`.

@@ -9,6 +9,7 @@ mod external;
 mod force_scale;
 mod gmres;
 mod kernel;
+mod ledger;
 mod metric;
 mod newton;
 mod pattern;

@@ -12,6 +12,7 @@ use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::descent::{Descent, Ended, largest, product};
 use crate::equilibrium::external::{External, subtract};
 use crate::equilibrium::force_scale::ForceScale;
+use crate::equilibrium::ledger::Before;
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
 use crate::equilibrium::sparse::NegativePivots;
 use crate::equilibrium::stability::SoftMode;
@@ -252,25 +253,6 @@ pub struct Equilibrium<'a> {
 /// Watches iterates; `true` stops the solve.
 pub type Observer<'o> = &'o mut dyn FnMut(&Iterate) -> bool;
 
-/// The start of a solve, for the balance of energy on the way.
-pub(super) struct Before {
-    /// Forces conjugate to the given coordinates, N.
-    reactions: Vec<f64>,
-    /// Strain energy of the model, N·mm.
-    energy: f64,
-}
-
-impl Before {
-    /// At a state.
-    pub fn at(work: &mut Workspace, from: Standing) -> Self {
-        let forces = work.forces(from);
-        let Discretization { unknowns, .. } = &work.discretization;
-        let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        let reactions = unknowns.place(&free, from.parameter).reactions(&forces);
-        Self { reactions, energy: work.assembled.energy }
-    }
-}
-
 impl<'a> Equilibrium<'a> {
     /// Works in these buffers.
     pub fn new(scene: &'a Scene, work: &'a mut Workspace) -> Self {
@@ -298,8 +280,7 @@ impl<'a> Equilibrium<'a> {
     pub fn relax(&mut self, from: Standing, observer: Observer) -> Result<Solved, SolveError> {
         let discretization = &self.work.discretization;
         let start = discretization.unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        let reactions = vec![0.0; discretization.unknowns.given_count()];
-        let before = Before { reactions, energy: self.work.energy(from.displacement) };
+        let before = Before::unbalanced(self.work, from);
         self.minimize(start, None, from, from.parameter, &before, observer)
     }
 
@@ -336,7 +317,7 @@ impl<'a> Equilibrium<'a> {
         let placement = unknowns.place(&old, from.parameter);
         let loads = External::forces_at(discretization, from.displacement, from.parameter);
         let forces = subtract(&assembled.residual, &loads);
-        let before = Before { reactions: placement.reactions(&forces), energy: assembled.energy };
+        let before = Before::with(&placement, &forces, from, assembled.energy);
         if negative > 0 {
             return (old, None, before);
         }
@@ -404,9 +385,6 @@ impl<'a> Equilibrium<'a> {
         observer: Observer,
     ) -> Result<Solved, SolveError> {
         let (tolerance, max_iterations) = (self.scene.solver.tolerance, self.scene.solver.max_iterations);
-        let of_unknowns = &self.work.discretization.unknowns;
-        let (given, target) = (of_unknowns.given_at(from.parameter), of_unknowns.given_at(parameter));
-        let moved: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| m1 - m0).collect();
         self.work.factored_at = None;
         let is_bent = bent.is_some();
         let mut descent = Descent::new(self.work, from, parameter, bent.unwrap_or_else(|| unknowns.clone()));
@@ -416,10 +394,9 @@ impl<'a> Equilibrium<'a> {
             first = descent.iterate();
         }
         let mut first = Some(first);
-        let of_motions = product(&before.reactions, &moved);
         let last = loop {
             let mut last = first.take().unwrap_or_else(|| descent.iterate())?;
-            last.released = before.energy + of_motions + descent.work_since(from.parameter) - last.energy;
+            last.released = descent.released_since(before);
             if observer(&last) {
                 return Err(SolveError::Stopped { last, effort: descent.effort });
             }
@@ -432,7 +409,7 @@ impl<'a> Equilibrium<'a> {
             descent.step(&last)?;
         };
         let ended = descent.finish();
-        Ok(self.work.solved(self.scene, from, parameter, before, ended, &last))
+        Ok(self.work.solved(self.scene, parameter, before, ended, &last))
     }
 }
 
@@ -441,7 +418,6 @@ impl Workspace {
     pub(super) fn solved(
         &mut self,
         scene: &Scene,
-        from: Standing,
         parameter: f64,
         before: &Before,
         ended: Ended,
@@ -450,11 +426,7 @@ impl Workspace {
         let largest_force = last.forces.met_here();
         let at = Standing { displacement: &ended.displacement, turns: &ended.turns, parameter, largest_force };
         self.factored_at = Some(Factored::new(at, last.negative_pivots));
-        let Discretization { unknowns, loads, .. } = &self.discretization;
-        let (given, target) = (unknowns.given_at(from.parameter), unknowns.given_at(parameter));
-        let moved: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| 0.5 * (m1 - m0)).collect();
-        let of_motions = product(&before.reactions, &moved) + product(&ended.reactions, &moved);
-        let of_loads = loads.mean_work(&ended.strokes, [from.parameter, parameter]);
+        let unknowns = &self.discretization.unknowns;
         let parts = scene.symmetry.copies() as f64;
         let moment = match scene.end_rotation() {
             // All given motions are proportional to θ in degrees.
@@ -463,7 +435,7 @@ impl Workspace {
         };
         Solved {
             energy: parts * last.energy,
-            work: parts * (of_motions + of_loads),
+            work: parts * before.work(&self.discretization, parameter, &ended.reactions, &ended.strokes),
             moment,
             negative_pivots: last.negative_pivots,
             residual: last.relative_residual(),
