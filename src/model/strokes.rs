@@ -152,7 +152,7 @@ mod tests {
         let [n1, n2] = mesh.control_counts();
         let held = |size: f64, seed: usize| -> Vec<[f64; 3]> {
             let mut field = field(&plate, size, seed);
-            let edge = |i: usize| i / n2 == 0 || i / n2 == n1 - 1 || i % n2 == 0 || i % n2 == n2 - 1;
+            let edge = |i: usize| [0, n1 - 1].contains(&(i / n2)) || [0, n2 - 1].contains(&(i % n2));
             field.iter_mut().enumerate().filter(|(i, _)| edge(*i)).for_each(|(_, u)| *u = [0.0; 3]);
             field
         };
