@@ -38,6 +38,31 @@ pub struct State {
     pub path: Option<PathMemory>,
     /// The equilibrium that the load was moved on from, for the next predictor; `None` where the shell jumped since.
     pub previous: Option<Previous>,
+    /// The largest force that residuals were held against so far, N; 0 before the first equilibrium, and in states that
+    /// were logged before residuals were held against it.
+    pub largest_force_n: f64,
+    /// What the last refinement changed, and ripples since; `None` before the first, and where the shell jumped on it.
+    pub refinement: Option<Refinement>,
+}
+
+/// What a refinement changed at a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refinement {
+    /// Magnitudes of what integrating anew and re-equilibrating changed the strain energy by, N·mm.
+    pub changed_n_mm: f64,
+    /// Elements that it added, as a share of those before.
+    pub growth: f64,
+    /// What the refinement before it said of the whole mesh ([`Self::of_all_n_mm`]), N·mm.
+    pub expected_n_mm: Option<f64>,
+    /// What the last ripple of the mesh released, N·mm; 0 where there was none since the last jump.
+    pub ripple_n_mm: f64,
+}
+
+impl Refinement {
+    /// What refining the whole mesh would change, if all of it were as the part that was refined, N·mm.
+    pub fn of_all_n_mm(&self) -> f64 {
+        self.changed_n_mm / self.growth
+    }
 }
 
 /// An equilibrium before the present one.
@@ -120,6 +145,8 @@ impl State {
             control: StepControl::default(),
             path: None,
             previous: None,
+            largest_force_n: 0.0,
+            refinement: None,
         }
     }
 
@@ -165,6 +192,15 @@ impl State {
             feed.bytes(b"previous");
             previous.displacement.iter().flatten().for_each(|value| feed.number(*value));
             feed.number(previous.parameter);
+        }
+        if self.largest_force_n != 0.0 {
+            feed.bytes(b"largest force");
+            feed.number(self.largest_force_n);
+        }
+        if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = self.refinement {
+            feed.bytes(b"refinement");
+            feed.numbers(&[changed_n_mm, growth, ripple_n_mm]);
+            feed.numbers(expected_n_mm.as_slice());
         }
         feed.finish()
     }

@@ -168,13 +168,14 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
             count(critical.pivots_changed.unsigned_abs() as usize, "pivot")
         ),
     };
+    let released = report.energy_released_n_mm.map_or("not known".to_string(), |energy| format!("{energy:.4} N·mm"));
     format!(
         "{name:<20} {below:.9}{degree} to {beyond:.9}{degree}, on {n1} × {n2} elements, {} solves\n\
          {moment}\
-         energy released      {:.4} N·mm; strain energy before: {:.4} N·mm\n\
+         energy released      {released}; strain energy before: {:.4} N·mm\n\
          kind                 {kind}\n\
          negative pivots      {stable} before, up to {most} on the way, {end} after\n\
          soft mode            eigenvalue {:.4e} N/mm at {below:.6}{degree}; moves most at {at}, towards ({u:.2}, {v:.2}, {w:.2})\n",
-        report.solves, report.energy_released_n_mm, report.stable.strain_energy_n_mm, report.mode.eigenvalue
+        report.solves, report.stable.strain_energy_n_mm, report.mode.eigenvalue
     )
 }

@@ -1,6 +1,6 @@
 //! The stages of one load step, gathered into one line.
 
-use crate::pipeline::{CriticalPoint, Outcome, Parameter, Record, Report};
+use crate::pipeline::{CriticalPoint, Outcome, Parameter, Record, Report, released_in_words};
 use crate::scene::{Scene, Stage};
 use crate::units::{count, duration, reading};
 
@@ -16,8 +16,10 @@ pub(super) struct LoadStep {
     rejected: [usize; 4],
     /// What the step passed on its path.
     passed: Option<CriticalPoint>,
-    /// Energy released, where it jumped.
-    released_n_mm: Option<f64>,
+    /// Energy released where it jumped, as far as it is known.
+    released_n_mm: Option<Option<f64>>,
+    /// Whether a ripple of the mesh was passed.
+    rippled: bool,
 }
 
 impl LoadStep {
@@ -50,7 +52,10 @@ impl LoadStep {
     pub(super) fn events(&self) -> Vec<String> {
         let mut events = Vec::new();
         if let Some(released) = self.released_n_mm {
-            events.push(format!("snapped, released {released:.2} N·mm"));
+            events.push(format!("snapped, {}", released_in_words(released, 2)));
+        }
+        if self.rippled {
+            events.push("a ripple of the mesh".to_string());
         }
         if self.elements_before != self.report.elements {
             events.push(format!("refined from {} × {}", self.elements_before[0], self.elements_before[1]));
@@ -127,6 +132,7 @@ impl Gatherer {
                     wall_s: std::mem::take(&mut self.pending_wall_s),
                     rejected: std::mem::take(&mut self.pending_rejections),
                     released_n_mm: None,
+                    rippled: report.rippled,
                     passed: report.critical_point,
                 });
             }
@@ -145,7 +151,9 @@ impl Gatherer {
                 step.iterations += report.iterations;
                 step.wall_s += record.wall_s;
                 if report.jumped {
-                    *step.released_n_mm.get_or_insert(0.0) += report.energy_released_n_mm;
+                    let before = step.released_n_mm.unwrap_or(Some(0.0));
+                    let both = before.zip(report.energy_released_n_mm);
+                    step.released_n_mm = Some(both.map(|(before, now)| before + now));
                 }
             }
             None => {

@@ -253,8 +253,9 @@ mod tests {
             factorizations: 5,
             negative_pivots: 0,
             residual: 1e-9,
-            energy_released_n_mm: 0.0,
+            energy_released_n_mm: Some(0.0),
             jumped: false,
+            rippled: false,
             marked: [0, 0],
             largest_indicator: [0.0, 0.0],
         };

@@ -99,9 +99,13 @@ fn happened(report: &Report) -> String {
         Outcome::RejectedCriticalPoint => format!("✗ past critical {attempted:.3}{degree}"),
         Outcome::RejectedSharpTurn => format!("✗ sharp turn {attempted:.3}{degree}"),
         Outcome::RejectedNoEquilibrium => format!("✗ no solution {attempted:.3}{degree}"),
-        Outcome::Done if report.jumped => format!("snap, −{:.2} N·mm", report.energy_released_n_mm),
+        Outcome::Done if report.jumped => match report.energy_released_n_mm {
+            Some(released) => format!("snap, −{released:.2} N·mm"),
+            None => "snap".to_string(),
+        },
+        Outcome::Done if report.rippled => "a ripple of the mesh".to_string(),
         Outcome::Done if report.stage == Stage::SwitchBranch => {
-            format!("left, −{:.2e} N·mm", report.energy_released_n_mm)
+            report.energy_released_n_mm.map_or("left".to_string(), |released| format!("left, −{released:.2e} N·mm"))
         }
         Outcome::Done if report.critical_point.is_some() => {
             report.critical_point.map_or(String::new(), |passed| passed.in_words())
@@ -136,6 +140,7 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
     let Record { report, commit, wall_s } = record;
     let outcome = match report.outcome {
         Outcome::Done if report.jumped => "done; the shell jumped".to_string(),
+        Outcome::Done if report.rippled => "done; a ripple of the mesh was passed".to_string(),
         Outcome::Done => "done".to_string(),
         Outcome::RejectedJump => {
             "turned down: unstable on the way, or jumped; the increment is halved until that is located".to_string()
@@ -176,8 +181,9 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
     if let Some(passed) = report.critical_point {
         lines.push(("passed", passed.in_words()));
     }
-    if report.jumped || report.stage == Stage::SwitchBranch {
-        lines.push(("energy released", format!("{} N·mm", report.energy_released_n_mm)));
+    if report.jumped || report.rippled || report.stage == Stage::SwitchBranch {
+        let released = report.energy_released_n_mm;
+        lines.push(("energy released", released.map_or("not known".to_string(), |energy| format!("{energy} N·mm"))));
     }
     lines.extend([
         ("elements", format!("{n1} × {n2} = {} (length × arc, of the model)", n1 * n2)),
@@ -187,7 +193,7 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
         lines.extend([
             ("Newton iterations", report.iterations.to_string()),
             ("factorizations", report.factorizations.to_string()),
-            ("residual/reactions", format!("{:.3e}", report.residual)),
+            ("residual/forces", format!("{:.3e}", report.residual)),
         ]);
     }
     let stable = if report.negative_pivots == 0 { "stable" } else { "not stable" };

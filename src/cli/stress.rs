@@ -46,7 +46,7 @@ Columns:
              strain energy) against those that [expect] states; above 2 % the reason stands below
   steps      load steps with an equilibrium
   iter       Newton iterations, those of solves that were turned down included
-  residual   largest |residual| / |reactions| of all equilibria
+  residual   largest |residual| of all equilibria over the forces
   W - E      work less strain energy over the load steps that did not jump, relative to the largest
              strain energy; what jumps release and refinement changes is not counted
   cond       largest over smallest magnitude of the eigenvalues of the last stiffness (estimate)

@@ -21,7 +21,7 @@ pub(super) fn row(commit: &Commit, mesh: &Mesh, iterate: &Iterate) -> TraceRow {
         iteration: iterate.iteration,
         energy_n_mm: iterate.energy,
         residual_n: iterate.residual,
-        relative_residual: iterate.residual / iterate.reactions,
+        relative_residual: iterate.relative_residual(),
         step_length: iterate.step_length,
         shift_n_per_mm: iterate.shift,
         negative_pivots: iterate.negative_pivots,

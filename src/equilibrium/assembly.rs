@@ -53,6 +53,8 @@ pub fn stencil_len(degree: [usize; 2]) -> usize {
 pub struct Assembled {
     /// Strain energy of the model, N·mm.
     pub energy: f64,
+    /// Euclidean norm of the elements' forces on their control points, before they are summed, N.
+    pub element_forces: f64,
     /// Gradient of the energy with respect to the control points' displacements, N.
     pub residual: Vec<[f64; 3]>,
     /// `stiffness[(i · stencil_len + slot) · 9 + 3 c + d]`, N/mm.
@@ -64,7 +66,7 @@ impl Assembled {
     pub fn new(discretization: &Discretization) -> Self {
         let count = discretization.mesh.control_points.len();
         let stiffness = vec![0.0; count * stencil_len(discretization.mesh.degree) * 9];
-        Self { energy: 0.0, residual: vec![[0.0; 3]; count], stiffness }
+        Self { energy: 0.0, element_forces: 0.0, residual: vec![[0.0; 3]; count], stiffness }
     }
 
     /// Assembles residual and energy, and the stiffness where `want` says so, at a displacement of the control points.
@@ -81,12 +83,12 @@ impl Assembled {
             self.stiffness.par_chunks_mut(row_stiffness).for_each(|row| row.fill(0.0));
         }
         let first = &tables.first[0];
-        let mut energies = vec![0.0; first.len()];
+        let mut totals = vec![ColumnSums::default(); first.len()];
         for colour in 0..colours.min(first.len()) {
             let columns: Vec<usize> = (colour..first.len()).step_by(colours).collect();
             let residuals = take_rows(&mut self.residual, n2, colours, columns.iter().map(|e| first[*e]));
             let stiffnesses = take_rows(&mut self.stiffness, row_stiffness, colours, columns.iter().map(|e| first[*e]));
-            let sums: Vec<f64> = columns
+            let sums: Vec<ColumnSums> = columns
                 .par_iter()
                 .zip(residuals)
                 .zip(stiffnesses)
@@ -99,10 +101,11 @@ impl Assembled {
                 )
                 .collect();
             for (column, sum) in columns.iter().zip(sums) {
-                energies[*column] = sum;
+                totals[*column] = sum;
             }
         }
-        self.energy = energies.iter().sum();
+        self.energy = totals.iter().map(|column| column.energy).sum();
+        self.element_forces = totals.iter().map(|column| column.squared_forces).sum::<f64>().sqrt();
     }
 
     /// Stiffness times a field on the control points.
@@ -170,6 +173,13 @@ fn take_rows<T>(mut data: &mut [T], row: usize, height: usize, starts: impl Iter
     slices
 }
 
+/// Sums over a column of elements.
+#[derive(Clone, Copy, Default)]
+struct ColumnSums {
+    energy: f64,
+    squared_forces: f64,
+}
+
 /// The rows of control points that a column of elements adds to.
 struct Rows<'a> {
     residual: &'a mut [[f64; 3]],
@@ -184,29 +194,31 @@ fn assemble_column(
     build: Build,
     buffers: &mut ElementBuffers,
     rows: &mut Rows,
-) -> f64 {
+) -> ColumnSums {
     let tables = &discretization.tables;
     let [p1, p2] = discretization.mesh.degree;
     let n2 = discretization.mesh.control_counts()[1];
     let padded = tables.padded;
     let functions = (p1 + 1) * (p2 + 1);
-    let mut energy = 0.0;
+    let mut sums = ColumnSums::default();
     for across in 0..tables.elements[1] {
         let first = tables.first[1][across];
         gather(&discretization.mesh, tables, displacement, [column, across], buffers);
         integrate_element(tables, column * tables.elements[1] + across, want, build, buffers);
-        energy += buffers.energy;
+        sums.energy += buffers.energy;
         for a in 0..functions {
             let row = &mut rows.residual[(a / (p2 + 1)) * n2 + first + a % (p2 + 1)];
             for c in 0..3 {
-                row[c] += buffers.residual[c * padded + a];
+                let force = buffers.residual[c * padded + a];
+                row[c] += force;
+                sums.squared_forces += force * force;
             }
         }
         if want == Want::Stiffness {
             scatter_stiffness([p1, p2], n2, first, padded, &buffers.stiffness, rows.stiffness);
         }
     }
-    energy
+    sums
 }
 
 /// Copies the displacement of an element's control points into its buffers.

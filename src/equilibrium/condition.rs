@@ -90,7 +90,7 @@ mod tests {
         for (size, parameter) in [(0.0, 0.0), (0.5, 5.0)] {
             let free: Vec<f64> = (0..count).map(|i| size * ((i * 7919 % 1013) as f64 / 1013.0 - 0.5)).collect();
             let displacement = work.discretization.unknowns.place(&free, parameter).displacement();
-            let at = Standing { displacement: &displacement, turns: &[], parameter };
+            let at = Standing { displacement: &displacement, turns: &[], parameter, largest_force: 0.0 };
             let found = Condition::at(&mut work, at).unwrap();
             let matrix = work.form_at(at).to_vec();
             let dense = DMatrix::from_fn(count, count, |row, column| {

@@ -10,8 +10,9 @@
 //! and a prescribed motion shows in the displacements anyway. See [`Metric`] for how they are measured.
 
 use crate::equilibrium::equations::{Equations, Point};
+use crate::equilibrium::ledger::Before;
 use crate::equilibrium::metric::Metric;
-use crate::equilibrium::newton::{Before, Effort, Observer, Solved, Standing, Workspace};
+use crate::equilibrium::newton::{Effort, Observer, Solved, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 use crate::scene::Scene;
 use crate::shell::{add, scaled, sub};
@@ -196,7 +197,7 @@ impl<'a> Continuation<'a> {
         // A correction has no shorter step to fall back on.
         let most = if onwards.is_some() { MOST_CORRECTIONS } else { MOST_ITERATIONS };
         let mut effort = Effort::default();
-        let mut equations = Equations::of(work);
+        let mut equations = Equations::of(work, from);
         let point = loop {
             let point = equations.at(free, parameter, &mut effort)?;
             let last = point.iterate;
@@ -204,7 +205,7 @@ impl<'a> Continuation<'a> {
                 return Err(SolveError::Stopped { last, effort });
             }
             let (off, scale) = constraint.distance(&point, metric);
-            if last.residual <= scene.solver.tolerance * last.reactions && off.abs() <= ON_PLANE * scale {
+            if last.is_equilibrium(scene.solver.tolerance) && off.abs() <= ON_PLANE * scale {
                 break point;
             }
             if last.iteration >= most {
@@ -223,7 +224,7 @@ impl<'a> Continuation<'a> {
         let chord = motion(from.displacement, &point.displacement);
         let sense = onwards.unwrap_or(&chord);
         let end = tangent(&mut equations, &point, metric, Sense::Along(sense))?.direction;
-        let (last, ended) = (point.iterate, point.ended(&equations, effort));
+        let (last, ended) = (point.iterate, point.ended(&equations, from, effort));
         let mean: Vec<[f64; 3]> = heading.motion.iter().zip(&end.motion).map(|(a, b)| add(*a, *b)).collect();
         let lengths = metric.length(&chord) * metric.length(&mean);
         Ok(ContinuedPoint {
@@ -232,7 +233,7 @@ impl<'a> Continuation<'a> {
             turn: metric.product(&heading.motion, &end.motion),
             heading: end,
             parameter,
-            solved: work.solved(scene, from, parameter, &before, ended, &last),
+            solved: work.solved(scene, parameter, &before, ended, &last),
         })
     }
 }

@@ -6,10 +6,9 @@
 //! direction that reverses Newton's where the curvature is negative (section 3.4 there, modified factorizations). Of two
 //! points in a row one is, to rounding, as low as any before.
 //!
-//! With loads, what descends is strain energy less the work of the loads since the start, by the trapezoidal rule over
-//! the steps: exact for dead loads, and of third order in the step for those that turn with the shell, so that it needs
-//! no potential. Where such loads have a skew tangent, the direction solves the whole system (GMRES on the factor of
-//! the symmetric part).
+//! With loads, what descends is strain energy less the work of the loads along the way that the steps took ([`crate::model::Loads::strokes`]),
+//! so that it needs no potential. Where loads that turn with the shell have a skew tangent, the direction solves the whole
+//! system (GMRES on the factor of the symmetric part).
 //!
 //! A full Newton step that does not lower the energy is taken all the same for one more step (a watchdog, section 15.6
 //! there): in a thin shell the valley of low energy is curved, a straight step leaves it at the cost of membrane
@@ -27,8 +26,10 @@
 //! its snap 35 to 72 factorizations for 25 to 37, as the stiffness away from equilibrium was more often indefinite.
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
-use crate::equilibrium::external::{External, work};
-use crate::equilibrium::newton::{Effort, Iterate, Workspace};
+use crate::equilibrium::external::External;
+use crate::equilibrium::force_scale::ForceScale;
+use crate::equilibrium::ledger::Before;
+use crate::equilibrium::newton::{Effort, Iterate, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::model::{Discretization, Placement};
@@ -58,8 +59,10 @@ pub(super) struct Descent<'a> {
     unknowns: Vec<f64>,
     displacement: Vec<[f64; 3]>,
     external: External,
-    /// Work of the loads since the start, N·mm.
-    work: f64,
+    /// Strokes of the actions since the state that the solve started from, N·mm.
+    strokes: Vec<f64>,
+    /// The largest force met before, N.
+    largest_force: f64,
     gradient: Vec<f64>,
     step_length: f64,
     /// Where a step started that has not lowered the energy yet.
@@ -71,8 +74,8 @@ pub(super) struct Descent<'a> {
 struct Start {
     unknowns: Vec<f64>,
     displacement: Vec<[f64; 3]>,
-    /// Forces of the loads, and their work so far.
-    forces: Vec<[f64; 3]>,
+    /// Strokes of the actions so far, and their work.
+    strokes: Vec<f64>,
     work: f64,
     direction: Vec<f64>,
     /// Derivative of the energy along the direction; negative.
@@ -98,7 +101,8 @@ impl Start {
 }
 
 impl<'a> Descent<'a> {
-    pub(super) fn new(workspace: &'a mut Workspace, parameter: f64, unknowns: Vec<f64>) -> Self {
+    /// At these unknowns, on the way from a state.
+    pub(super) fn new(workspace: &'a mut Workspace, from: Standing, parameter: f64, unknowns: Vec<f64>) -> Self {
         let Workspace { discretization, tangent, assembled, .. } = workspace;
         let discretization = &*discretization;
         let placement = discretization.unknowns.place(&unknowns, parameter);
@@ -109,7 +113,8 @@ impl<'a> Descent<'a> {
             placement,
             parameter,
             external,
-            work: 0.0,
+            strokes: discretization.loads.strokes(&discretization.mesh, from.displacement, &displacement),
+            largest_force: from.largest_force,
             discretization,
             assembled,
             tangent,
@@ -122,8 +127,15 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Goes to other unknowns and assembles everything there; what it took so far stays counted.
-    pub(super) fn start_at(&mut self, unknowns: Vec<f64>) {
+    /// Starts anew from other unknowns, on the way from a state; what it took so far stays counted.
+    pub(super) fn start_at(&mut self, from: Standing, unknowns: Vec<f64>) {
+        self.go_to(unknowns);
+        let Discretization { mesh, loads, .. } = self.discretization;
+        self.strokes = loads.strokes(mesh, from.displacement, &self.displacement);
+    }
+
+    /// Goes to other unknowns and assembles everything there.
+    fn go_to(&mut self, unknowns: Vec<f64>) {
         self.placement = self.discretization.unknowns.place(&unknowns, self.parameter);
         self.displacement = self.placement.displacement();
         self.unknowns = unknowns;
@@ -136,8 +148,10 @@ impl<'a> Descent<'a> {
         let assembled = &*self.assembled;
         let forces = self.external.subtract_from(&assembled.residual);
         self.gradient = self.placement.restrict(&forces);
+        let (loads, met) = (&self.external.forces, self.largest_force);
+        let scale = ForceScale::at(self.discretization, assembled, loads, &self.displacement, met);
         let of_unknowns = &self.discretization.unknowns;
-        let mut last = Iterate::at(of_unknowns, assembled, &self.external, &self.gradient, self.effort)?;
+        let mut last = Iterate::at(of_unknowns, assembled.energy, scale, &self.gradient, self.effort)?;
         last.step_length = self.step_length;
         self.effort.factorizations += 1;
         let factored = self.tangent.factorize(self.discretization, &self.placement, assembled, &mut self.external);
@@ -145,6 +159,11 @@ impl<'a> Descent<'a> {
         last.negative_pivots = negative.count;
         last.shift = 2.0 * negative.largest;
         Ok(last)
+    }
+
+    /// Energy of the model that has left the balance so far, N·mm.
+    pub(super) fn released_since(&self, before: &Before) -> f64 {
+        before.released(self.discretization, self.parameter, &self.strokes, self.assembled.energy)
     }
 
     /// Moves on from the point of `last`.
@@ -158,8 +177,8 @@ impl<'a> Descent<'a> {
         let here = Start {
             unknowns: self.unknowns.clone(),
             displacement: self.displacement.clone(),
-            forces: self.external.forces.clone(),
-            work: self.work,
+            strokes: self.strokes.clone(),
+            work: self.discretization.loads.work(&self.strokes, self.parameter),
             direction,
             slope,
             iterate: *last,
@@ -215,7 +234,7 @@ impl<'a> Descent<'a> {
             reactions: self.placement.reactions(&forces),
             turns: self.placement.turns(),
             displacement: self.displacement,
-            forces: self.external.forces,
+            strokes: self.strokes,
             effort: self.effort,
         }
     }
@@ -271,16 +290,22 @@ impl<'a> Descent<'a> {
     fn energy_at(&self, from: &Start, length: f64) -> f64 {
         let displacement = self.discretization.unknowns.place(&from.moved(length), self.parameter).displacement();
         let energy = strain_energy(&self.discretization.mesh, &self.discretization.tables, &displacement);
-        let forces = External::forces_at(self.discretization, &displacement, self.parameter);
-        energy - from.work - work(&from.forces, &forces, &from.displacement, &displacement)
+        energy - self.discretization.loads.work(&self.strokes_to(from, &displacement), self.parameter)
+    }
+
+    /// Strokes on the way that leads straight on from where a step started.
+    fn strokes_to(&self, from: &Start, displacement: &[[f64; 3]]) -> Vec<f64> {
+        let Discretization { mesh, loads, .. } = self.discretization;
+        let last = loads.strokes(mesh, &from.displacement, displacement);
+        from.strokes.iter().zip(last).map(|(before, stroke)| before + stroke).collect()
     }
 
     /// Moves to a point and assembles everything there; returns the strain energy less the work of the loads.
     fn settle(&mut self, from: &Start, length: f64) -> f64 {
-        self.start_at(from.moved(length));
+        self.go_to(from.moved(length));
         self.step_length = length;
-        self.work = from.work + work(&from.forces, &self.external.forces, &from.displacement, &self.displacement);
-        self.assembled.energy - self.work
+        self.strokes = self.strokes_to(from, &self.displacement);
+        self.assembled.energy - self.discretization.loads.work(&self.strokes, self.parameter)
     }
 }
 
@@ -290,8 +315,8 @@ pub(super) struct Ended {
     pub displacement: Vec<[f64; 3]>,
     /// Rotation vectors of the sections, radians; see [`Placement::turns`].
     pub turns: Vec<[f64; 3]>,
-    /// Forces of the loads, N; empty where nothing acts.
-    pub forces: Vec<[f64; 3]>,
+    /// Strokes of the actions on the way, N·mm.
+    pub strokes: Vec<f64>,
     /// Forces conjugate to the given coordinates, N.
     pub reactions: Vec<f64>,
     /// What it took.

@@ -3,6 +3,7 @@
 use crate::equilibrium::assembly::{Assembled, Want};
 use crate::equilibrium::descent::Ended;
 use crate::equilibrium::external::External;
+use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::newton::{Effort, Iterate, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
@@ -13,6 +14,8 @@ pub(super) struct Equations<'w> {
     discretization: &'w Discretization,
     tangent: &'w mut TangentStiffness,
     assembled: &'w mut Assembled,
+    /// The largest force met before, N.
+    largest_force: f64,
     /// Negative pivots, where residual, stiffness and factor are those of the state that is asked for next.
     ready: Option<usize>,
 }
@@ -34,10 +37,11 @@ pub(super) struct Point<'w> {
 }
 
 impl<'w> Equations<'w> {
-    pub fn of(work: &'w mut Workspace) -> Self {
+    /// On the way from a state.
+    pub fn of(work: &'w mut Workspace, from: Standing) -> Self {
         let Workspace { discretization, tangent, assembled, factored_at } = work;
         *factored_at = None;
-        Self { discretization, tangent, assembled, ready: None }
+        Self { discretization, tangent, assembled, largest_force: from.largest_force, ready: None }
     }
 
     /// Ready for [`Self::at_standing`] at this state, with the stiffness and factor that a solve left there if there are
@@ -46,11 +50,11 @@ impl<'w> Equations<'w> {
     pub fn factored_at(work: &'w mut Workspace, at: Standing) -> Result<Self, SolveError> {
         let discretization = &work.discretization;
         if discretization.unknowns.turns_are_unknown() || discretization.loads.follow() {
-            return Ok(Self::of(work));
+            return Ok(Self::of(work, at));
         }
         let negative = work.factorize_at(at)?;
         let Workspace { discretization, tangent, assembled, .. } = work;
-        Ok(Self { discretization, tangent, assembled, ready: Some(negative) })
+        Ok(Self { discretization, tangent, assembled, largest_force: at.largest_force, ready: Some(negative) })
     }
 
     /// At a state.
@@ -74,8 +78,8 @@ impl<'w> Equations<'w> {
         };
         let forces = external.subtract_from(&self.assembled.residual);
         let gradient = placement.restrict(&forces);
-        let of_unknowns = &discretization.unknowns;
-        let mut iterate = Iterate::at(of_unknowns, self.assembled, &external, &gradient, *effort)?;
+        let scale = ForceScale::at(discretization, self.assembled, &external.forces, &displacement, self.largest_force);
+        let mut iterate = Iterate::at(&discretization.unknowns, self.assembled.energy, scale, &gradient, *effort)?;
         if let Some(negative) = ready {
             iterate.negative_pivots = negative;
         } else {
@@ -115,14 +119,15 @@ impl<'w> Equations<'w> {
 }
 
 impl Point<'_> {
-    /// What a solve that ends here leaves.
-    pub fn ended(self, equations: &Equations, effort: Effort) -> Ended {
+    /// What a solve from a state that ends here leaves.
+    pub fn ended(self, equations: &Equations, from: Standing, effort: Effort) -> Ended {
         let forces = self.external.subtract_from(&equations.assembled.residual);
+        let Discretization { mesh, loads, .. } = equations.discretization;
         Ended {
             reactions: self.placement.reactions(&forces),
             turns: self.placement.turns(),
+            strokes: loads.strokes(mesh, from.displacement, &self.displacement),
             displacement: self.displacement,
-            forces: self.external.forces,
             effort,
         }
     }

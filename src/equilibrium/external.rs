@@ -138,10 +138,3 @@ pub(super) fn subtract(internal: &[[f64; 3]], external: &[[f64; 3]]) -> Vec<[f64
     }
     internal.iter().zip(external).map(|(g, f)| [0, 1, 2].map(|c| g[c] - f[c])).collect()
 }
-
-/// Work of forces that change from `before` to `after` along a straight motion (trapezoidal rule); 0 where both are
-/// empty.
-pub(super) fn work(before: &[[f64; 3]], after: &[[f64; 3]], from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
-    let each = before.iter().zip(after).zip(from.iter().zip(to));
-    each.map(|((f0, f1), (u0, u1))| (0..3).map(|c| 0.5 * (f0[c] + f1[c]) * (u1[c] - u0[c])).sum::<f64>()).sum()
-}

@@ -9,8 +9,10 @@
 use std::sync::Arc;
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
-use crate::equilibrium::descent::{Descent, Ended, largest, length, product};
-use crate::equilibrium::external::{External, subtract, work};
+use crate::equilibrium::descent::{Descent, Ended, largest, product};
+use crate::equilibrium::external::{External, subtract};
+use crate::equilibrium::force_scale::ForceScale;
+use crate::equilibrium::ledger::Before;
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
 use crate::equilibrium::sparse::NegativePivots;
 use crate::equilibrium::stability::SoftMode;
@@ -36,9 +38,8 @@ pub struct Iterate {
     pub energy: f64,
     /// |Tᵀ (g − f)|, N.
     pub residual: f64,
-    /// |g| of internal forces on all control points, or |f| of the loads if that is larger, N: at equilibrium, reactions
-    /// and loads.
-    pub reactions: f64,
+    /// What the residual is held against.
+    pub forces: ForceScale,
     /// Negative pivots of the last factored stiffness.
     pub negative_pivots: usize,
     /// Step length along the last direction; 1 is a full Newton step.
@@ -47,31 +48,44 @@ pub struct Iterate {
     pub shift: f64,
     /// Control point with the largest residual.
     pub worst_point: usize,
+    /// Of a descent: energy of the model that has left the balance since its start, if reactions stay what they were, N·mm.
+    pub released: f64,
 }
 
 impl Iterate {
     /// At a point with this gradient on the free unknowns, whose stiffness is not factored yet.
     pub(super) fn at(
         unknowns: &Unknowns,
-        assembled: &Assembled,
-        external: &External,
+        energy: f64,
+        forces: ForceScale,
         gradient: &[f64],
         effort: Effort,
     ) -> Result<Self, SolveError> {
         let last = Self {
             iteration: effort.iterations,
-            energy: assembled.energy,
+            energy,
             residual: gradient.iter().map(|g| g * g).sum::<f64>().sqrt(),
-            reactions: length(&assembled.residual).max(length(&external.forces)),
+            forces,
             negative_pivots: 0,
             step_length: 1.0,
             shift: 0.0,
             worst_point: unknowns.home_of(largest(gradient)),
+            released: 0.0,
         };
         match last.energy.is_finite() && last.residual.is_finite() {
             true => Ok(last),
             false => Err(SolveError::NotANumber { last, effort }),
         }
+    }
+
+    /// |residual| over the forces that it is held against.
+    pub fn relative_residual(&self) -> f64 {
+        self.forces.share(self.residual)
+    }
+
+    /// Whether forces balance to this tolerance.
+    pub fn is_equilibrium(&self, tolerance: f64) -> bool {
+        self.forces.balances(self.residual, tolerance)
     }
 }
 
@@ -84,14 +98,17 @@ pub struct Solved {
     pub turns: Vec<[f64; 3]>,
     /// Strain energy of the whole shell, N·mm.
     pub energy: f64,
-    /// Work of loads and given motions on the whole shell since the start of the solve, N·mm (trapezoidal rule).
+    /// Work of loads and given motions on the whole shell since the start of the solve, N·mm: reactions, and factors of the
+    /// actions, by their means before and after; strokes of the actions along the way that the solve took.
     pub work: f64,
     /// Turning ends: moment at each end of the whole shell, dΠ/dθ / 2, N·mm. Otherwise 0.
     pub moment: f64,
     /// Negative pivots of the stiffness there; 0 where the equilibrium is stable.
     pub negative_pivots: usize,
-    /// |residual| / |reactions|.
+    /// |residual| over the forces that it is held against.
     pub residual: f64,
+    /// The largest force met so far, N; see [`ForceScale::met`].
+    pub largest_force: f64,
     /// What it took.
     pub effort: Effort,
 }
@@ -114,12 +131,19 @@ pub struct Standing<'s> {
     pub turns: &'s [[f64; 3]],
     /// The scene's parameter.
     pub parameter: f64,
+    /// The largest force met so far, N; see [`ForceScale::met`].
+    pub largest_force: f64,
 }
 
 impl<'s> Standing<'s> {
     /// A state.
     pub fn of(state: &'s State) -> Self {
-        Self { displacement: &state.displacement, turns: &state.turns, parameter: state.parameter }
+        Self {
+            displacement: &state.displacement,
+            turns: &state.turns,
+            parameter: state.parameter,
+            largest_force: state.largest_force_n,
+        }
     }
 }
 
@@ -229,25 +253,6 @@ pub struct Equilibrium<'a> {
 /// Watches iterates; `true` stops the solve.
 pub type Observer<'o> = &'o mut dyn FnMut(&Iterate) -> bool;
 
-/// Forces at the start of a solve, for the work done on the way.
-pub(super) struct Before {
-    reactions: Vec<f64>,
-    loads: Vec<[f64; 3]>,
-}
-
-impl Before {
-    /// At a state.
-    pub fn at(work: &mut Workspace, from: Standing) -> Self {
-        let forces = work.forces(from);
-        let Discretization { unknowns, .. } = &work.discretization;
-        let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        Self {
-            reactions: unknowns.place(&free, from.parameter).reactions(&forces),
-            loads: External::forces_at(&work.discretization, from.displacement, from.parameter),
-        }
-    }
-}
-
 impl<'a> Equilibrium<'a> {
     /// Works in these buffers.
     pub fn new(scene: &'a Scene, work: &'a mut Workspace) -> Self {
@@ -275,8 +280,7 @@ impl<'a> Equilibrium<'a> {
     pub fn relax(&mut self, from: Standing, observer: Observer) -> Result<Solved, SolveError> {
         let discretization = &self.work.discretization;
         let start = discretization.unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        let loads = External::forces_at(discretization, from.displacement, from.parameter);
-        let before = Before { reactions: vec![0.0; discretization.unknowns.given_count()], loads };
+        let before = Before::unbalanced(self.work, from);
         self.minimize(start, None, from, from.parameter, &before, observer)
     }
 
@@ -313,7 +317,7 @@ impl<'a> Equilibrium<'a> {
         let placement = unknowns.place(&old, from.parameter);
         let loads = External::forces_at(discretization, from.displacement, from.parameter);
         let forces = subtract(&assembled.residual, &loads);
-        let before = Before { reactions: placement.reactions(&forces), loads };
+        let before = Before::with(&placement, &forces, from, assembled.energy);
         if negative > 0 {
             return (old, None, before);
         }
@@ -321,7 +325,7 @@ impl<'a> Equilibrium<'a> {
         let motion: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| m1 - m0).collect();
         let stiff = assembled.multiply(discretization, &placement.velocity(&[], &motion));
         let more = External::forces_at(discretization, from.displacement, to);
-        let change = subtract(&subtract(&stiff, &more), &negated(&before.loads));
+        let change = subtract(&subtract(&stiff, &more), &negated(&loads));
         let mut step = placement.restrict(&change);
         for (sum, turned) in step.iter_mut().zip(placement.restrict_rate(&forces, &motion)) {
             *sum = -(*sum + turned);
@@ -364,8 +368,8 @@ impl<'a> Equilibrium<'a> {
     fn rise(&self, one: &[f64], other: &[f64], parameter: f64) -> (f64, f64) {
         let discretization = &self.work.discretization;
         let [one, other] = [one, other].map(|free| discretization.unknowns.place(free, parameter).displacement());
-        let loads = [&one, &other].map(|u| External::forces_at(discretization, u, parameter));
-        let done = work(&loads[1], &loads[0], &other, &one);
+        let strokes = discretization.loads.strokes(&discretization.mesh, &other, &one);
+        let done = discretization.loads.work(&strokes, parameter);
         let energy = self.work.energy(&other);
         (self.work.energy(&one) - done - energy, energy)
     }
@@ -383,19 +387,20 @@ impl<'a> Equilibrium<'a> {
         let (tolerance, max_iterations) = (self.scene.solver.tolerance, self.scene.solver.max_iterations);
         self.work.factored_at = None;
         let is_bent = bent.is_some();
-        let mut descent = Descent::new(self.work, parameter, bent.unwrap_or_else(|| unknowns.clone()));
+        let mut descent = Descent::new(self.work, from, parameter, bent.unwrap_or_else(|| unknowns.clone()));
         let mut first = descent.iterate();
         if is_bent && !first.as_ref().is_ok_and(|first| first.negative_pivots == 0) {
-            descent.start_at(unknowns);
+            descent.start_at(from, unknowns);
             first = descent.iterate();
         }
         let mut first = Some(first);
         let last = loop {
-            let last = first.take().unwrap_or_else(|| descent.iterate())?;
+            let mut last = first.take().unwrap_or_else(|| descent.iterate())?;
+            last.released = descent.released_since(before);
             if observer(&last) {
                 return Err(SolveError::Stopped { last, effort: descent.effort });
             }
-            if last.residual <= tolerance * last.reactions {
+            if last.is_equilibrium(tolerance) {
                 break last;
             }
             if last.iteration >= max_iterations {
@@ -404,7 +409,7 @@ impl<'a> Equilibrium<'a> {
             descent.step(&last)?;
         };
         let ended = descent.finish();
-        Ok(self.work.solved(self.scene, from, parameter, before, ended, &last))
+        Ok(self.work.solved(self.scene, parameter, before, ended, &last))
     }
 }
 
@@ -413,19 +418,15 @@ impl Workspace {
     pub(super) fn solved(
         &mut self,
         scene: &Scene,
-        from: Standing,
         parameter: f64,
         before: &Before,
         ended: Ended,
         last: &Iterate,
     ) -> Solved {
-        let at = Standing { displacement: &ended.displacement, turns: &ended.turns, parameter };
+        let largest_force = last.forces.met_here();
+        let at = Standing { displacement: &ended.displacement, turns: &ended.turns, parameter, largest_force };
         self.factored_at = Some(Factored::new(at, last.negative_pivots));
         let unknowns = &self.discretization.unknowns;
-        let (given, target) = (unknowns.given_at(from.parameter), unknowns.given_at(parameter));
-        let moved: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| 0.5 * (m1 - m0)).collect();
-        let of_motions = product(&before.reactions, &moved) + product(&ended.reactions, &moved);
-        let of_loads = work(&before.loads, &ended.forces, from.displacement, &ended.displacement);
         let parts = scene.symmetry.copies() as f64;
         let moment = match scene.end_rotation() {
             // All given motions are proportional to θ in degrees.
@@ -434,10 +435,11 @@ impl Workspace {
         };
         Solved {
             energy: parts * last.energy,
-            work: parts * (of_motions + of_loads),
+            work: parts * before.work(&self.discretization, parameter, &ended.reactions, &ended.strokes),
             moment,
             negative_pivots: last.negative_pivots,
-            residual: if last.reactions > 0.0 { last.residual / last.reactions } else { 0.0 },
+            residual: last.relative_residual(),
+            largest_force,
             effort: ended.effort,
             displacement: ended.displacement,
             turns: ended.turns,

@@ -8,7 +8,7 @@ use crate::model::ModelError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveError {
     /// The iterations ran out.
-    #[error("no equilibrium after {} iterations: residual {:.3e} of the reactions", last.iteration, last.residual / last.reactions)]
+    #[error("no equilibrium after {} iterations: residual {:.3e} of the forces", last.iteration, last.relative_residual())]
     TooManyIterations {
         /// The last iterate.
         last: Iterate,
@@ -16,7 +16,7 @@ pub enum SolveError {
         effort: Effort,
     },
     /// No step along the descent direction lowers the energy.
-    #[error("the energy does not fall along the search direction (iteration {}, residual {:.3e} of the reactions)", last.iteration, last.residual / last.reactions)]
+    #[error("the energy does not fall along the search direction (iteration {}, residual {:.3e} of the forces)", last.iteration, last.relative_residual())]
     LineSearchFailed {
         /// The last iterate.
         last: Iterate,

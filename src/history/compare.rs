@@ -39,6 +39,7 @@ pub fn compare(a: &State, b: &State) -> Comparison {
         ("rotation_deg", a.parameter, b.parameter),
         ("moment_n_mm", a.moment_n_mm, b.moment_n_mm),
         ("strain_energy_n_mm", a.strain_energy_n_mm, b.strain_energy_n_mm),
+        ("largest_force_n", a.largest_force_n, b.largest_force_n),
     ]
     .into_iter()
     .filter_map(|(field, x, y)| number(field, x, y))
@@ -48,6 +49,10 @@ pub fn compare(a: &State, b: &State) -> Comparison {
     if let (Some(p), Some(q)) = (&a.previous, &b.previous) {
         differences.extend(worst("displacement before", &a.mesh, &p.displacement, &q.displacement));
         differences.extend(number("rotation before", p.parameter, q.parameter));
+    }
+    if let (Some(p), Some(q)) = (&a.refinement, &b.refinement) {
+        differences.extend(number("energy that refining changed", p.changed_n_mm, q.changed_n_mm));
+        differences.extend(number("energy of the last ripple", p.ripple_n_mm, q.ripple_n_mm));
     }
     if let (Some(p), Some(q)) = (&a.path, &b.path) {
         differences.extend(worst("direction of the path", &a.mesh, &p.heading, &q.heading));
@@ -95,6 +100,10 @@ fn structure(a: &State, b: &State) -> Option<String> {
     }
     if a.previous.is_some() != b.previous.is_some() {
         return Some("only one of them remembers the equilibrium before".to_string());
+    }
+    let growth = |state: &State| state.refinement.map(|last| (last.growth, last.expected_n_mm.is_some()));
+    if growth(a) != growth(b) {
+        return Some("they were refined otherwise before".to_string());
     }
     if a.control != b.control {
         let what = |state: &State| {

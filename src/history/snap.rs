@@ -7,7 +7,7 @@ use crate::equilibrium::{
 use crate::history::bisection::LoadBisection;
 use crate::history::stability::mode_of;
 use crate::journal::{Log, StateError};
-use crate::pipeline::{CriticalPoint, Outcome, Parameter, is_jump};
+use crate::pipeline::{CriticalPoint, Outcome, Parameter, is_jump, known_release};
 use crate::scene::Scene;
 use crate::state::State;
 
@@ -18,8 +18,8 @@ pub struct SnapReport {
     pub bracket_deg: [f64; 2],
     /// Moment on both sides, N·mm.
     pub moment_n_mm: [f64; 2],
-    /// Strain energy released at the end of the bracket, N·mm.
-    pub energy_released_n_mm: f64,
+    /// Energy released at the end of the bracket, N·mm; `None` where it is not known.
+    pub energy_released_n_mm: Option<f64>,
     /// Negative pivots: in the last stable state, the most on the way through the jump, and after it.
     pub negative_pivots: [usize; 3],
     /// What the path passes there: limit point or bifurcation, and how many pivots change sign. `None` where the path was
@@ -142,7 +142,7 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
     Ok(SnapReport {
         bracket_deg,
         moment_n_mm: [stable.moment_n_mm, after.moment_n_mm],
-        energy_released_n_mm: stable.strain_energy_n_mm + work_done - after.strain_energy_n_mm,
+        energy_released_n_mm: known_release(stable.strain_energy_n_mm + work_done - after.strain_energy_n_mm),
         negative_pivots: [stable.negative_pivots as usize, most_negative, after.negative_pivots as usize],
         critical,
         mode,
@@ -238,6 +238,7 @@ impl Tries<'_> {
             parameter,
             moment_n_mm: solved.moment,
             strain_energy_n_mm: solved.energy,
+            largest_force_n: solved.largest_force,
             negative_pivots: solved.negative_pivots as u64,
             ..from.clone()
         };

@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 use super::format::CHUNK_BYTES_LIMIT;
 use super::soundness::{Flaw, check_mesh, check_state};
 use crate::scene::Stage;
-use crate::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Rejection, State, StepControl};
+use crate::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State, StepControl};
 
 /// The newest version that is written, in front of every state and mesh. A state is written in the oldest version that
 /// holds it.
-pub const CODEC_VERSION: u8 = 5;
+pub const CODEC_VERSION: u8 = 6;
 
 /// Why bytes are not a state or a mesh that can be used.
 #[derive(Debug, thiserror::Error)]
@@ -157,6 +157,33 @@ struct StateV5<'a> {
     after: StateV3<'a>,
     previous_parameter: Option<f64>,
     doublings: u32,
+}
+
+/// Version 6: the largest force met, and what the last refinement changed. Every state of an equilibrium has the first.
+#[derive(Serialize, Deserialize)]
+struct StateV6<'a> {
+    after: StateV5<'a>,
+    largest_force_n: f64,
+    refinement: Option<RefinementV6>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct RefinementV6 {
+    changed_n_mm: f64,
+    growth: f64,
+    expected_n_mm: Option<f64>,
+    ripple_n_mm: f64,
+}
+
+impl RefinementV6 {
+    fn of(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }: Refinement) -> Self {
+        Self { changed_n_mm, growth, expected_n_mm, ripple_n_mm }
+    }
+
+    fn into_memory(self) -> Refinement {
+        let Self { changed_n_mm, growth, expected_n_mm, ripple_n_mm } = self;
+        Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -323,8 +350,13 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
     };
     let after = StateV3 { base, turns: Cow::from(&state.turns), path: state.path.as_ref().map(PathV3::of) };
     let previous_parameter = state.previous.as_ref().map(|previous| previous.parameter);
-    let state = if state.control.halvings < 0 {
-        encode(5, &StateV5 { after, previous_parameter, doublings: state.control.halvings.unsigned_abs() })?
+    let doublings = state.control.halvings.min(0).unsigned_abs();
+    let state = if state.largest_force_n != 0.0 || state.refinement.is_some() {
+        let refinement = state.refinement.map(RefinementV6::of);
+        let after = StateV5 { after, previous_parameter, doublings };
+        encode(6, &StateV6 { after, largest_force_n: state.largest_force_n, refinement })?
+    } else if doublings > 0 {
+        encode(5, &StateV5 { after, previous_parameter, doublings })?
     } else if let Some(previous_parameter) = previous_parameter {
         encode(4, &StateV4 { after, previous_parameter })?
     } else if state.path.is_some() || state.stage == Some(Stage::SwitchBranch) {
@@ -349,21 +381,24 @@ pub fn decode_state<'a>(
     mesh_hash: Hash,
     expected: Hash,
 ) -> Result<State, CodecError> {
-    let after = |after| StateV5 { after, previous_parameter: None, doublings: 0 };
+    let fifth = |after| StateV6 { after, largest_force_n: 0.0, refinement: None };
+    let third = |after| fifth(StateV5 { after, previous_parameter: None, doublings: 0 });
     let stored = match bytes.first() {
-        Some(5) => decode(5, bytes)?,
+        Some(6) => decode(6, bytes)?,
+        Some(5) => fifth(decode(5, bytes)?),
         Some(4) => {
             let StateV4 { after, previous_parameter } = decode(4, bytes)?;
-            StateV5 { after, previous_parameter: Some(previous_parameter), doublings: 0 }
+            fifth(StateV5 { after, previous_parameter: Some(previous_parameter), doublings: 0 })
         }
-        Some(3) => after(decode(3, bytes)?),
+        Some(3) => third(decode(3, bytes)?),
         Some(2) => {
             let StateV2 { base, turns } = decode(2, bytes)?;
-            after(StateV3 { base, turns, path: None })
+            third(StateV3 { base, turns, path: None })
         }
-        _ => after(StateV3 { base: decode(1, bytes)?, turns: Cow::default(), path: None }),
+        _ => third(StateV3 { base: decode(1, bytes)?, turns: Cow::default(), path: None }),
     };
-    let StateV5 { after: StateV3 { base: stored, turns, path }, previous_parameter, doublings } = stored;
+    let StateV6 { after: StateV5 { after, previous_parameter, doublings }, largest_force_n, refinement } = stored;
+    let StateV3 { base: stored, turns, path } = after;
     let found = Hash::from_bytes(stored.mesh);
     if found != mesh_hash {
         return Err(CodecError::OtherMesh { expected: mesh_hash, found });
@@ -407,6 +442,8 @@ pub fn decode_state<'a>(
         },
         path: path.map(PathV3::into_memory),
         previous,
+        largest_force_n,
+        refinement: refinement.map(RefinementV6::into_memory),
     };
     let found = state.hash();
     if found != expected {

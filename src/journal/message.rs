@@ -203,24 +203,25 @@ impl ReportMessage {
     }
 
     /// Every number of the message that is not an integer, by name.
-    fn numbers(&mut self) -> [(&'static str, &mut f64); 10] {
+    fn numbers(&mut self) -> Vec<(&'static str, &mut f64)> {
         let [parameter, attempted] = match self.report.driven_by {
             Parameter::Rotation => ["rotation_deg", "attempted_rotation_deg"],
             Parameter::LoadFactor => ["load_factor", "attempted_load_factor"],
         };
         let [along_length, along_arc] = &mut self.report.largest_indicator;
-        [
+        let released = self.report.energy_released_n_mm.as_mut().map(|energy| ("energy_released_n_mm", energy));
+        let numbers = [
             (parameter, &mut self.report.parameter),
             (attempted, &mut self.report.attempted_parameter),
             ("moment_n_mm", &mut self.report.moment_n_mm),
             ("strain_energy_n_mm", &mut self.report.strain_energy_n_mm),
             ("work_n_mm", &mut self.report.work_n_mm),
             ("residual", &mut self.report.residual),
-            ("energy_released_n_mm", &mut self.report.energy_released_n_mm),
             ("largest_indicator[0]", along_length),
             ("largest_indicator[1]", along_arc),
             ("wall_s", &mut self.wall_s),
-        ]
+        ];
+        numbers.into_iter().chain(released).collect()
     }
 
     /// The message as JSON.

@@ -1,7 +1,7 @@
 //! What a mesh and a state must hold so that no later code can stumble over them, whoever wrote them.
 
 use crate::spline::DEGREES;
-use crate::state::{Mesh, State};
+use crate::state::{Mesh, Refinement, State};
 
 /// What is wrong with a mesh or a state.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -169,6 +169,10 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
     finite("moment", [state.moment_n_mm])?;
     finite("turn", state.turns.iter().flatten().copied())?;
     finite("strain energy", [state.strain_energy_n_mm])?;
+    finite("largest force", [state.largest_force_n])?;
+    if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = state.refinement {
+        finite("change on refining", [changed_n_mm, growth, ripple_n_mm].into_iter().chain(expected_n_mm))?;
+    }
     if let Some(previous) = &state.previous {
         if previous.displacement.len() != expected {
             return Err(Flaw::Length { what: "displacements before", expected, found: previous.displacement.len() });

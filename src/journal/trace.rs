@@ -28,7 +28,7 @@ pub struct TraceRow {
     pub energy_n_mm: f64,
     /// |residual|, N.
     pub residual_n: f64,
-    /// |residual| / |reactions|.
+    /// |residual| over the forces that it is held against.
     pub relative_residual: f64,
     /// Length of the last step along its direction; 1 is a full Newton step.
     pub step_length: f64,

@@ -28,28 +28,28 @@ use crate::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};
 /// The actions of a scene on a mesh.
 #[derive(Debug, Default)]
 pub struct Loads {
-    dead: Vec<Dead>,
-    following: Vec<Following>,
+    pub(super) dead: Vec<Dead>,
+    pub(super) following: Vec<Following>,
 }
 
 /// Forces that do not depend on the displacement.
 #[derive(Debug)]
-struct Dead {
-    history: History,
+pub(super) struct Dead {
+    pub history: History,
     /// (control point, force at factor 1).
-    forces: Vec<(usize, [f64; 3])>,
+    pub forces: Vec<(usize, [f64; 3])>,
 }
 
 /// Forces that turn with the shell.
 #[derive(Debug)]
-struct Following {
-    history: History,
-    kind: Kind,
-    points: Vec<LoadPoint>,
+pub(super) struct Following {
+    pub history: History,
+    pub kind: Kind,
+    pub points: Vec<LoadPoint>,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+pub(super) enum Kind {
     /// Along a₁ × a₂.
     Pressure,
     /// About a₁ or a₂ (0 or 1).
@@ -58,15 +58,15 @@ enum Kind {
 
 /// A quadrature point of a load.
 #[derive(Debug)]
-struct LoadPoint {
+pub(super) struct LoadPoint {
     /// First control indices each way.
     first: [usize; 2],
     /// Values, derivatives ,1 and ,2 of the functions.
-    functions: [Vec<f64>; 3],
+    pub functions: [Vec<f64>; 3],
     /// Where it is.
     site: Site,
     /// Load times quadrature weight at factor 1.
-    weight: f64,
+    pub weight: f64,
 }
 
 /// A block of a tangent: between functions a and b of an element.
@@ -324,7 +324,7 @@ impl LoadPoint {
         }
     }
 
-    fn controls(&self, mesh: &Mesh) -> impl Iterator<Item = usize> + use<> {
+    pub fn controls(&self, mesh: &Mesh) -> impl Iterator<Item = usize> + use<> {
         let [_, n2] = mesh.control_counts();
         let columns = mesh.degree[1] + 1;
         let [first1, first2] = self.first;
@@ -332,7 +332,7 @@ impl LoadPoint {
     }
 
     /// a₁, a₂.
-    fn deformed(&self, mesh: &Mesh, displacement: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    pub fn deformed(&self, mesh: &Mesh, displacement: &[[f64; 3]]) -> [[f64; 3]; 2] {
         let mut tangents = self.site.tangents;
         for (a, control) in self.controls(mesh).enumerate() {
             for k in 0..2 {

@@ -19,6 +19,7 @@ mod rigid_support;
 mod rotation;
 mod shape;
 mod soundness;
+mod strokes;
 mod subdivision;
 mod supports;
 mod symmetric_line;

@@ -1,10 +1,15 @@
 //! Solve and re-equilibrate where the load is prescribed, and the way from an unstable equilibrium to a stable one.
 
-use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
+use crate::equilibrium::{
+    Continuation, Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Standing, Workspace, soft_mode,
+};
+use crate::pipeline::ripple::{Watch, is_ripple};
 use crate::pipeline::stages::{out_of_order, reject, settle};
-use crate::pipeline::step_control::{Attempt, energy_released, is_jump, is_jump_on_refinement, next_attempt};
-use crate::pipeline::{Outcome, Parameter, Report, StageError, Stages};
-use crate::scene::Stage;
+use crate::pipeline::step_control::{
+    Attempt, energy_released, is_jump, is_jump_on_refinement, known_release, next_attempt,
+};
+use crate::pipeline::{CriticalPoint, Outcome, Parameter, Report, StageError, Stages};
+use crate::scene::{Scene, Stage};
 use crate::shell::{norm, sub};
 use crate::state::{Previous, State};
 
@@ -20,14 +25,34 @@ const LEFT: f64 = 4.0;
 const MOST_MODES: usize = 8;
 
 /// Whether the shell moved much farther than it did before for as much load: it has left its path for another one, though
-/// next to a bifurcation that takes little energy. Known only where a jump was being located, by the equilibrium before.
+/// next to a bifurcation that takes little energy. Known by the equilibrium before.
 fn leaves_path(state: &State, to: f64, solved: &Solved) -> bool {
-    let (Some(_), Some(previous)) = (state.control.jump_seen_at_deg, &state.previous) else { return false };
+    let Some(previous) = &state.previous else { return false };
     let length = |from: &[[f64; 3]], to: &[[f64; 3]]| {
         from.iter().zip(to).map(|(u, v)| norm(sub(*v, *u)).powi(2)).sum::<f64>().sqrt()
     };
     let rate = length(&previous.displacement, &state.displacement) / (state.parameter - previous.parameter);
     length(&state.displacement, &solved.displacement) > LEFT * rate * (to - state.parameter)
+}
+
+/// Equilibrium at another load. A descent leaves an unstable branch; a run that stands on one follows it by Newton's method, as
+/// far as that goes.
+fn reach(
+    scene: &Scene,
+    work: &mut Workspace,
+    state: &State,
+    target: f64,
+    observer: Observer,
+) -> Result<Solved, SolveError> {
+    let from = Standing::of(state);
+    if state.negative_pivots > 0 {
+        match Continuation::new(scene, work).begin(from, target, observer) {
+            Ok(point) => return Ok(point.solved),
+            Err(stopped @ SolveError::Stopped { .. }) => return Err(stopped),
+            Err(_) => {}
+        }
+    }
+    Equilibrium::new(scene, work).after(state.previous.as_ref()).advance(from, target, observer)
 }
 
 impl Stages {
@@ -41,28 +66,22 @@ impl Stages {
         let step = state.step + 1;
         let attempt = next_attempt(&self.scene, state);
         let (scene, work) = self.workspace(&state.mesh, step, Stage::Solve)?;
-        // A run that stands on an unstable branch (and says so) follows it; what ends an attempt is a further loss of
-        // stability.
-        let mut unstable_on_the_way = false;
-        let mut watch = |iterate: &Iterate| {
+        let mut watch = Watch::new(state, scene.symmetry.copies() as f64);
+        let solved = reach(scene, work, state, attempt.target_deg, &mut |iterate| {
             observer(iterate);
-            let unstable = iterate.negative_pivots as u64 > state.negative_pivots;
-            unstable_on_the_way |= unstable;
-            !attempt.may_jump && unstable
-        };
-        let solved = Equilibrium::new(scene, work).after(state.previous.as_ref()).advance(
-            Standing::of(state),
-            attempt.target_deg,
-            &mut watch,
-        );
+            watch.sees_jump(iterate) && !attempt.may_jump
+        });
         let mut report = self.report(state, step);
         report.attempted_parameter = attempt.target_deg;
         match solved {
             Ok(solved) => {
                 let released = energy_released(state, &solved);
-                let left = unstable_on_the_way && leaves_path(state, attempt.target_deg, &solved);
+                let small = watch.unstable && solved.negative_pivots == 0 && is_ripple(state, released);
+                let bracketed = watch.unstable && state.control.jump_seen_at_deg.is_some();
+                let left = (small || bracketed) && leaves_path(state, attempt.target_deg, &solved);
                 let jumped = left || is_jump(released, state.strain_energy_n_mm, solved.energy);
-                if jumped && !attempt.may_jump {
+                let rippled = small && !jumped;
+                if (jumped || watch.unstable && !rippled) && !attempt.may_jump {
                     report.record_effort(solved.effort);
                     let control = attempt.control_after_jump(&state.control);
                     return Ok(reject(state, report, Outcome::RejectedJump, control));
@@ -73,13 +92,18 @@ impl Stages {
                 next.control = attempt.control_after_success(&self.scene, &state.control, solved.effort.iterations);
                 next.path = None;
                 // The path bends on from an equilibrium before only where it is one path, and where displacements say all.
-                let onwards = !jumped && state.negative_pivots == 0 && next.turns.is_empty();
+                let onwards = !jumped && !rippled && state.negative_pivots == 0 && next.turns.is_empty();
                 next.previous =
                     onwards.then(|| Previous { displacement: state.displacement.clone(), parameter: state.parameter });
                 report.record(&next, &solved);
+                if let Some(refinement) = next.refinement.as_mut().filter(|_| jumped || rippled) {
+                    refinement.ripple_n_mm = if rippled { released.max(0.0) } else { 0.0 };
+                }
                 report.probes = self.read_probes(&next)?;
                 report.jumped = jumped;
-                report.energy_released_n_mm = if jumped { released } else { 0.0 };
+                report.rippled = rippled;
+                report.critical_point = CriticalPoint::passed_by_load(state, &next).filter(|_| !jumped && !rippled);
+                report.energy_released_n_mm = if jumped || rippled { known_release(released) } else { Some(0.0) };
                 Ok((next, report))
             }
             Err(cause) => {
@@ -137,10 +161,13 @@ impl Stages {
         report.record(&next, &solved);
         report.probes = self.read_probes(&next)?;
         // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
-        report.jumped = unstable_on_the_way && is_jump_on_refinement(released, state.strain_energy_n_mm);
+        report.jumped = unstable_on_the_way && is_jump_on_refinement(state, released);
         if report.jumped {
-            report.energy_released_n_mm = released;
+            report.energy_released_n_mm = known_release(released);
             next.previous = None;
+            next.refinement = None;
+        } else if let Some(refinement) = &mut next.refinement {
+            refinement.changed_n_mm += released.abs();
         }
         Ok((next, report))
     }
@@ -197,7 +224,7 @@ impl Stages {
                 report.record(&next, &Solved { effort, work: work_done, ..left });
                 report.probes = self.read_probes(&next)?;
                 report.jumped = is_jump(released, state.strain_energy_n_mm, next.strain_energy_n_mm);
-                report.energy_released_n_mm = released;
+                report.energy_released_n_mm = known_release(released);
                 return Ok((next, report));
             }
         }

@@ -55,6 +55,13 @@ impl CriticalPoint {
         (limit_point || pivots_changed != 0).then_some(Self { limit_point, pivots_changed })
     }
 
+    /// Between two equilibria at growing loads: where the shell lost stability and did not jump, it stayed on a path that others
+    /// cross.
+    pub(super) fn passed_by_load(before: &State, after: &State) -> Option<Self> {
+        let passed = Self::between((1.0, before.negative_pivots), (1.0, after.negative_pivots));
+        passed.filter(|critical| critical.pivots_changed > 0)
+    }
+
     /// What it is.
     pub fn name(&self) -> &'static str {
         match (self.limit_point, self.is_bifurcation()) {

@@ -27,7 +27,8 @@ pub struct Report {
     pub moment_n_mm: f64,
     /// Strain energy of the whole shell, N·mm.
     pub strain_energy_n_mm: f64,
-    /// Work of loads and given motions in this stage (trapezoidal rule), N·mm.
+    /// Work of loads and given motions in this stage (forces by their means before and after, strokes of the loads along the
+    /// way of the solve), N·mm.
     pub work_n_mm: f64,
     /// Elements (along u, along v) of the model.
     pub elements: [usize; 2],
@@ -39,12 +40,15 @@ pub struct Report {
     pub factorizations: usize,
     /// Negative pivots of the tangent stiffness at the state; 0 where it is a stable equilibrium.
     pub negative_pivots: u64,
-    /// |residual| / |reactions| at the end of the stage.
+    /// |residual| at the end of the stage over the forces that it is held against; 0 where it is rounding.
     pub residual: f64,
-    /// Energy that a jump, or leaving an unstable equilibrium (switch-branch), released in this stage, N·mm; otherwise 0.
-    pub energy_released_n_mm: f64,
+    /// Energy that a jump, a ripple or leaving an unstable equilibrium (switch-branch) released in this stage, N·mm; 0 where
+    /// there was none, and `None` where it is not known.
+    pub energy_released_n_mm: Option<f64>,
     /// Whether the shell jumped in this stage.
     pub jumped: bool,
+    /// Whether it jumped by so little that refining the mesh changes more: a ripple of the mesh, taken where it was met.
+    pub rippled: bool,
     /// Knot spans marked each way (evaluate-indicators).
     pub marked: [usize; 2],
     /// Largest indicator max|κ|h each way (evaluate-indicators), dimensionless.
@@ -57,6 +61,14 @@ pub struct Report {
     pub critical_point: Option<CriticalPoint>,
     /// Where the mesh cannot show what the shell does.
     pub warnings: Vec<Warning>,
+}
+
+/// Energy that a jump released, in words, with so many decimals.
+pub fn released_in_words(energy_n_mm: Option<f64>, decimals: usize) -> String {
+    match energy_n_mm {
+        Some(energy) => format!("released {energy:.decimals$} N·mm"),
+        None => "energy released not known: the loads have no potential".into(),
+    }
 }
 
 /// What drives a run.
@@ -137,7 +149,8 @@ pub struct WrittenReport {
     attempted_load_factor: Option<f64>,
     /// Strain energy of the whole shell, N·mm.
     strain_energy_n_mm: f64,
-    /// Work of loads and given motions in this stage (trapezoidal rule), N·mm.
+    /// Work of loads and given motions in this stage (forces by their means before and after, strokes of the loads along the
+    /// way of the solve), N·mm.
     #[serde(default)]
     work_n_mm: f64,
     /// Elements (along u, along v) of the model.
@@ -150,12 +163,18 @@ pub struct WrittenReport {
     factorizations: usize,
     /// Negative pivots of the tangent stiffness at the state; 0 where it is a stable equilibrium.
     negative_pivots: u64,
-    /// |residual| / |reactions| at the end of the stage.
+    /// |residual| at the end of the stage over the forces that it is held against; 0 where it is rounding.
     residual: f64,
-    /// Energy that a jump released in this stage, N·mm; 0 where nothing jumped.
-    energy_released_n_mm: f64,
+    /// Energy that a jump released in this stage, N·mm; 0 where nothing jumped, and left out where it is not known, under
+    /// loads that have no potential.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
+    energy_released_n_mm: Option<f64>,
     /// Whether the shell jumped in this stage.
     jumped: bool,
+    /// Whether it jumped by so little that refining the mesh changes more: a ripple of the mesh, not located.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    rippled: bool,
     /// Knot spans marked each way (evaluate-indicators).
     marked: [usize; 2],
     /// Largest indicator max|κ|h each way (evaluate-indicators), dimensionless.
@@ -197,6 +216,7 @@ impl From<WrittenReport> for Report {
             residual: written.residual,
             energy_released_n_mm: written.energy_released_n_mm,
             jumped: written.jumped,
+            rippled: written.rippled,
             marked: written.marked,
             largest_indicator: written.largest_indicator,
             probes: written.probes,
@@ -230,6 +250,7 @@ impl From<Report> for WrittenReport {
             residual: report.residual,
             energy_released_n_mm: report.energy_released_n_mm,
             jumped: report.jumped,
+            rippled: report.rippled,
             marked: report.marked,
             largest_indicator: report.largest_indicator,
             probes: report.probes,

@@ -11,7 +11,7 @@ use crate::pipeline::probes::read_probes;
 use crate::pipeline::{Outcome, Parameter, Reading, Report, StageError, Warning};
 use crate::scene::{Scene, Stage};
 use crate::spline::Mesh;
-use crate::state::{PathMemory, Previous, State, StepControl};
+use crate::state::{PathMemory, Previous, Refinement, State, StepControl};
 
 /// Runs the stages of one scene; keeps buffers of the mesh in hand, which a new one would fill with the same bits.
 #[derive(Debug)]
@@ -146,10 +146,19 @@ impl Stages {
         report.unknowns =
             fits.map_err(|cause| StageError::Model { step: state.step, stage: Stage::RefineKnots, cause })?.count();
         report.strain_energy_n_mm = energy;
+        let [before, after] = [&*state.mesh, &finer].map(|mesh| mesh.element_counts().iter().product::<usize>() as f64);
+        // Along a path every critical point is located: nothing asks what refining changed.
+        let refinement = self.scene.continuation.is_none().then(|| Refinement {
+            changed_n_mm: (energy - state.strain_energy_n_mm).abs(),
+            growth: after / before - 1.0,
+            expected_n_mm: state.refinement.map(|last| last.of_all_n_mm()),
+            ripple_n_mm: state.refinement.map_or(0.0, |last| last.ripple_n_mm),
+        });
         let next = State {
             refined: Some(Arc::new(finer)),
             marked: Default::default(),
             strain_energy_n_mm: energy,
+            refinement,
             ..state.clone()
         };
         Ok((next, report))
@@ -206,8 +215,9 @@ impl Stages {
             factorizations: 0,
             negative_pivots: state.negative_pivots,
             residual: 0.0,
-            energy_released_n_mm: 0.0,
+            energy_released_n_mm: Some(0.0),
             jumped: false,
+            rippled: false,
             marked: [0, 0],
             largest_indicator: [0.0; 2],
             path_length_mm: state.path.as_ref().map(|path| path.travelled_mm),
@@ -220,7 +230,7 @@ impl Stages {
 impl Report {
     pub(super) fn record_failure(&mut self, cause: &SolveError) {
         self.record_effort(cause.effort());
-        self.residual = cause.last().map_or(f64::NAN, |last| last.residual / last.reactions);
+        self.residual = cause.last().map_or(f64::NAN, |last| last.relative_residual());
     }
 
     pub(super) fn record_effort(&mut self, effort: Effort) {
@@ -248,6 +258,7 @@ pub(super) fn settle(state: &State, solved: &Solved) -> State {
         marked: Default::default(),
         moment_n_mm: solved.moment,
         strain_energy_n_mm: solved.energy,
+        largest_force_n: solved.largest_force,
         negative_pivots: solved.negative_pivots as u64,
         ..state.clone()
     }

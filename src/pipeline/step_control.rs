@@ -159,10 +159,15 @@ impl Attempt {
     }
 }
 
-/// Work of loads and given motions (trapezoidal rule) from a state to an equilibrium that did not go into strain energy,
-/// N·mm.
+/// Work of loads and given motions from a state to an equilibrium that did not go into strain energy, N·mm.
 pub fn energy_released(state: &State, solved: &Solved) -> f64 {
     state.strain_energy_n_mm + solved.work - solved.energy
+}
+
+/// Energy that left the balance, where it can be right: what a shell releases is never negative, so that what is comes from
+/// loads whose work depends on a way that the solve did not take.
+pub fn known_release(released: f64) -> Option<f64> {
+    (released >= 0.0).then_some(released)
 }
 
 /// Whether energy that left the balance says that the shell jumped.
@@ -170,9 +175,12 @@ pub fn is_jump(released: f64, before: f64, after: f64) -> bool {
     released.abs() > JUMP_SHARE * before.max(after)
 }
 
-/// The same for energy that re-equilibrating on a finer mesh took out.
-pub fn is_jump_on_refinement(released: f64, before: f64) -> bool {
-    released > REFINEMENT_JUMP_SHARE * before
+/// The same for energy that re-equilibrating on a finer mesh took out: more than any mesh does, or than this one was expected
+/// to.
+pub fn is_jump_on_refinement(state: &State, released: f64) -> bool {
+    let share = |expected: f64| expected.max(JUMP_SHARE * state.strain_energy_n_mm);
+    let expected = state.refinement.and_then(|refinement| refinement.expected_n_mm).map(share);
+    released > expected.unwrap_or(f64::INFINITY).min(REFINEMENT_JUMP_SHARE * state.strain_energy_n_mm)
 }
 
 #[cfg(test)]

@@ -75,7 +75,7 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     let mesh = Arc::new(starting_mesh(scene)?);
     let mut work = Workspace::new(scene, &mesh)?;
     let flat = vec![[0.0; 3]; mesh.control_points.len()];
-    let start = Standing { displacement: &flat, turns: &[], parameter: 0.0 };
+    let start = Standing { displacement: &flat, turns: &[], parameter: 0.0, largest_force: 0.0 };
     let target = ROTATION_DEG.min(scene.load.target());
     let solved = Equilibrium::new(scene, &mut work).advance(start, target, &mut |_| false)?;
     let unknowns = work.discretization().unknowns.count();
@@ -97,7 +97,8 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     let copy = copy_seconds(repeats, 1);
     let bytes_per_s = |threads: usize| 16.0 * COPY_LEN as f64 / copy_seconds(repeats, threads);
 
-    let deformed = Standing { displacement: &solved.displacement, turns: &solved.turns, parameter: target };
+    let deformed =
+        Standing { displacement: &solved.displacement, turns: &solved.turns, parameter: target, largest_force: 0.0 };
     let mut kernels = KernelRun::new(&mut work, deformed)?;
     let cost = kernels.cost();
     let sharing = threads.min(cost.factor_threads);

@@ -50,8 +50,8 @@ pub struct Snap {
     pub moment_before_n_mm: f64,
     /// Moment at the end of the load step that jumped, N·mm.
     pub moment_after_n_mm: f64,
-    /// Energy that the jump released, and any on finer meshes in the same load step, N·mm.
-    pub energy_released_n_mm: f64,
+    /// Energy that the jump released, and any on finer meshes in the same load step, N·mm; `None` where it is not known.
+    pub energy_released_n_mm: Option<f64>,
 }
 
 /// The moment–rotation curve: of every load step its last equilibrium, and where a step jumped after it had found one
@@ -96,7 +96,8 @@ pub fn snaps(records: &[Record]) -> Vec<Snap> {
         match snaps.last_mut().filter(|(step, _)| *step == report.step) {
             Some((_, snap)) => {
                 snap.moment_after_n_mm = report.moment_n_mm;
-                snap.energy_released_n_mm += report.energy_released_n_mm;
+                let more = snap.energy_released_n_mm.zip(report.energy_released_n_mm);
+                snap.energy_released_n_mm = more.map(|(before, now)| before + now);
             }
             None if report.jumped => {
                 let snap = Snap {

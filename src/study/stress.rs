@@ -44,7 +44,7 @@ pub struct StressRow {
     pub load_steps: usize,
     /// Newton iterations, those of solves that were turned down included.
     pub iterations: usize,
-    /// Largest |residual| / |reactions| of all equilibria.
+    /// Largest |residual| of all equilibria over the forces that it is held against.
     pub worst_residual: Option<f64>,
     /// Work less the change of strain energy over all smooth load steps, relative to the largest strain energy. Jumps
     /// release energy and refinement changes it at fixed load: neither is counted on either side.

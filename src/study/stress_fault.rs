@@ -43,9 +43,9 @@ pub enum StressFault {
         stage: Stage,
     },
     /// An equilibrium is none.
-    #[error("an equilibrium has a residual of {residual:.1e} of the reactions; solver.tolerance is {tolerance:e}")]
+    #[error("an equilibrium has a residual of {residual:.1e} of the forces; solver.tolerance is {tolerance:e}")]
     OutOfBalance {
-        /// |residual| / |reactions|.
+        /// |residual| over the forces that it is held against.
         residual: f64,
         /// The scene's tolerance.
         tolerance: f64,

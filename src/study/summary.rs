@@ -35,7 +35,11 @@ pub struct Summary {
     /// Limit points and bifurcations that the path passed, in order.
     pub passed: Vec<Passed>,
     /// Unstable equilibria that were left by switch-branch: parameter, and energy released, N·mm.
-    pub left: Vec<[f64; 2]>,
+    pub left: Vec<(f64, Option<f64>)>,
+    /// Ripples of the mesh: how many, and what they released in all, N·mm.
+    pub ripples: (usize, f64),
+    /// Whether loads follow the shell: what a jump released is then the integral of their work along the descent.
+    pub loads_follow: bool,
     /// Moment of the fold; `None` where the shell did not jump.
     pub fold: Option<FoldMean>,
     /// The mesh at the start and after every change.
@@ -120,6 +124,15 @@ pub struct EnergyBalance {
     pub largest_energy_n_mm: f64,
     /// Energy that refinement took out at fixed rotation: a coarse mesh stores too much, N·mm.
     pub taken_out_by_refinement_n_mm: f64,
+    /// Energy that ripples of the mesh released, N·mm.
+    pub released_in_ripples_n_mm: f64,
+}
+
+impl EnergyBalance {
+    /// Where the work has gone, N·mm.
+    pub fn accounted_n_mm(&self) -> f64 {
+        self.strain_energy_n_mm + self.taken_out_by_refinement_n_mm + self.released_in_ripples_n_mm
+    }
 }
 
 /// What the runs of one stage have cost.
@@ -165,10 +178,12 @@ impl Summary {
             left: records
                 .iter()
                 .filter(|record| record.report.stage == Stage::SwitchBranch)
-                .map(|record| [record.report.parameter, record.report.energy_released_n_mm])
+                .map(|record| (record.report.parameter, record.report.energy_released_n_mm))
                 .collect(),
             warnings: warnings(records),
             peak_in_doubt: before_jump_and_with_it(records).any(Warning::doubts_results),
+            ripples: ripples(records),
+            loads_follow: scene.actions.iter().any(|action| action.kind.follows()),
             meshes: mesh_changes(records),
             work: work(records),
             rejections: records.iter().filter(|record| record.report.outcome != Outcome::Done).count(),
@@ -225,6 +240,7 @@ fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
                     Parameter::LoadFactor => report.work_n_mm,
                 };
                 sum.parameter = report.parameter;
+                sum.released_in_ripples_n_mm += report.energy_released_n_mm.unwrap_or(0.0);
             }
             // Refining integrates the energy anew, and re-equilibrating lowers it: neither is work of the ends.
             Stage::RefineKnots | Stage::ReEquilibrate => {
@@ -237,6 +253,12 @@ fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
         sum.largest_energy_n_mm = sum.largest_energy_n_mm.max(report.strain_energy_n_mm);
     }
     (sum.work_n_mm != 0.0).then_some(sum)
+}
+
+/// How many ripples there were, and what they released.
+fn ripples(records: &[Record]) -> (usize, f64) {
+    let rippled = records.iter().filter(|record| record.report.rippled);
+    rippled.fold((0, 0.0), |(count, sum), record| (count + 1, sum + record.report.energy_released_n_mm.unwrap_or(0.0)))
 }
 
 /// dM/dθ at θ = 0: M/θ of up to three first points on one mesh, extrapolated by the polynomial through them.

@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use super::Summary;
 use super::TapeSpring;
 use super::summary::{FoldMean, MeshChange, PeakFound, Said};
-use crate::pipeline::{Parameter, Reading};
+use crate::pipeline::{Parameter, Reading, released_in_words};
 use crate::scene::Sense;
 use crate::units::{count, duration, reading, rounded, signed};
 
@@ -91,22 +91,23 @@ impl Summary {
         for snap in &self.snaps {
             writeln!(
                 f,
-                "  {:<17}  from {} to {}, released {:.3} N·mm",
+                "  {:<17}  from {} to {}, {}{}",
                 "snap",
                 self.at(snap.before_deg),
                 self.at(snap.after_deg),
-                snap.energy_released_n_mm
+                released_in_words(snap.energy_released_n_mm, 3),
+                if self.loads_follow && snap.energy_released_n_mm.is_some() { " along the descent" } else { "" }
             )?;
         }
         self.write_passed(f)?;
         let Some(balance) = self.balance else { return Ok(()) };
-        let stored = balance.strain_energy_n_mm + balance.taken_out_by_refinement_n_mm;
+        let stored = balance.accounted_n_mm();
         // Of the largest energy: a shell that is unloaded again stores none.
         let scale = balance.largest_energy_n_mm.max(stored.abs());
         let off = signed(100.0 * (balance.work_n_mm - stored) / scale, 2);
         writeln!(
             f,
-            "  {:<17}  {:>14} N·mm of loads and given motions (trapezoidal rule over the steps), strain energy {}: {off} %",
+            "  {:<17}  {:>14} N·mm of loads and given motions, strain energy {}: {off} %",
             "work",
             reading(balance.work_n_mm, 6),
             reading(stored, 6)
@@ -140,10 +141,10 @@ impl Summary {
                 format!("{:8.3}° on refining", snap.after_deg)
             };
             let drop = format!(
-                "{:.2} → {:.2} N·mm, released {:.2} N·mm{}",
+                "{:.2} → {:.2} N·mm, {}{}",
                 snap.moment_before_n_mm,
                 snap.moment_after_n_mm,
-                snap.energy_released_n_mm,
+                released_in_words(snap.energy_released_n_mm, 2),
                 if snap.after_deg > snap.before_deg {
                     format!("; located to {:.3}°", snap.after_deg - snap.before_deg)
                 } else {
@@ -158,9 +159,14 @@ impl Summary {
 
     /// Limit points, bifurcations, and branches that were left.
     fn write_passed(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        for [parameter, released] in &self.left {
+        for (parameter, released) in &self.left {
             let at = self.at(*parameter);
-            writeln!(f, "  {:<17}  unstable branch left at {at}, released {released:.2e} N·mm", "switch-branch")?;
+            let released = released.map_or(String::new(), |energy| format!(", released {energy:.2e} N·mm"));
+            writeln!(f, "  {:<17}  unstable branch left at {at}{released}", "switch-branch")?;
+        }
+        if let (count @ 1.., released) = self.ripples {
+            let each = "each less than refining the mesh changes";
+            writeln!(f, "  {:<17}  {count} of the mesh, {each}, released {released:.2e} N·mm in all", "ripples")?;
         }
         for point in &self.passed {
             let critical = point.critical;
@@ -182,15 +188,19 @@ impl Summary {
     /// Up to the first jump, or the end: work of both ends against strain energy.
     fn write_balance(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Some(balance) = self.balance else { return Ok(()) };
-        let stored = balance.strain_energy_n_mm + balance.taken_out_by_refinement_n_mm;
+        let stored = balance.accounted_n_mm();
         let refinement = match balance.taken_out_by_refinement_n_mm {
             0.0 => String::new(),
             taken => format!(" + {taken:.3} that refining took out"),
         };
+        let ripples = match balance.released_in_ripples_n_mm {
+            0.0 => String::new(),
+            released => format!(" + {released:.3} in ripples"),
+        };
         Line {
             name: "work of the ends",
             measured: format!("{:8.3} N·mm to {}°", balance.work_n_mm, rounded(balance.parameter)),
-            law: Some(("strain energy", format!("{:.3}{refinement}", balance.strain_energy_n_mm))),
+            law: Some(("strain energy", format!("{:.3}{refinement}{ripples}", balance.strain_energy_n_mm))),
             off: Some(balance.work_n_mm / stored),
             note: "",
         }

@@ -92,8 +92,9 @@ impl Script {
             factorizations: 0,
             negative_pivots: 0,
             residual: 0.0,
-            energy_released_n_mm: 0.0,
+            energy_released_n_mm: Some(0.0),
             jumped: false,
+            rippled: false,
             marked: [0, 0],
             largest_indicator: [0.0, 0.0],
         };
@@ -115,8 +116,9 @@ impl Script {
             iterations: 0,
             factorizations: 0,
             residual: 0.0,
-            energy_released_n_mm: 0.0,
+            energy_released_n_mm: Some(0.0),
             jumped: false,
+            rippled: false,
             marked: [0, 0],
             largest_indicator: [0.0, 0.0],
             outcome: Outcome::Done,
@@ -155,7 +157,7 @@ impl Script {
             iterations: if jumped { 38 } else { 3 },
             factorizations: if jumped { 44 } else { 4 },
             residual: 2.1e-9,
-            energy_released_n_mm: released,
+            energy_released_n_mm: Some(released),
             jumped,
             ..self.last.clone()
         };
@@ -253,6 +255,8 @@ pub fn state(record: &Record) -> State {
         control: StepControl::default(),
         path: None,
         previous: None,
+        largest_force_n: 0.0,
+        refinement: None,
     }
 }
 

@@ -97,8 +97,9 @@ pub fn next(state: &State) -> (State, Report) {
         factorizations: 5,
         negative_pivots: 0,
         residual: 1.0e-11 / step as f64,
-        energy_released_n_mm: 0.0,
+        energy_released_n_mm: Some(0.0),
         jumped: false,
+        rippled: false,
         marked: [new.marked[0].len(), new.marked[1].len()],
         largest_indicator: [0.1, 0.2],
     };

@@ -8,7 +8,7 @@ use foldline::journal::{
     JournalWriter, Log, check_state, decode_mesh, decode_state, encode_mesh, encode_state, message, verify_log,
 };
 use foldline::scene::{Stage, SyncPolicy};
-use foldline::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Rejection, State, StepControl};
+use foldline::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State, StepControl};
 use proptest::prelude::*;
 
 use crate::synthetic;
@@ -94,6 +94,13 @@ fn state() -> impl Strategy<Value = State> {
                     previous: (pivots % 3 == 0).then(|| Previous {
                         displacement: vec![[moment, rotation, -1.5]; mesh.control_points.len()],
                         parameter: energy,
+                    }),
+                    largest_force_n: if step % 5 == 0 { 0.0 } else { moment.abs() },
+                    refinement: (pivots % 5 == 0).then_some(Refinement {
+                        changed_n_mm: energy,
+                        growth: rotation,
+                        expected_n_mm: (pivots % 2 == 0).then_some(moment),
+                        ripple_n_mm: moment,
                     }),
                 },
             )
@@ -205,7 +212,8 @@ proptest! {
         let (_, mut record) = synthetic::run(2, 1).remove(0);
         let report = &mut record.report;
         [report.parameter, report.attempted_parameter, report.moment_n_mm] = [values[0], values[1], values[2]];
-        [report.strain_energy_n_mm, report.residual, report.energy_released_n_mm] = [values[3], values[4], values[5]];
+        [report.strain_energy_n_mm, report.residual] = [values[3], values[4]];
+        report.energy_released_n_mm = (values[5] >= 0.0).then_some(values[5]);
         report.largest_indicator = [values[6], values[7]];
         [report.iterations, report.unknowns, report.marked[0], report.marked[1]] = counts.map(|count| count as usize);
         record.wall_s = values[8];

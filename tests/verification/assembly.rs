@@ -30,7 +30,7 @@ fn noise(count: usize) -> Vec<f64> {
 }
 
 fn flat(displacement: &[[f64; 3]]) -> Standing<'_> {
-    Standing { displacement, turns: &[], parameter: 0.0 }
+    Standing { displacement, turns: &[], parameter: 0.0, largest_force: 0.0 }
 }
 
 fn length(vector: &[f64]) -> f64 {
@@ -128,7 +128,7 @@ fn moment_is_the_derivative_of_the_energy_with_respect_to_the_rotation() {
         let mut work = Workspace::new(&scene, &mesh).unwrap();
         let start = vec![[0.0; 3]; mesh.control_points.len()];
         let mut solve = |from: &[[f64; 3]], a: f64, b: f64| {
-            let from = Standing { displacement: from, turns: &[], parameter: a };
+            let from = Standing { displacement: from, turns: &[], parameter: a, largest_force: 0.0 };
             Equilibrium::new(&scene, &mut work).advance(from, b, &mut |_| false).unwrap()
         };
         let middle = solve(&start, 0.0, 1.0);

@@ -2,6 +2,7 @@
 
 mod actions;
 mod assembly;
+mod balance;
 mod baseline;
 mod benchmarks;
 mod buckling;

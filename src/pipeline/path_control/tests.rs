@@ -46,6 +46,7 @@ fn point(distance: f64, turn: f64, rate: f64, negative_pivots: usize, iterations
             work: 0.0,
             moment: 0.0,
             negative_pivots,
+            largest_force: 0.0,
             residual: 0.0,
             effort: Effort { iterations, factorizations: iterations },
         },

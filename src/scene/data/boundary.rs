@@ -230,6 +230,13 @@ impl LoadedArea {
     }
 }
 
+impl ActionKind {
+    /// Whether it turns with the shell, so that it need not have a potential.
+    pub fn follows(&self) -> bool {
+        matches!(self, Self::EdgeMoment { .. } | Self::Pressure { follower: true, .. })
+    }
+}
+
 /// Factor over the load factor: straight between (load factor, factor) pairs, constant beyond the last. Empty: the
 /// load factor itself.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -235,7 +235,8 @@ pub enum LengthLimit {
 /// Tolerances and limits of the equilibrium solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solver {
-    /// A state is in equilibrium when |residual| ≤ tolerance · |reactions|.
+    /// A state is in equilibrium when |residual| ≤ tolerance · |forces|: the largest of reactions and loads, or a thousandth
+    /// of the forces of the elements, or of the largest of these met before.
     pub tolerance: f64,
     /// Newton iterations after which a solve has failed.
     pub max_iterations: usize,

@@ -1,0 +1,78 @@
+//! What a residual is held against: equilibrium has an absolute sense.
+//!
+//! Forces balance where what is left of their sum is small beside the forces themselves. Which ones?
+//!
+//! - Reactions and loads, as long as there are any: what M, and every other reaction, is measured in.
+//! - A shell that is let go has neither, though it may be under stress (a cured laminate, a coiled tape on determinate
+//!   supports): there it is the forces of its elements before they are summed. On control points these cancel but for
+//!   reactions and loads, so they are much the larger, and count by a share alone.
+//! - A shell that is unloaded keeps no force at all: there it is the largest of these that the run has met, by a share
+//!   again, since a shell that has snapped carries a tenth of what it carried before and is to be found as precisely.
+//! - Rounding is below all of it: displacements that are off by their last bit already exert ε |K| |u|.
+//!
+//! All are Euclidean norms, over control points, and over the control points of each element: the sum Σ |f_e| of
+//! magnitudes would grow with the number of elements for one and the same stress, which the norm of membrane forces does
+//! not.
+
+use crate::equilibrium::assembly::{Assembled, stencil_len};
+use crate::equilibrium::descent::length;
+use crate::model::Discretization;
+
+/// Share of the forces of the elements that counts.
+const OF_ELEMENTS: f64 = 1e-3;
+
+/// Share of the largest forces met before that counts.
+const OF_FORCES_MET: f64 = 1e-3;
+
+/// What the residual at a point is held against, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceScale {
+    /// The largest of |g| of internal forces on all control points (at equilibrium, the reactions), |f| of the loads and a
+    /// share of the elements' forces before they are summed.
+    pub acting: f64,
+    /// The largest of these at the equilibria of the run so far.
+    pub met: f64,
+    /// Forces of a rounding error of the displacement.
+    pub rounding: f64,
+}
+
+impl ForceScale {
+    /// At a displacement, at which forces and stiffness are assembled.
+    pub(super) fn at(
+        discretization: &Discretization,
+        assembled: &Assembled,
+        loads: &[[f64; 3]],
+        displacement: &[[f64; 3]],
+        met: f64,
+    ) -> Self {
+        let blocks = 9 * stencil_len(discretization.mesh.degree);
+        // The first block of a control point is its own.
+        let own = assembled.stiffness.chunks_exact(blocks).zip(displacement);
+        let squares = own.flat_map(|(block, u)| [0, 1, 2].map(|c| (block[4 * c] * u[c]).powi(2)));
+        Self {
+            acting: length(&assembled.residual).max(length(loads)).max(OF_ELEMENTS * assembled.element_forces),
+            met,
+            rounding: f64::EPSILON * squares.sum::<f64>().sqrt(),
+        }
+    }
+
+    /// The force that a relative residual is relative to.
+    pub fn force(&self) -> f64 {
+        self.acting.max(OF_FORCES_MET * self.met)
+    }
+
+    /// Whether a residual is nothing beside the forces, to this tolerance.
+    pub fn balances(&self, residual: f64, tolerance: f64) -> bool {
+        residual <= (tolerance * self.force()).max(self.rounding)
+    }
+
+    /// A residual relative to the forces; 0 where it is rounding.
+    pub fn share(&self, residual: f64) -> f64 {
+        if residual <= self.rounding { 0.0 } else { residual / self.force() }
+    }
+
+    /// What the run has met, with this point.
+    pub fn met_here(&self) -> f64 {
+        self.met.max(self.acting)
+    }
+}

@@ -1,0 +1,165 @@
+//! The work of a scene's actions as the shell moves, action by action.
+//!
+//! The stroke of an action is the work that it would do with its factor held at 1: along a straight motion of the control
+//! points from one displacement to another,
+//!
+//! | action | stroke |
+//! |---|---|
+//! | force, line force, dead pressure | force times motion |
+//! | follower pressure p | p times the volume that the surface sweeps: ∫ (a₁ × a₂)·Δx, quadratic on the way, so Simpson's rule is exact |
+//! | edge moment m | m times the angle by which the normal turns about the tangent of the edge |
+//!
+//! Strokes add up along a way of many straight pieces, so that a pressure's is the volume between the ends and an angle is
+//! unwrapped: where an edge stays straight or plane, a moment's is m Δφ however far it turns. Where it does not, or where
+//! the edges of the pressed surface are free, the load has no potential, and the strokes are integrals along the very way
+//! that they were summed on.
+
+use crate::model::Loads;
+use crate::model::loads::{Kind, LoadPoint};
+use crate::shell::{add, cross, dot, norm, scaled, sub};
+use crate::spline::Mesh;
+
+impl Loads {
+    /// Strokes of all actions, N·mm.
+    pub fn strokes(&self, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
+        let dead = self.dead.iter().map(|dead| {
+            let motion = |(point, force): &(usize, [f64; 3])| dot(*force, sub(to[*point], from[*point]));
+            dead.forces.iter().map(motion).sum()
+        });
+        let following = self.following.iter().map(|following| {
+            let stroke = |point: &LoadPoint| point.weight * following.kind.stroke(point, mesh, from, to);
+            following.points.iter().map(stroke).sum()
+        });
+        dead.chain(following).collect()
+    }
+
+    /// Work of the actions over strokes with their factors at a parameter, N·mm.
+    pub fn work(&self, strokes: &[f64], parameter: f64) -> f64 {
+        let dead = self.dead.iter().map(|dead| &dead.history);
+        let following = self.following.iter().map(|following| &following.history);
+        dead.chain(following).zip(strokes).map(|(history, stroke)| history.at(parameter) * stroke).sum()
+    }
+
+    /// The same with the means of their factors at two parameters, N·mm.
+    pub fn mean_work(&self, strokes: &[f64], parameters: [f64; 2]) -> f64 {
+        0.5 * parameters.map(|parameter| self.work(strokes, parameter)).iter().sum::<f64>()
+    }
+}
+
+impl Kind {
+    /// Of a point, at weight 1.
+    fn stroke(self, point: &LoadPoint, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
+        let ends = [from, to].map(|displacement| point.deformed(mesh, displacement));
+        let normals = ends.map(|[a1, a2]| cross(a1, a2));
+        match self {
+            Kind::Pressure => {
+                let middle = [0, 1].map(|k| scaled(0.5, add(ends[0][k], ends[1][k])));
+                let mean = add(add(normals[0], normals[1]), scaled(4.0, cross(middle[0], middle[1])));
+                dot(scaled(1.0 / 6.0, mean), point.motion(mesh, from, to))
+            }
+            Kind::Moment(running) => {
+                let unit = |vector: [f64; 3]| scaled(1.0 / norm(vector), vector);
+                let axis = unit(add(unit(ends[0][running]), unit(ends[1][running])));
+                let [before, after] = normals.map(|normal| sub(normal, scaled(dot(normal, axis), axis)));
+                dot(cross(before, after), axis).atan2(dot(before, after))
+            }
+        }
+    }
+}
+
+impl LoadPoint {
+    /// Motion of the surface there, mm.
+    fn motion(&self, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> [f64; 3] {
+        let shares = self.controls(mesh).zip(&self.functions[0]);
+        shares.fold([0.0; 3], |sum, (control, share)| add(sum, scaled(*share, sub(to[control], from[control]))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::model::{Discretization, starting_mesh};
+    use crate::scene::{Action, ActionKind, History, parse};
+
+    /// A plate of 12 × 1 mm with a moment of 52.36 N·mm per mm on the end of its length, and one more action.
+    fn plate(kind: ActionKind) -> Discretization {
+        let mut scene = parse(include_str!("../../pipelines/verification/rolled-cantilever.toml"), "x.toml").unwrap();
+        scene.actions.push(Action { name: "more".into(), kind, history: History::default() });
+        let mesh = Arc::new(starting_mesh(&scene).unwrap());
+        Discretization::new(&scene, &mesh).unwrap()
+    }
+
+    /// The plate turned about y by an angle, as a displacement of its control points.
+    fn turned(plate: &Discretization, angle: f64) -> Vec<[f64; 3]> {
+        let (sin, cos) = angle.sin_cos();
+        let points = plate.mesh.control_points.iter();
+        points.map(|[x, _, z, _]| [(cos - 1.0) * x + sin * z, 0.0, (cos - 1.0) * z - sin * x]).collect()
+    }
+
+    fn field(plate: &Discretization, size: f64, seed: usize) -> Vec<[f64; 3]> {
+        let value = |i: usize, c: usize| size * (((i * 7919 + c * 104_729 + seed * 31) % 1013) as f64 / 1013.0 - 0.5);
+        (0..plate.mesh.control_points.len()).map(|i| [0, 1, 2].map(|c| value(i, c))).collect()
+    }
+
+    #[test]
+    fn a_small_stroke_is_force_times_motion() {
+        for kind in [
+            ActionKind::Pressure { pressure_mpa: 0.7, follower: true },
+            ActionKind::Pressure { pressure_mpa: 0.7, follower: false },
+            ActionKind::Force { on: [0.3, 0.6], force_n: [1.0, -2.0, 0.5].into() },
+        ] {
+            let plate = plate(kind);
+            let Discretization { mesh, loads, .. } = &plate;
+            let (from, motion) = (field(&plate, 0.02, 1), field(&plate, 1e-6, 2));
+            let to: Vec<[f64; 3]> = from.iter().zip(&motion).map(|(u, v)| add(*u, *v)).collect();
+            let middle: Vec<[f64; 3]> = from.iter().zip(&motion).map(|(u, v)| add(*u, scaled(0.5, *v))).collect();
+            let forces = loads.forces(mesh, &middle, 0.8);
+            let expected: f64 = forces.iter().zip(&motion).map(|(f, v)| dot(*f, *v)).sum();
+            let found = loads.work(&loads.strokes(mesh, &from, &to), 0.8);
+            assert!((found - expected).abs() < 1e-7 * expected.abs(), "{found} {expected}");
+        }
+    }
+
+    /// Three turns in steps of 100°, there and back: m Δφ either way, and nothing in all.
+    #[test]
+    fn a_moment_does_work_by_its_angle_however_far_it_turns() {
+        let plate = plate(ActionKind::Force { on: [0.0, 0.0], force_n: [0.0; 3].into() });
+        let Discretization { mesh, loads, .. } = &plate;
+        let step = 5.0 * PI / 9.0;
+        let sweep = |angles: &[f64]| -> f64 {
+            let pieces = angles.windows(2);
+            let work = |ends: &[f64]| {
+                loads.work(&loads.strokes(mesh, &turned(&plate, ends[0]), &turned(&plate, ends[1])), 1.0)
+            };
+            pieces.map(work).sum()
+        };
+        let angles: Vec<f64> = (0..=11).map(|k| k as f64 * step).collect();
+        let there = sweep(&angles);
+        let expected = 50.0 * PI / 3.0 * 11.0 * step;
+        assert!((there.abs() - expected).abs() < 1e-9 * expected, "{there} {expected}");
+        let back: Vec<f64> = angles.iter().rev().copied().collect();
+        assert!((sweep(&back) + there).abs() < 1e-9 * expected);
+    }
+
+    /// Between two shapes with the same edges a pressure sweeps one volume, on whatever way.
+    #[test]
+    fn a_pressure_does_work_by_the_volume_between() {
+        let plate = plate(ActionKind::Pressure { pressure_mpa: 0.7, follower: true });
+        let Discretization { mesh, loads, .. } = &plate;
+        let [n1, n2] = mesh.control_counts();
+        let held = |size: f64, seed: usize| -> Vec<[f64; 3]> {
+            let mut field = field(&plate, size, seed);
+            let edge = |i: usize| [0, n1 - 1].contains(&(i / n2)) || [0, n2 - 1].contains(&(i % n2));
+            field.iter_mut().enumerate().filter(|(i, _)| edge(*i)).for_each(|(_, u)| *u = [0.0; 3]);
+            field
+        };
+        let pressure = |from: &[[f64; 3]], to: &[[f64; 3]]| *loads.strokes(mesh, from, to).last().unwrap();
+        let (a, b, c) = (held(0.0, 0), held(0.4, 1), held(0.4, 2));
+        let (direct, round) = (pressure(&a, &c), pressure(&a, &b) + pressure(&b, &c));
+        assert!((direct - round).abs() < 1e-12 * (direct.abs() + round.abs()) + 1e-14, "{direct} {round}");
+        assert!(direct.abs() > 1e-3);
+    }
+}
