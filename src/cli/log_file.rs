@@ -11,7 +11,8 @@ use crate::scene::Scene;
 
 /// Defaults as they once were, for scenes in logs of that time that leave them out: any of them, as not all changed at once.
 /// Laid over any other scene they would change its hash, which the log holds.
-const DEFAULTS_BEFORE: [&str; 2] = ["mesh.quadrature=full", "adapt.length_limit=sqrt-radius-thickness"];
+const DEFAULTS_BEFORE: [&str; 3] =
+    ["mesh.quadrature=patch", "mesh.quadrature=full", "adapt.length_limit=sqrt-radius-thickness"];
 
 /// A log as far as it can be trusted, with the scene that its last stretch was run with.
 pub(super) struct ReadLog {

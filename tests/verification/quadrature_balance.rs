@@ -97,7 +97,7 @@ fn sizes(count: usize, graded: bool) -> Vec<f64> {
 fn solved(scene: &Scene, mesh: &Arc<Mesh>) -> Vec<[f64; 3]> {
     let mut work = Workspace::new(scene, mesh).unwrap();
     let still = vec![[0.0; 3]; mesh.control_points.len()];
-    let start = Standing { displacement: &still, turns: &[], parameter: 0.0 };
+    let start = Standing { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
     Equilibrium::new(scene, &mut work).advance(start, scene.load.target(), &mut |_| false).unwrap().displacement
 }
 
