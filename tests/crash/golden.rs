@@ -90,6 +90,29 @@ fn every_log_gives_what_the_table_says() {
     assert!(bytes < 350_000, "{bytes} bytes of golden logs");
 }
 
+/// A scene that leaves the rule of quadrature out means the rule that was the default when its log was begun.
+#[test]
+fn a_log_keeps_the_default_of_its_time() {
+    let (_, manifest) = read_scene("predicted.toml");
+    for rule in ["patch", "full"] {
+        let text = manifest.scene_text.replace("quadrature = \"patch\"\n", "");
+        let then = scene(&text.replace("[mesh]\n", &format!("[mesh]\nquadrature = \"{rule}\"\n")));
+        assert_ne!(scene(&text).hash(), then.hash());
+        let place = Place::new();
+        let manifest = Manifest { scene_text: text, ..manifest.clone() };
+        let mut writer = JournalWriter::create(&place.file("log.mcap"), &manifest, SyncPolicy::AtEnd).unwrap();
+        let stages = Stages::new(then.clone());
+        let start = stages.start().unwrap();
+        Run::new(stages, start, None).to_end(Some(1.0), &|| false, &mut writer).unwrap();
+        writer.close().unwrap();
+        place.foldline("resume log.mcap").ends(0);
+        place.foldline("replay log.mcap --from-scratch").ends(0);
+        let log = place.log("log.mcap");
+        assert_eq!(log.completeness(), Completeness::Finished, "{rule}");
+        assert!(log.entries().iter().all(|entry| entry.record.commit.scene_hash == then.hash()), "{rule}");
+    }
+}
+
 /// The logs hold what they are kept for: states of every encoding, with the memory that only they carry.
 #[test]
 fn every_encoding_of_states_is_among_them() {
