@@ -2,6 +2,7 @@
 
 mod edge;
 mod elimination;
+mod free_strains;
 mod imbalance;
 mod joint;
 mod loads;
@@ -17,6 +18,7 @@ mod supports;
 mod tables;
 mod unknowns;
 
+pub use free_strains::{FreeStrains, NaturalState};
 pub use loads::Loads;
 pub use patch::{MOST_CONTROL_POINTS, ModelError, starting_mesh};
 pub(crate) use place::{line_index, parameters_of};
@@ -25,8 +27,8 @@ pub use reactions::{Exerted, PointForces};
 pub(crate) use rigid_motion::free_motion;
 pub use supports::Supports;
 pub(crate) use supports::control_expressions;
-pub use tables::{PointTable, Tables};
 pub(crate) use tables::{BATCH, LANES};
+pub use tables::{PointTable, Tables};
 pub use unknowns::{Entry, Unknowns};
 
 use std::sync::Arc;
@@ -45,6 +47,8 @@ pub struct Discretization {
     pub unknowns: Unknowns,
     /// What acts on the shell.
     pub loads: Loads,
+    /// Strains without energy.
+    pub free_strains: FreeStrains,
 }
 
 impl Discretization {
@@ -54,6 +58,12 @@ impl Discretization {
     /// Where supports or loads do not fit the mesh.
     pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, ModelError> {
         let (unknowns, loads) = (Unknowns::new(scene, mesh)?, Loads::new(scene, mesh)?);
-        Ok(Self { mesh: mesh.clone(), tables: Tables::new(scene, mesh), unknowns, loads })
+        Ok(Self {
+            mesh: mesh.clone(),
+            tables: Tables::new(scene, mesh),
+            unknowns,
+            loads,
+            free_strains: FreeStrains::new(scene, mesh),
+        })
     }
 }

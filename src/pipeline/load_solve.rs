@@ -61,7 +61,7 @@ impl Stages {
             Ok(solved) => {
                 let released = energy_released(state, &solved);
                 let left = unstable_on_the_way && leaves_path(state, attempt.target_deg, &solved);
-                let jumped = left || is_jump(released, state.strain_energy_n_mm, solved.energy);
+                let jumped = left || is_jump(released, state.strain_energy_n_mm.max(solved.put_in), solved.energy);
                 if jumped && !attempt.may_jump {
                     report.record_effort(solved.effort);
                     let control = attempt.control_after_jump(&state.control);

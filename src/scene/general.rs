@@ -18,6 +18,11 @@ pub(super) const LOADS: [&str; 1] = ["steps"];
 pub(super) const ARRAYS: [&str; 4] = ["ply", "support", "action", "probe"];
 
 const ARC: Range = Range { above: 0.0, most: 360.0, reason: "an arc is more than 0 and at most 360 degrees" };
+const EXPANSION: Range = Range {
+    above: -1e-3,
+    most: 1e-3,
+    reason: "a strain per kelvin, such as 22.5e-6 across the fibres of carbon in epoxy",
+};
 const MODULUS: Range = Range { above: 0.0, most: 1e13, reason: "moduli are positive, in MPa" };
 
 /// A geometry of one of [`GEOMETRIES`].
@@ -223,7 +228,24 @@ fn law(table: &Table<'_, '_>, default: Option<OrthotropicLaw>) -> Checked<Orthot
             }
         },
         shear_modulus_12_mpa: modulus("shear_modulus_12_mpa", default.map(|law| law.shear_modulus_12_mpa))?,
+        thermal_expansion_1_per_k: table
+            .maybe_number("thermal_expansion_1_per_k", EXPANSION)?
+            .or(default.and_then(|law| law.thermal_expansion_1_per_k)),
+        thermal_expansion_2_per_k: table
+            .maybe_number("thermal_expansion_2_per_k", EXPANSION)?
+            .or(default.and_then(|law| law.thermal_expansion_2_per_k)),
     };
+    if law.thermal_expansion_1_per_k.is_some() != law.thermal_expansion_2_per_k.is_some() {
+        let (given, other) = match law.thermal_expansion_1_per_k {
+            Some(_) => ("thermal_expansion_1_per_k", "thermal_expansion_2_per_k"),
+            None => ("thermal_expansion_2_per_k", "thermal_expansion_1_per_k"),
+        };
+        return Err(table.wrong(
+            table.place_of(given).as_ref(),
+            format!("`{given}` is given and `{other}` is not"),
+            format!("write both; `{other} = 0.0` does not expand that way"),
+        ));
+    }
     if law.poissons_ratio_12.powi(2) >= law.youngs_modulus_1_mpa / law.youngs_modulus_2_mpa {
         let problem = format!(
             "nu12 = {} is too large for E1/E2 = {}: the layer would have no stiffness",
@@ -247,10 +269,12 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
             law: law(&table, None)?,
             angle_deg: table.number_or("angle_deg", ANY, 0.0)?,
             thickness_mm: table.number("thickness_mm", LENGTH, "0.1")?,
+            offset_mm: table.number_or("offset_mm", ANY, 0.0)?,
         };
         table.finish()?;
         return no_plies(plies).map(|()| material);
     }
+    let offset_mm = table.number_or("offset_mm", ANY, 0.0)?;
     let any = ["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa"];
     let default = if any.iter().any(|name| table.entry(name).is_some()) { Some(law(&table, None)?) } else { None };
     if plies.is_empty() {
@@ -270,7 +294,7 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
         });
         ply.finish()?;
     }
-    Ok(Material::Laminate { plies: laminate })
+    Ok(Material::Laminate { plies: laminate, offset_mm })
 }
 
 /// Refuses plies that belong to no laminate.
@@ -474,7 +498,7 @@ fn rigid(table: &Table<'_, '_>) -> Checked<Hold> {
 /// One `[[action]]`.
 pub(super) fn action(table: Table<'_, '_>, ordinal: usize) -> Checked<Action> {
     let name = table.maybe_text("name")?.unwrap_or_else(|| format!("action {ordinal}"));
-    let kinds = ["force", "line-force", "edge-moment", "pressure"];
+    let kinds = ["force", "line-force", "edge-moment", "pressure", "temperature", "natural-curvature"];
     let kind = match table.word("kind", &kinds.map(|kind| (kind, kind)))? {
         "force" => ActionKind::Force { on: point(&table)?, force_n: table.tuple("force_n", "[0.0, 0.0, 1.0]")? },
         "line-force" => {
@@ -492,6 +516,10 @@ pub(super) fn action(table: Table<'_, '_>, ordinal: usize) -> Checked<Action> {
             on: edge(&table, "an edge moment")?,
             moment_n: table.number("moment_n", ANY, "1.0")?,
         },
+        "temperature" => ActionKind::Temperature { change_k: table.number("change_k", ANY, "-100.0")? },
+        "natural-curvature" => {
+            ActionKind::NaturalCurvature { change_per_mm: table.tuple("change_per_mm", "[0.01, 0.0, 0.0]")? }
+        }
         _ => ActionKind::Pressure {
             pressure_mpa: table.number("pressure_mpa", ANY, "0.001")?,
             follower: table.switch_or("follower", true)?,

@@ -80,7 +80,7 @@ impl TapeSpring {
     /// scenes and materials, for which these laws do not hold.
     pub fn of_scene(scene: &Scene) -> Option<Self> {
         let Geometry::TapeSpring { length_mm, radius_mm, arc_deg } = scene.geometry else { return None };
-        let Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm } = scene.material else {
+        let Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm, .. } = scene.material else {
             return None;
         };
         Some(Self {

@@ -32,7 +32,13 @@ pub const CURVE: [(f64, f64, f64); 14] = [
 pub fn scene() -> Scene {
     Scene {
         geometry: Geometry::TapeSpring { length_mm: 300.0, radius_mm: 10.0, arc_deg: 110.0 },
-        material: Material::Isotropic { youngs_modulus_mpa: 131e3, poissons_ratio: 0.3, thickness_mm: 0.1 },
+        material: Material::Isotropic {
+            youngs_modulus_mpa: 131e3,
+            poissons_ratio: 0.3,
+            thickness_mm: 0.1,
+            offset_mm: 0.0,
+            thermal_expansion_per_k: None,
+        },
         mesh: MeshSpec { degree: [3, 3], elements: [4, 4], quadrature: Quadrature::Full },
         symmetry: Symmetry::Quarter,
         load: Load::EndRotation(EndRotation {
