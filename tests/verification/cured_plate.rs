@@ -77,13 +77,6 @@ fn a_large_plate_is_a_cylinder() {
     assert_eq!(state.negative_pivots, 0);
     let [cylinder, _] = closed_form();
     let edge_layer = (2.0 * PLY / cylinder.abs()).sqrt();
-    for widths in [1.0, 2.0, 3.0, 4.0, 5.0, 6.0] {
-        let all = curvatures(&scene, state, widths * edge_layer);
-        let range = |axis: usize| {
-            all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], k| [low.min(k[axis]), high.max(k[axis])])
-        };
-        println!("{widths}: {:?} {:?} of {cylinder}", range(0), range(1));
-    }
     let inside = curvatures(&scene, state, 4.0 * edge_layer);
     assert!(inside.len() > 100);
     // By symmetry, along x or along y.

@@ -73,7 +73,6 @@ impl Material {
     }
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks with a reference")]
 fn is_zero(number: &f64) -> bool {
     *number == 0.0
 }
