@@ -34,7 +34,7 @@ impl Halving {
         let finer = Arc::new(mesh.with_knots(&middles));
         let displacement = project_displacements(mesh, &finer, &state.displacement);
         let mut work = Workspace::new(scene, &finer).ok()?;
-        let integrated = work.energy(&displacement);
+        let integrated = work.energy(&displacement, state.parameter);
         let at = Standing { displacement: &displacement, ..Standing::of(state) };
         let released = work.linear_release(at).ok()?;
         let energy = state.strain_energy_n_mm / scene.symmetry.copies() as f64;

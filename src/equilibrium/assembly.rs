@@ -9,19 +9,22 @@
 
 use rayon::prelude::*;
 
+use crate::equilibrium::descent::length;
 pub use crate::equilibrium::kernel::Want;
 use crate::equilibrium::kernel::{Build, ElementBuffers, integrate_element};
-use crate::model::{Discretization, Tables};
+use crate::model::{Discretization, NaturalState, Tables};
+use crate::shell::sub;
 use crate::spline::Mesh;
 
 /// Strain energy of the model at a displacement on `mesh`, N·mm; `tables` may have other elements than `mesh`
-/// ([`Tables::on_elements_of`]). Summed in the order of [`Assembled::assemble`].
-pub fn strain_energy(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]]) -> f64 {
+/// ([`Tables::on_elements_of`]). `natural` is the state without forces, where that is not the undeformed one. Summed in
+/// the order of [`Assembled::assemble`].
+pub fn strain_energy(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> f64 {
     let build = Build::detect();
     let columns: Vec<f64> = (0..tables.elements[0])
         .into_par_iter()
         .map_init(
-            || ElementBuffers::new(tables.padded),
+            || buffers_for(tables, natural),
             |buffers, column| {
                 let mut energy = 0.0;
                 for across in 0..tables.elements[1] {
@@ -33,7 +36,18 @@ pub fn strain_energy(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]]) ->
             },
         )
         .collect();
-    columns.iter().sum()
+    with_locked(columns.iter().sum(), natural)
+}
+
+fn buffers_for(tables: &Tables, natural: Option<NaturalState>) -> ElementBuffers {
+    let mut buffers = ElementBuffers::new(tables.padded);
+    buffers.free = natural.map(|natural| natural.strain);
+    buffers
+}
+
+/// Energy of the points, and that which layers keep in each other.
+fn with_locked(energy: f64, natural: Option<NaturalState>) -> f64 {
+    natural.map_or(energy, |natural| energy + natural.locked_n_mm)
 }
 
 /// Offsets (d₁, d₂) of the stencil, in storage order.
@@ -57,6 +71,8 @@ pub struct Assembled {
     pub element_forces: f64,
     /// Gradient of the energy with respect to the control points' displacements, N.
     pub residual: Vec<[f64; 3]>,
+    /// Norm of the part of the residual that the free strain makes, N: a load in all but name. 0 where there is none.
+    pub free_strain_forces: f64,
     /// `stiffness[(i · stencil_len + slot) · 9 + 3 c + d]`, N/mm.
     pub stiffness: Vec<f64>,
 }
@@ -66,17 +82,50 @@ impl Assembled {
     pub fn new(discretization: &Discretization) -> Self {
         let count = discretization.mesh.control_points.len();
         let stiffness = vec![0.0; count * stencil_len(discretization.mesh.degree) * 9];
-        Self { energy: 0.0, element_forces: 0.0, residual: vec![[0.0; 3]; count], stiffness }
+        let residual = vec![[0.0; 3]; count];
+        Self { energy: 0.0, element_forces: 0.0, residual, free_strain_forces: 0.0, stiffness }
     }
 
-    /// Assembles residual and energy, and the stiffness where `want` says so, at a displacement of the control points.
-    pub fn assemble(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], want: Want) {
+    /// Assembles residual and energy, and the stiffness where `want` says so, at a displacement of the control points and a
+    /// value of the scene's parameter.
+    pub fn assemble(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64, want: Want) {
+        let natural = discretization.free_strains.at(parameter);
+        self.assemble_from(discretization, displacement, natural, want);
+        self.free_strain_forces = match natural {
+            Some(_) => length(&self.change_of_forces(discretization, displacement, None)),
+            None => 0.0,
+        };
+    }
+
+    /// What internal forces change by where the shell stays at the displacement that it was assembled at and its natural
+    /// state becomes another one, N. They are linear in the free strain.
+    pub(super) fn change_of_forces(
+        &self,
+        discretization: &Discretization,
+        displacement: &[[f64; 3]],
+        natural: Option<NaturalState>,
+    ) -> Vec<[f64; 3]> {
+        let residual = vec![[0.0; 3]; displacement.len()];
+        let mut there =
+            Self { energy: 0.0, element_forces: 0.0, residual, free_strain_forces: 0.0, stiffness: Vec::new() };
+        there.assemble_from(discretization, displacement, natural, Want::Residual);
+        there.residual.iter().zip(&self.residual).map(|(g1, g0)| sub(*g1, *g0)).collect()
+    }
+
+    /// The same where this is the state without forces.
+    fn assemble_from(
+        &mut self,
+        discretization: &Discretization,
+        displacement: &[[f64; 3]],
+        natural: Option<NaturalState>,
+        want: Want,
+    ) {
         let mesh = &discretization.mesh;
         let tables = &discretization.tables;
         let degree = mesh.degree;
         let n2 = mesh.control_counts()[1];
         let colours = degree[0] + 1;
-        let row_stiffness = n2 * stencil_len(degree) * 9;
+        let row_stiffness = if want == Want::Stiffness { n2 * stencil_len(degree) * 9 } else { 0 };
         let build = Build::detect();
         self.residual.fill([0.0; 3]);
         if want == Want::Stiffness {
@@ -93,7 +142,7 @@ impl Assembled {
                 .zip(residuals)
                 .zip(stiffnesses)
                 .map_init(
-                    || ElementBuffers::new(tables.padded),
+                    || buffers_for(tables, natural),
                     |buffers, ((column, residual), stiffness)| {
                         let mut rows = Rows { residual, stiffness };
                         assemble_column(discretization, displacement, *column, want, build, buffers, &mut rows)
@@ -104,7 +153,7 @@ impl Assembled {
                 totals[*column] = sum;
             }
         }
-        self.energy = totals.iter().map(|column| column.energy).sum();
+        self.energy = with_locked(totals.iter().map(|column| column.energy).sum(), natural);
         self.element_forces = totals.iter().map(|column| column.squared_forces).sum::<f64>().sqrt();
     }
 

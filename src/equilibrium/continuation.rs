@@ -122,6 +122,26 @@ impl<'a> Continuation<'a> {
         self.solve(from, &direction, start, &plane, None, observer)
     }
 
+    /// A step to a value of the parameter at which a history has a corner. The path may turn there by any angle, back on
+    /// itself where what drove the shell stops and something else sets in: the heading at the end is that beyond the
+    /// corner, where the parameter goes on as before.
+    ///
+    /// # Errors
+    /// Where no equilibrium is found in a few iterations, or nothing moves beyond.
+    pub fn step_to_corner(
+        &mut self,
+        from: Standing,
+        parameter: f64,
+        observer: Observer,
+    ) -> Result<ContinuedPoint, SolveError> {
+        let point = self.begin(from, parameter, observer)?;
+        let Solved { displacement, turns, largest_force, .. } = &point.solved;
+        let sense = Sense::Parameter { grows: parameter > from.parameter };
+        let there = Standing { displacement, turns, parameter, largest_force: *largest_force };
+        let heading = self.heading_at(there, sense)?;
+        Ok(ContinuedPoint { heading, turn: 1.0, chord: 1.0, ..point })
+    }
+
     /// The point with this parameter between `from` and a point that was reached from there.
     ///
     /// # Errors

@@ -107,7 +107,7 @@ impl<'a> Descent<'a> {
         let discretization = &*discretization;
         let placement = discretization.unknowns.place(&unknowns, parameter);
         let displacement = placement.displacement();
-        assembled.assemble(discretization, &displacement, Want::Stiffness);
+        assembled.assemble(discretization, &displacement, parameter, Want::Stiffness);
         let external = External::new(discretization, &displacement, parameter, assembled);
         Self {
             placement,
@@ -139,7 +139,7 @@ impl<'a> Descent<'a> {
         self.placement = self.discretization.unknowns.place(&unknowns, self.parameter);
         self.displacement = self.placement.displacement();
         self.unknowns = unknowns;
-        self.assembled.assemble(self.discretization, &self.displacement, Want::Stiffness);
+        self.assembled.assemble(self.discretization, &self.displacement, self.parameter, Want::Stiffness);
         self.external = External::new(self.discretization, &self.displacement, self.parameter, self.assembled);
     }
 
@@ -289,8 +289,9 @@ impl<'a> Descent<'a> {
     /// Strain energy less work of the loads.
     fn energy_at(&self, from: &Start, length: f64) -> f64 {
         let displacement = self.discretization.unknowns.place(&from.moved(length), self.parameter).displacement();
-        let energy = strain_energy(&self.discretization.mesh, &self.discretization.tables, &displacement);
-        energy - self.discretization.loads.work(&self.strokes_to(from, &displacement), self.parameter)
+        let Discretization { mesh, tables, loads, free_strains, .. } = self.discretization;
+        let energy = strain_energy(mesh, tables, &displacement, free_strains.at(self.parameter));
+        energy - loads.work(&self.strokes_to(from, &displacement), self.parameter)
     }
 
     /// Strokes on the way that leads straight on from where a step started.

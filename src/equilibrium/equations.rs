@@ -8,6 +8,7 @@ use crate::equilibrium::newton::{Effort, Iterate, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::model::{Discretization, Placement};
+use crate::shell::add;
 
 /// The pieces of a workspace that the equations take.
 pub(super) struct Equations<'w> {
@@ -73,7 +74,7 @@ impl<'w> Equations<'w> {
         let mut external = if ready.is_some() {
             External::dead(discretization, &displacement, parameter)
         } else {
-            self.assembled.assemble(discretization, &displacement, Want::Stiffness);
+            self.assembled.assemble(discretization, &displacement, parameter, Want::Stiffness);
             External::new(discretization, &displacement, parameter, self.assembled)
         };
         let forces = external.subtract_from(&self.assembled.residual);
@@ -96,6 +97,10 @@ impl<'w> Equations<'w> {
         let skew = external.multiply_skew(discretization, &motion);
         for (point, rate) in force_rates.iter_mut().enumerate() {
             (0..3).for_each(|c| rate[c] += skew[point][c] - loads[point][c]);
+        }
+        if let Some(natural) = discretization.free_strains.beyond(parameter) {
+            let freed = self.assembled.change_of_forces(discretization, &displacement, Some(natural));
+            force_rates.iter_mut().zip(freed).for_each(|(sum, rate)| *sum = add(*sum, rate));
         }
         let mut gradient_rate = placement.restrict(&force_rates);
         for (sum, turned) in gradient_rate.iter_mut().zip(placement.restrict_rate(&forces, &given_rates)) {

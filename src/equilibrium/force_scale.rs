@@ -27,8 +27,8 @@ const OF_FORCES_MET: f64 = 1e-3;
 /// What the residual at a point is held against, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceScale {
-    /// The largest of |g| of internal forces on all control points (at equilibrium, the reactions), |f| of the loads and a
-    /// share of the elements' forces before they are summed.
+    /// The largest of |g| of internal forces on all control points (at equilibrium, the reactions), |f| of the loads and of the
+    /// free strain, and a share of the elements' forces before they are summed.
     pub acting: f64,
     /// The largest of these at the equilibria of the run so far.
     pub met: f64,
@@ -50,7 +50,10 @@ impl ForceScale {
         let own = assembled.stiffness.chunks_exact(blocks).zip(displacement);
         let squares = own.flat_map(|(block, u)| [0, 1, 2].map(|c| (block[4 * c] * u[c]).powi(2)));
         Self {
-            acting: length(&assembled.residual).max(length(loads)).max(OF_ELEMENTS * assembled.element_forces),
+            acting: length(&assembled.residual)
+                .max(length(loads))
+                .max(assembled.free_strain_forces)
+                .max(OF_ELEMENTS * assembled.element_forces),
             met,
             rounding: f64::EPSILON * squares.sum::<f64>().sqrt(),
         }

@@ -25,7 +25,7 @@ use crate::model::{BATCH, LANES, PointTable, Tables};
 use crate::shell::lanes::{FourLanes, Lanes, Portable};
 #[cfg(target_arch = "x86_64")]
 use crate::shell::lanes_x86::{Avx512, Fma, HasAvx512, HasFma};
-use crate::shell::{BatchGradient, BatchHessian, PointBatch, PointKernel, StretchingBatch};
+use crate::shell::{BatchGradient, BatchHessian, FreeStrain, PointBatch, PointKernel, StretchingBatch};
 
 /// Batches of points that the stiffness takes before it is stored: 16 points, all of a cubic element.
 const BLOCK: usize = 4;
@@ -40,6 +40,8 @@ pub(super) struct ElementBuffers {
     pub residual: Vec<f64>,
     /// K(a c, b d) at `stiffness[((b · 3 + d) · 3 + c) · padded + a]`, for a ≤ b.
     pub stiffness: Vec<f64>,
+    /// Strain that has no energy.
+    pub free: Option<FreeStrain>,
     /// Strain energy.
     pub energy: f64,
     /// P of a vector of functions at each point of a block.
@@ -67,6 +69,7 @@ impl ElementBuffers {
             displacement: vec![0.0; 3 * padded],
             residual: vec![0.0; 3 * padded],
             stiffness: vec![0.0; 9 * padded * padded],
+            free: None,
             energy: 0.0,
             half: vec![0.0; BLOCK * BATCH * HALF_LEN * LANES],
             whole: Derivatives::new(),
@@ -162,9 +165,10 @@ fn integrate<V: FourLanes, W: Lanes>(
     want: Want,
     buffers: &mut ElementBuffers,
 ) {
-    let ElementBuffers { displacement, residual, stiffness, energy, half, whole, stretching } = buffers;
+    let ElementBuffers { displacement, residual, stiffness, free, energy, half, whole, stretching } = buffers;
+    let free = free.as_ref();
     let ElementPoints { used, padded, .. } = *points;
-    let mut sums = Sums { used, padded, want, displacement, residual, stiffness, half, begun: false };
+    let mut sums = Sums { used, padded, want, free, displacement, residual, stiffness, half, begun: false };
     let mut sum = sums.add::<V, W, _, 5, 15>(points_proof, rows_proof, &points.whole, whole);
     if let Some(points) = &points.stretching {
         sum = sum + sums.add::<V, W, _, 2, 6>(points_proof, rows_proof, points, stretching);
@@ -179,6 +183,7 @@ struct Sums<'a> {
     used: usize,
     padded: usize,
     want: Want,
+    free: Option<&'a FreeStrain>,
     displacement: &'a [f64],
     residual: &'a mut [f64],
     stiffness: &'a mut [f64],
@@ -206,9 +211,9 @@ impl Sums<'_> {
             for (i, (points, functions)) in batches.iter().zip(of_batch).enumerate() {
                 let u = displacement_derivatives::<V, ROWS>(points_proof, functions, padded, used, self.displacement);
                 let energies = match self.want {
-                    Want::Energy => points.energy(points_proof, &u),
-                    Want::Residual => points.gradient(points_proof, &u, &mut gradients[i]),
-                    Want::Stiffness => points.hessian(points_proof, &u, &mut gradients[i], &mut hessians[i]),
+                    Want::Energy => points.energy(points_proof, &u, self.free),
+                    Want::Residual => points.gradient(points_proof, &u, self.free, &mut gradients[i]),
+                    Want::Stiffness => points.hessian(points_proof, &u, self.free, &mut gradients[i], &mut hessians[i]),
                 };
                 sum = sum + energies;
             }

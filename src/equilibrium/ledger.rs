@@ -1,5 +1,6 @@
 //! The balance of energy of a solve: what the model stored before, and what has been done on it since.
 
+use crate::equilibrium::assembly::strain_energy;
 use crate::equilibrium::descent::product;
 use crate::equilibrium::newton::{Standing, Workspace};
 use crate::model::{Discretization, Placement};
@@ -12,6 +13,8 @@ pub(super) struct Before {
     reactions: Vec<f64>,
     /// Strain energy of the model, N·mm.
     energy: f64,
+    /// Displacement of the control points, mm, where the scene has a natural state that changes.
+    displacement: Option<Vec<[f64; 3]>>,
 }
 
 impl Before {
@@ -21,18 +24,27 @@ impl Before {
         let Discretization { unknowns, .. } = &work.discretization;
         let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
         let placement = unknowns.place(&free, from.parameter);
-        Self::with(&placement, &forces, from, work.assembled.energy)
+        Self::with(&work.discretization, &placement, &forces, from, work.assembled.energy)
     }
 
     /// At an equilibrium whose forces (internal less loads, N, on all control points) and strain energy are known.
-    pub fn with(placement: &Placement, forces: &[[f64; 3]], from: Standing, energy: f64) -> Self {
-        Self { parameter: from.parameter, reactions: placement.reactions(forces), energy }
+    pub fn with(
+        discretization: &Discretization,
+        placement: &Placement,
+        forces: &[[f64; 3]],
+        from: Standing,
+        energy: f64,
+    ) -> Self {
+        let natural = discretization.free_strains.at(from.parameter);
+        let displacement = natural.map(|_| from.displacement.to_vec());
+        Self { parameter: from.parameter, reactions: placement.reactions(forces), energy, displacement }
     }
 
     /// Where forces do not balance and no given motion follows.
     pub fn unbalanced(work: &Workspace, from: Standing) -> Self {
         let reactions = vec![0.0; work.discretization.unknowns.given_count()];
-        Self { parameter: from.parameter, reactions, energy: work.energy(from.displacement) }
+        let energy = work.energy(from.displacement, from.parameter);
+        Self { parameter: from.parameter, reactions, energy, displacement: None }
     }
 
     /// Work on the model up to a value of the parameter, N·mm: of the given motions by the means of reactions before and after,
@@ -47,6 +59,22 @@ impl Before {
 
     /// Energy of the model that has left the balance on the way, if reactions stay what they were, N·mm.
     pub fn released(&self, discretization: &Discretization, parameter: f64, strokes: &[f64], energy: f64) -> f64 {
-        self.energy + self.work(discretization, parameter, &self.reactions, strokes) - energy
+        let put_in = self.put_in_at(discretization, parameter, self.displacement.as_deref());
+        self.energy + self.work(discretization, parameter, &self.reactions, strokes) + put_in - energy
+    }
+
+    /// Energy that the model stores more because its natural state changes, N·mm: had it stayed at the start, and at another
+    /// displacement. 0 where the natural state stays.
+    pub fn put_in(&self, discretization: &Discretization, parameter: f64, to: &[[f64; 3]]) -> [f64; 2] {
+        let start = self.displacement.as_deref();
+        [start, start.map(|_| to)].map(|displacement| self.put_in_at(discretization, parameter, displacement))
+    }
+
+    fn put_in_at(&self, discretization: &Discretization, parameter: f64, displacement: Option<&[[f64; 3]]>) -> f64 {
+        let Some(displacement) = displacement else { return 0.0 };
+        let Discretization { mesh, tables, free_strains, .. } = discretization;
+        let [after, before] = [parameter, self.parameter]
+            .map(|parameter| strain_energy(mesh, tables, displacement, free_strains.at(parameter)));
+        after - before
     }
 }

@@ -1,7 +1,8 @@
 //! Equilibrium at a value of the scene's parameter: a minimum of the strain energy, less the work of loads, over the free
 //! unknowns.
 //!
-//! Predictor: the tangent one, K Δq = Δf − ∂g/∂m Δm for loads f and given motions m, after which three Newton iterations a step reach 1e-7 of the
+//! Predictor: the tangent one, K Δq = Δf − ∂g/∂m Δm − Δg for loads f, given motions m and what free strains change internal
+//! forces by, after which three Newton iterations a step reach 1e-7 of the
 //! reactions; moving the ends alone needs 8 to 11. Where an equilibrium before is known, the path is bent on as a parabola
 //! through it: the solves of `baseline-quarter.toml` take half the iterations that they take with tangents alone.
 //! Corrector: [`Descent`].
@@ -19,6 +20,7 @@ use crate::equilibrium::stability::SoftMode;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::model::{Discretization, Unknowns};
 use crate::scene::Scene;
+use crate::shell::add;
 use crate::spline::Mesh;
 use crate::state::{Previous, State};
 
@@ -98,9 +100,12 @@ pub struct Solved {
     pub turns: Vec<[f64; 3]>,
     /// Strain energy of the whole shell, N·mm.
     pub energy: f64,
-    /// Work of loads and given motions on the whole shell since the start of the solve, N·mm: reactions, and factors of the
+    /// Work of loads, given motions and changes of the natural state on the whole shell since the start of the solve, N·mm: reactions, and factors of the
     /// actions, by their means before and after; strokes of the actions along the way that the solve took.
     pub work: f64,
+    /// What the change of the natural state would have put into the whole shell had it stayed, N·mm; 0 where there is none.
+    /// Where a shell follows its natural state this is the measure of energies, not the little that it stores.
+    pub put_in: f64,
     /// Turning ends: moment at each end of the whole shell, dΠ/dθ / 2, N·mm. Otherwise 0.
     pub moment: f64,
     /// Negative pivots of the stiffness there; 0 where the equilibrium is stable.
@@ -182,9 +187,10 @@ impl Workspace {
         &self.discretization
     }
 
-    /// Energy of the model at a displacement, N·mm.
-    pub fn energy(&self, displacement: &[[f64; 3]]) -> f64 {
-        strain_energy(&self.discretization.mesh, &self.discretization.tables, displacement)
+    /// Energy of the model at a displacement and a value of the parameter, N·mm.
+    pub fn energy(&self, displacement: &[[f64; 3]], parameter: f64) -> f64 {
+        let Discretization { mesh, tables, free_strains, .. } = &self.discretization;
+        strain_energy(mesh, tables, displacement, free_strains.at(parameter))
     }
 
     /// Internal forces less loads on the control points, N: at equilibrium, the reactions of the supports.
@@ -192,7 +198,7 @@ impl Workspace {
         let known = self.factored_at.as_ref().is_some_and(|known| known.is_at(&at));
         if !known {
             self.factored_at = None;
-            self.assembled.assemble(&self.discretization, at.displacement, Want::Residual);
+            self.assembled.assemble(&self.discretization, at.displacement, at.parameter, Want::Residual);
         }
         let loads = External::forces_at(&self.discretization, at.displacement, at.parameter);
         subtract(&self.assembled.residual, &loads)
@@ -223,7 +229,7 @@ impl Workspace {
     pub(super) fn form_at(&mut self, at: Standing) -> &[f64] {
         self.factored_at = None;
         let Self { discretization, tangent, assembled, .. } = self;
-        assembled.assemble(discretization, at.displacement, Want::Stiffness);
+        assembled.assemble(discretization, at.displacement, at.parameter, Want::Stiffness);
         let external = External::new(discretization, at.displacement, at.parameter, assembled);
         let free = discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
         let placement = discretization.unknowns.place(&free, at.parameter);
@@ -317,7 +323,7 @@ impl<'a> Equilibrium<'a> {
         let placement = unknowns.place(&old, from.parameter);
         let loads = External::forces_at(discretization, from.displacement, from.parameter);
         let forces = subtract(&assembled.residual, &loads);
-        let before = Before::with(&placement, &forces, from, assembled.energy);
+        let before = Before::with(discretization, &placement, &forces, from, assembled.energy);
         if negative > 0 {
             return (old, None, before);
         }
@@ -325,7 +331,11 @@ impl<'a> Equilibrium<'a> {
         let motion: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| m1 - m0).collect();
         let stiff = assembled.multiply(discretization, &placement.velocity(&[], &motion));
         let more = External::forces_at(discretization, from.displacement, to);
-        let change = subtract(&subtract(&stiff, &more), &negated(&loads));
+        let mut change = subtract(&subtract(&stiff, &more), &negated(&loads));
+        if let Some(natural) = discretization.free_strains.at(to) {
+            let freed = assembled.change_of_forces(discretization, from.displacement, Some(natural));
+            change.iter_mut().zip(freed).for_each(|(sum, force)| *sum = add(*sum, force));
+        }
         let mut step = placement.restrict(&change);
         for (sum, turned) in step.iter_mut().zip(placement.restrict_rate(&forces, &motion)) {
             *sum = -(*sum + turned);
@@ -370,8 +380,8 @@ impl<'a> Equilibrium<'a> {
         let [one, other] = [one, other].map(|free| discretization.unknowns.place(free, parameter).displacement());
         let strokes = discretization.loads.strokes(&discretization.mesh, &other, &one);
         let done = discretization.loads.work(&strokes, parameter);
-        let energy = self.work.energy(&other);
-        (self.work.energy(&one) - done - energy, energy)
+        let energy = self.work.energy(&other, parameter);
+        (self.work.energy(&one, parameter) - done - energy, energy)
     }
 
     /// Descends from `bent` where the stiffness there is positive definite, and else from `unknowns`.
@@ -425,6 +435,7 @@ impl Workspace {
     ) -> Solved {
         let largest_force = last.forces.met_here();
         let at = Standing { displacement: &ended.displacement, turns: &ended.turns, parameter, largest_force };
+        let put_in = before.put_in(&self.discretization, parameter, &ended.displacement);
         self.factored_at = Some(Factored::new(at, last.negative_pivots));
         let unknowns = &self.discretization.unknowns;
         let parts = scene.symmetry.copies() as f64;
@@ -435,7 +446,10 @@ impl Workspace {
         };
         Solved {
             energy: parts * last.energy,
-            work: parts * before.work(&self.discretization, parameter, &ended.reactions, &ended.strokes),
+            work: parts
+                * (before.work(&self.discretization, parameter, &ended.reactions, &ended.strokes)
+                    + 0.5 * (put_in[0] + put_in[1])),
+            put_in: parts * put_in[0].abs().max(put_in[1].abs()),
             moment,
             negative_pivots: last.negative_pivots,
             residual: last.relative_residual(),

@@ -178,7 +178,7 @@ mod tests {
             let state: Vec<f64> = vector(5).iter().map(|x| 0.02 * x).collect();
             let placement = discretization.unknowns.place(&state, 17.0);
             let mut assembled = Assembled::new(&discretization);
-            assembled.assemble(&discretization, &placement.displacement(), Want::Stiffness);
+            assembled.assemble(&discretization, &placement.displacement(), 0.0, Want::Stiffness);
 
             let direction = vector(11);
             let field = placement.velocity(&direction, &[]);

@@ -23,9 +23,10 @@ impl SymmetryError {
     /// At a state.
     pub fn at(work: &mut Workspace, at: Standing) -> Self {
         let mut half = Assembled::new(&work.discretization);
-        half.assemble(&work.discretization, at.displacement, Want::Stiffness);
+        half.assemble(&work.discretization, at.displacement, at.parameter, Want::Stiffness);
+        let natural = work.discretization.free_strains.at(at.parameter);
         measure(&work.discretization, at.displacement, &half, |point, u, hessian| {
-            point.hessian(u, hessian);
+            natural.map_or(*point, |natural| point.under(&natural.strain)).hessian(u, hessian);
         })
     }
 
@@ -132,7 +133,7 @@ mod tests {
         let discretization = Discretization::new(&scene, &Arc::new(starting_mesh(&scene).unwrap())).unwrap();
         let shape = field(discretization.mesh.control_points.len(), 0.732_050_807_57);
         let mut half = Assembled::new(&discretization);
-        half.assemble(&discretization, &shape, Want::Stiffness);
+        half.assemble(&discretization, &shape, 0.0, Want::Stiffness);
         (discretization, shape, half)
     }
 

@@ -67,12 +67,22 @@ impl<'a> KernelRun<'a> {
 
     /// Stiffness and residual on the control points.
     pub fn assemble(&mut self) {
-        self.work.assembled.assemble(&self.work.discretization, self.at.displacement, Want::Stiffness);
+        self.work.assembled.assemble(
+            &self.work.discretization,
+            self.at.displacement,
+            self.at.parameter,
+            Want::Stiffness,
+        );
     }
 
     /// Residual alone.
     pub fn residual(&mut self) {
-        self.work.assembled.assemble(&self.work.discretization, self.at.displacement, Want::Residual);
+        self.work.assembled.assemble(
+            &self.work.discretization,
+            self.at.displacement,
+            self.at.parameter,
+            Want::Residual,
+        );
     }
 
     /// The matrix on the unknowns, from what was assembled last.

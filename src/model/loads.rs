@@ -149,6 +149,8 @@ impl Loads {
                     self.dead.push(Dead { history, forces: dead_forces(mesh, &points, along_normal) });
                 }
             }
+            // These change the shell's free strain.
+            ActionKind::Temperature { .. } | ActionKind::NaturalCurvature { .. } => {}
         }
         Ok(())
     }

@@ -14,7 +14,7 @@ use crate::model::symmetric_line::Line;
 use crate::scene::{
     ActionKind, Edge, ForceVector, Hold, Material, ParametricDirection, Place, Scene, Support, SurfaceDirection,
 };
-use crate::shell::{add, cross, dot, norm, scaled, shell_stiffness, sub};
+use crate::shell::{add, cross, dot, norm, scaled, shell_stiffness, sub, thermal_strain};
 use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 use crate::units::{place, significant};
 
@@ -215,6 +215,7 @@ pub fn check_mirror_images(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError>
     for mirror in Mirror::all(scene, &supports_of(scene), mesh)? {
         check_material(&scene.material, mesh, &mirror)?;
         check_loads(scene, &mirror)?;
+        check_natural_states(scene, mesh, &mirror)?;
     }
     Ok(())
 }
@@ -236,6 +237,39 @@ fn check_material(material: &Material, mesh: &Mesh, mirror: &Mirror) -> Result<(
                     terms: terms.join(", "),
                     tolerance: ANGLE,
                 });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses free strains with shear in axes along and across the plane, which a mirror image turns round.
+fn check_natural_states(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
+    let running = 1 - mirror.way;
+    for action in &scene.actions {
+        let strains = match action.kind {
+            ActionKind::Temperature { .. } => {
+                thermal_strain(&scene.material).map_or(Vec::new(), |(free, _)| vec![free.membrane, free.bending])
+            }
+            ActionKind::NaturalCurvature { change_per_mm: [k11, k22, k12] } => vec![[k11, k22, 2.0 * k12]],
+            _ => continue,
+        };
+        for [from, to] in Spans::of(&mesh.knots[running], mesh.degree[running]).bounds {
+            for parameter in [from, 0.5 * (from + to), to] {
+                let point = mirror.point(mesh, parameter);
+                let (e1, along) = (unit(point.derivatives[0]), unit(point.derivatives[running]));
+                let normal = unit(cross(point.derivatives[0], point.derivatives[1]));
+                let (cos, sin) = (dot(along, e1), dot(along, cross(normal, e1)));
+                let shear = |[s11, s22, s12]: [f64; 3]| 2.0 * cos * sin * (s22 - s11) + (cos * cos - sin * sin) * s12;
+                let size = |strain: [f64; 3]| strain.iter().map(|s| s.abs()).fold(0.0, f64::max);
+                if let Some(strain) = strains.iter().find(|strain| shear(**strain).abs() > 2.0 * ANGLE * size(**strain))
+                {
+                    return Err(ModelError::LoadNotMirrored {
+                        action: action.name.clone(),
+                        support: mirror.support.clone(),
+                        how: format!("with a free strain of {} in shear along it", significant(shear(*strain), 4)),
+                    });
+                }
             }
         }
     }

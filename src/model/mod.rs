@@ -4,6 +4,7 @@ mod direction;
 mod edge;
 mod elimination;
 mod expressions;
+mod free_strains;
 mod imbalance;
 mod joint;
 mod loads;
@@ -28,6 +29,7 @@ mod unknowns;
 
 pub(crate) use direction::{Site, direction_at};
 pub(crate) use expressions::control_expressions;
+pub use free_strains::{FreeStrains, NaturalState};
 pub use loads::Loads;
 pub use patch::{MOST_CONTROL_POINTS, ModelError, starting_mesh};
 pub(crate) use place::{line_index, parameters_of};
@@ -57,6 +59,8 @@ pub struct Discretization {
     pub unknowns: Unknowns,
     /// What acts on the shell.
     pub loads: Loads,
+    /// Strains without energy.
+    pub free_strains: FreeStrains,
 }
 
 impl Discretization {
@@ -66,6 +70,12 @@ impl Discretization {
     /// Where supports or loads do not fit the mesh.
     pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, ModelError> {
         let (unknowns, loads) = (Unknowns::new(scene, mesh)?, Loads::new(scene, mesh)?);
-        Ok(Self { mesh: mesh.clone(), tables: Tables::new(scene, mesh), unknowns, loads })
+        Ok(Self {
+            mesh: mesh.clone(),
+            tables: Tables::new(scene, mesh),
+            unknowns,
+            loads,
+            free_strains: FreeStrains::new(scene, mesh),
+        })
     }
 }

@@ -79,7 +79,7 @@ impl Stages {
                 let small = watch.unstable && solved.negative_pivots == 0 && is_ripple(state, released);
                 let bracketed = watch.unstable && state.control.jump_seen_at_deg.is_some();
                 let left = (small || bracketed) && leaves_path(state, attempt.target_deg, &solved);
-                let jumped = left || is_jump(released, state.strain_energy_n_mm, solved.energy);
+                let jumped = left || is_jump(released, state.strain_energy_n_mm.max(solved.put_in), solved.energy);
                 let rippled = small && !jumped;
                 if (jumped || watch.unstable && !rippled) && !attempt.may_jump {
                     report.record_effort(solved.effort);

@@ -5,7 +5,7 @@ use crate::pipeline::path_control::{CriticalPoint, Judgement, PathAttempt, next_
 use crate::pipeline::stages::{reject, settle};
 use crate::pipeline::step_control::{has_reached, next_attempt};
 use crate::pipeline::{Outcome, Parameter, Report, StageError, Stages};
-use crate::scene::{ArcLength, Stage};
+use crate::scene::{ArcLength, History, Scene, Stage};
 use crate::state::{PathMemory, Rejection, State, StepControl};
 
 /// A parameter this close to the target, relatively, is there.
@@ -85,7 +85,12 @@ impl Stages {
         };
         let (from, mut continuation) = (Standing::of(state), Continuation::new(scene, work));
         let mut aimed_at = state.parameter;
-        let mut found = continuation.step(from, &path.heading, attempt.length_mm, &mut watch);
+        let ahead = state.parameter + attempt.length_mm * path.parameter_rate;
+        let corner = corner_between(scene, state.parameter, ahead);
+        let mut found = match corner {
+            Some(corner) => continuation.step_to_corner(from, corner, &mut watch),
+            None => continuation.step(from, &path.heading, attempt.length_mm, &mut watch),
+        };
         if let Ok(beyond) = &found
             && beyond.parameter.abs() > target * (1.0 + AT_TARGET)
             && !matches!(attempt.judge(state, path, beyond), Judgement::TooFar)
@@ -266,6 +271,19 @@ impl Stages {
             ..path.clone()
         })
     }
+}
+
+/// The first load factor on the way at which a history has a corner, short of where the run ends.
+fn corner_between(scene: &Scene, from: f64, to: f64) -> Option<f64> {
+    let histories =
+        scene.actions.iter().map(|action| &action.history).chain(scene.supports.iter().map(|support| &support.history));
+    let end = scene.load.target() * (1.0 - AT_TARGET);
+    let way = (to - from).signum();
+    let distance = |corner: &f64| way * (corner - from);
+    histories
+        .flat_map(History::kinks)
+        .filter(|corner| corner.abs() < end && distance(corner) > AT_TARGET * end && distance(corner) <= distance(&to))
+        .min_by(|one, other| distance(one).total_cmp(&distance(other)))
 }
 
 /// The state where it was, with another attempt to make.

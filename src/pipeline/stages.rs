@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::adapt::{evaluate_indicators, project_displacements};
 use crate::equilibrium::{Effort, Iterate, SolveError, Solved, Standing, Workspace, WorkspaceError, strain_energy};
 use crate::model::{
-    MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, check_balance, free_motion, remarks, starting_mesh,
+    FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, check_balance, free_motion, remarks, starting_mesh,
 };
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::{Outcome, Parameter, Reading, Report, StageError, Warning};
@@ -138,7 +138,9 @@ impl Stages {
         // Integrated where the finer mesh is: what the energy changes here is the error of the coarser quadrature, and
         // projecting then changes nothing.
         let tables = Tables::on_elements_of(&self.scene, &state.mesh, &finer);
-        let energy = self.scene.symmetry.copies() as f64 * strain_energy(&state.mesh, &tables, &state.displacement);
+        let natural = FreeStrains::new(&self.scene, &state.mesh).at(state.parameter);
+        let parts = self.scene.symmetry.copies() as f64;
+        let energy = parts * strain_energy(&state.mesh, &tables, &state.displacement, natural);
         let mut report = self.report(state, state.step);
         report.marked = [state.marked[0].len(), state.marked[1].len()];
         report.elements = finer.element_counts();
@@ -171,7 +173,7 @@ impl Stages {
         let displacement = project_displacements(&state.mesh, finer, &state.displacement);
         let parts = self.scene.symmetry.copies() as f64;
         let (_, work) = self.workspace(finer, state.step, Stage::ProjectDisplacements)?;
-        let strain_energy_n_mm = parts * work.energy(&displacement);
+        let strain_energy_n_mm = parts * work.energy(&displacement, state.parameter);
         let carried = |path: &PathMemory| PathMemory {
             heading: project_displacements(&state.mesh, finer, &path.heading),
             ..path.clone()

@@ -12,7 +12,8 @@ const FREE_FALL: [f64; 3] = [0.0, 0.0, -9.81];
 pub(super) fn action(table: Table<'_, '_>, ordinal: usize, shell: (&Geometry, &Material)) -> Checked<Action> {
     let (geometry, material) = shell;
     let name = table.maybe_text("name")?.unwrap_or_else(|| format!("action {ordinal}"));
-    let kinds = ["force", "line-force", "area-force", "gravity", "edge-moment", "pressure"];
+    let kinds =
+        ["force", "line-force", "area-force", "gravity", "edge-moment", "pressure", "temperature", "natural-curvature"];
     let kind = match table.word("kind", &kinds.map(|kind| (kind, kind)))? {
         "force" => {
             ActionKind::Force { on: point(&table)?, force_n: vector(&table, "force_n", geometry)?.inside(&table)? }
@@ -24,6 +25,10 @@ pub(super) fn action(table: Table<'_, '_>, ordinal: usize, shell: (&Geometry, &M
             on: edge(&table, "an edge moment")?,
             moment_n: table.number("moment_n", ANY, "1.0")?,
         },
+        "temperature" => ActionKind::Temperature { change_k: table.number("change_k", ANY, "-100.0")? },
+        "natural-curvature" => {
+            ActionKind::NaturalCurvature { change_per_mm: table.tuple("change_per_mm", "[0.01, 0.0, 0.0]")? }
+        }
         _ => ActionKind::Pressure {
             pressure_mpa: table.number("pressure_mpa", ANY, "0.001")?,
             follower: table.switch_or("follower", true)?,

@@ -1,8 +1,8 @@
 //! Entries to a scene, and what must hold between keys.
 
 use super::data::{
-    Action, Adapt, ArcLength, ArcLengthWord, EndRotation, Expectation, Geometry, Hold, LengthLimit, Load, Material,
-    MeshSpec, Motion, Output, Probe, Scene, Solver, Stage, Support, Symmetry,
+    Action, ActionKind, Adapt, ArcLength, ArcLengthWord, EndRotation, Expectation, Geometry, Hold, LengthLimit, Load,
+    Material, MeshSpec, Motion, Output, Probe, Scene, Solver, Stage, Support, Symmetry,
 };
 use super::document::Document;
 use super::error::{Checked, Direction, Fault, Place, Problem, SceneError, Source};
@@ -52,6 +52,7 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
     let (load, increments) = load(reader, &geometry)?;
     check_length(reader, &geometry, &material, &load)?;
     let (supports, actions, probes) = structure(reader, &load, (&geometry, &material))?;
+    check_temperature(reader, &material, &actions)?;
     let pipeline = stages(reader)?;
     let adapt = adapt(reader, &pipeline, &geometry)?;
     let solver = solver(reader, increments.as_ref().map(|increments| &increments.first))?;
@@ -204,6 +205,31 @@ fn check_steps(reader: &Reader<'_, '_>, supports: &[Support], actions: &[Action]
     Ok(())
 }
 
+/// Whether the material says what a change of temperature does to it.
+fn check_temperature(reader: &Reader<'_, '_>, material: &Material, actions: &[Action]) -> Checked<()> {
+    let is_thermal = |action: &Action| matches!(action.kind, ActionKind::Temperature { .. });
+    let Some(heated) = actions.iter().position(is_thermal).filter(|_| !material.expands()) else { return Ok(()) };
+    let action = &reader.document.tables("action")[heated];
+    let (problem, remedy) = match material {
+        Material::Isotropic { .. } => (
+            "the material has no `thermal_expansion_per_k`".into(),
+            "write for example `thermal_expansion_per_k = 23.1e-6` in [material]",
+        ),
+        Material::Orthotropic { .. } => (
+            "the material has no thermal expansion".into(),
+            "write `thermal_expansion_1_per_k` and `thermal_expansion_2_per_k` in [material]",
+        ),
+        Material::Laminate { plies, .. } => {
+            let without = plies.iter().position(|ply| ply.law.expansion_per_k().is_none()).unwrap_or_default();
+            (
+                format!("[[ply]] {} has no thermal expansion", without + 1),
+                "write `thermal_expansion_1_per_k` and `thermal_expansion_2_per_k` in [material] for all plies, or in each [[ply]]",
+            )
+        }
+    };
+    Err(action.wrong(action.place_of("kind").as_ref(), problem, remedy))
+}
+
 /// Whether two supports on one place hold a common component.
 fn hold_the_same(one: &Support, other: &Support) -> bool {
     match (&one.hold, &other.hold) {
@@ -245,16 +271,29 @@ fn material(reader: &Reader<'_, '_>, geometry: &Geometry) -> Checked<Material> {
         let youngs_modulus_mpa = reader.number(&keys::YOUNGS_MODULUS)?.value;
         let poissons_ratio = reader.number(&keys::POISSONS_RATIO)?.value;
         let thickness = reader.number(&keys::THICKNESS)?;
-        let density_kg_m3 = match reader.entry(&keys::DENSITY) {
-            Some(_) => Some(reader.number(&keys::DENSITY)?.value),
-            None => None,
-        };
         general::no_plies(plies)?;
-        let thickness_mm = thickness.value;
-        let material = Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm, density_kg_m3 };
+        let material = Material::Isotropic {
+            youngs_modulus_mpa,
+            poissons_ratio,
+            thickness_mm: thickness.value,
+            offset_mm: reader.number(&keys::OFFSET)?.value,
+            thermal_expansion_per_k: reader.maybe_number(&keys::THERMAL_EXPANSION)?,
+            density_kg_m3: reader.maybe_number(&keys::DENSITY)?,
+        };
         (material, thickness.place)
     };
     let thickness_mm = material.thickness_mm();
+    if material.offset_mm().abs() > thickness_mm {
+        let table = reader.document.table("material");
+        let problem = format!(
+            "offset_mm = {} puts the surface farther from the middle of the thickness than the whole thickness, \
+             {thickness_mm} mm",
+            material.offset_mm()
+        );
+        let remedy =
+            "half the thickness puts it on top; where the shell lies farther off, draw the geometry nearer to it";
+        return Err(table.wrong(table.place_of("offset_mm").as_ref(), problem, remedy));
+    }
     if let Some(radius_mm) = radius(geometry).filter(|radius| thickness_mm >= *radius) {
         let place = reader.document.entry("geometry", "radius_mm").map(|entry| entry.value_place());
         return Err(between(Problem::NotThin { thickness_mm, radius_mm }, thickness, place, reader));

@@ -52,6 +52,11 @@ const FROM: Range = Range { above: -360.0, most: 360.0, reason: "an arc starts b
 const DENSITY: Range = Range { above: 0.0, most: 1e12, reason: "densities are positive, in kg/m3 (steel: 7850)" };
 /// A gap of a full turn that is smaller is rounding of coordinates: 1e-4 rad.
 const NEAR_FULL_TURN_DEG: f64 = 0.006;
+const EXPANSION: Range = Range {
+    above: -1e-3,
+    most: 1e-3,
+    reason: "a strain per kelvin, such as 22.5e-6 across the fibres of carbon in epoxy",
+};
 const MODULUS: Range = Range { above: 0.0, most: 1e13, reason: "moduli are positive, in MPa" };
 
 /// A geometry of one of [`GEOMETRIES`].
@@ -149,7 +154,24 @@ fn law(table: &Table<'_, '_>, default: Option<OrthotropicLaw>) -> Checked<Orthot
             }
         },
         shear_modulus_12_mpa: modulus("shear_modulus_12_mpa", default.map(|law| law.shear_modulus_12_mpa))?,
+        thermal_expansion_1_per_k: table
+            .maybe_number("thermal_expansion_1_per_k", EXPANSION)?
+            .or(default.and_then(|law| law.thermal_expansion_1_per_k)),
+        thermal_expansion_2_per_k: table
+            .maybe_number("thermal_expansion_2_per_k", EXPANSION)?
+            .or(default.and_then(|law| law.thermal_expansion_2_per_k)),
     };
+    if law.thermal_expansion_1_per_k.is_some() != law.thermal_expansion_2_per_k.is_some() {
+        let (given, other) = match law.thermal_expansion_1_per_k {
+            Some(_) => ("thermal_expansion_1_per_k", "thermal_expansion_2_per_k"),
+            None => ("thermal_expansion_2_per_k", "thermal_expansion_1_per_k"),
+        };
+        return Err(table.wrong(
+            table.place_of(given).as_ref(),
+            format!("`{given}` is given and `{other}` is not"),
+            format!("write both; `{other} = 0.0` does not expand that way"),
+        ));
+    }
     if law.poissons_ratio_12.powi(2) >= law.youngs_modulus_1_mpa / law.youngs_modulus_2_mpa {
         let problem = format!(
             "nu12 = {} is too large for E1/E2 = {}: the layer would have no stiffness",
@@ -174,10 +196,12 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
             angle_deg: table.number_or("angle_deg", ANY, 0.0)?,
             thickness_mm: table.number("thickness_mm", LENGTH, "0.1")?,
             density_kg_m3: table.maybe_number("density_kg_m3", DENSITY)?,
+            offset_mm: table.number_or("offset_mm", ANY, 0.0)?,
         };
         table.finish()?;
         return no_plies(plies).map(|()| material);
     }
+    let offset_mm = table.number_or("offset_mm", ANY, 0.0)?;
     let any = ["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa"];
     let default = if any.iter().any(|name| table.entry(name).is_some()) { Some(law(&table, None)?) } else { None };
     let density_kg_m3 = table.maybe_number("density_kg_m3", DENSITY)?;
@@ -199,7 +223,7 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
         });
         ply.finish()?;
     }
-    Ok(Material::Laminate { plies: laminate })
+    Ok(Material::Laminate { plies: laminate, offset_mm })
 }
 
 /// Refuses plies that belong to no laminate.

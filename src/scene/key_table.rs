@@ -21,7 +21,7 @@ pub static SECTIONS: [Section; 11] = [
 ];
 
 /// The keys of a scene file, table by table.
-pub static KEYS: [&Key; 38] = [
+pub static KEYS: [&Key; 40] = [
     &GEOMETRY_KIND,
     &LENGTH,
     &RADIUS,
@@ -31,6 +31,8 @@ pub static KEYS: [&Key; 38] = [
     &POISSONS_RATIO,
     &THICKNESS,
     &DENSITY,
+    &OFFSET,
+    &THERMAL_EXPANSION,
     &DEGREE,
     &ELEMENTS,
     &QUADRATURE,
@@ -208,6 +210,37 @@ pub(super) static DENSITY: Key = Key {
     meaning: "Density rho; only an [[action]] of kind \"gravity\" asks for it.",
     example: "7850.0",
     aliases: &["rho", "ρ", "mass_density"],
+};
+
+pub(super) static OFFSET: Key = Key {
+    section: "material",
+    name: "offset_mm",
+    unit: Millimetre,
+    kind: Kind::Number(Limits {
+        low: Limit::included(-SHELL_LENGTH.high.value, SHELL_LENGTH.high.reason),
+        high: SHELL_LENGTH.high,
+    }),
+    presence: Default("0.0"),
+    reach: Everything,
+    meaning: "Distance of the surface of the geometry from the middle of the thickness, along the normal: half the \
+              thickness puts it on top, minus half of it at the bottom.",
+    example: "0.0",
+    aliases: &["eccentricity"],
+};
+
+pub(super) static THERMAL_EXPANSION: Key = Key {
+    section: "material",
+    name: "thermal_expansion_per_k",
+    unit: None,
+    kind: Kind::Number(Limits {
+        low: Limit::excluded(-1e-3, "a strain per kelvin, such as 23.1e-6 for aluminium"),
+        high: Limit::excluded(1e-3, "a strain per kelvin, such as 23.1e-6 for aluminium"),
+    }),
+    presence: Follows("none; actions of kind \"temperature\" need it"),
+    reach: Everything,
+    meaning: "Strain of the free shell per kelvin.",
+    example: "23.1e-6",
+    aliases: &["cte", "expansion", "thermal_expansion", "expansion_per_k"],
 };
 
 pub(super) static DEGREE: Key = Key {

@@ -45,15 +45,12 @@ impl<'d, 't> Reader<'d, 't> {
 
     /// A number.
     pub fn number(&self, key: &'static Key) -> Checked<Found<f64>> {
-        let Kind::Number(limits) = &key.kind else { unreachable!("{} is not a number", key.path()) };
-        self.read(key, |entry| {
-            let value = as_float(entry.value.get_ref()).ok_or_else(|| wrong_type(key, entry))?;
-            if !value.is_finite() {
-                return Err(Fault::new(Problem::NotFinite { key, value }, &entry.value_place()));
-            }
-            within(key, limits, value, &entry.value_place())?;
-            Ok(value + 0.0) // −0 becomes 0: equal scenes have equal hashes
-        })
+        self.read(key, |entry| number(key, entry))
+    }
+
+    /// A number that may be left out.
+    pub fn maybe_number(&self, key: &'static Key) -> Checked<Option<f64>> {
+        self.entry(key).map(|entry| number(key, entry)).transpose()
     }
 
     /// A whole number.
@@ -138,6 +135,16 @@ pub(super) fn known_word(key: &'static Key, entry: &Entry<'_>) -> Checked<&'stat
             None => fault,
         }
     })
+}
+
+fn number(key: &'static Key, entry: &Entry<'_>) -> Checked<f64> {
+    let Kind::Number(limits) = &key.kind else { unreachable!("{} is not a number", key.path()) };
+    let value = as_float(entry.value.get_ref()).ok_or_else(|| wrong_type(key, entry))?;
+    if !value.is_finite() {
+        return Err(Fault::new(Problem::NotFinite { key, value }, &entry.value_place()));
+    }
+    within(key, limits, value, &entry.value_place())?;
+    Ok(value + 0.0) // −0 becomes 0: equal scenes have equal hashes
 }
 
 fn whole(key: &'static Key, limits: &Limits, entry: &Entry<'_>, item: &Spanned<DeValue<'_>>) -> Checked<usize> {

@@ -9,7 +9,7 @@ use super::keys::toml_float;
 /// `[[ply]]`, `[[support]]`, `[[action]]` and `[[probe]]` tables of a scene, in this order.
 pub(super) fn arrays(scene: &Scene) -> String {
     let mut text = String::new();
-    if let Material::Laminate { plies } = &scene.material {
+    if let Material::Laminate { plies, .. } = &scene.material {
         for ply in plies {
             let law = &ply.law;
             let numbers = [
@@ -20,8 +20,14 @@ pub(super) fn arrays(scene: &Scene) -> String {
                 ("poissons_ratio_12", law.poissons_ratio_12),
                 ("shear_modulus_12_mpa", law.shear_modulus_12_mpa),
             ];
-            let mut lines = numbers.map(|(name, value)| format!("{name} = {}", toml_float(value))).to_vec();
-            lines.extend(ply.density_kg_m3.map(|value| format!("density_kg_m3 = {}", toml_float(value))));
+            let expansions = [
+                ("thermal_expansion_1_per_k", law.thermal_expansion_1_per_k),
+                ("thermal_expansion_2_per_k", law.thermal_expansion_2_per_k),
+            ];
+            let given = expansions.into_iter().filter_map(|(name, value)| Some((name, value?)));
+            let line = |(name, value)| format!("{name} = {}", toml_float(value));
+            let density = ply.density_kg_m3.map(|value| ("density_kg_m3", value));
+            let lines: Vec<String> = numbers.into_iter().chain(given).chain(density).map(line).collect();
             table(&mut text, "ply", &lines);
         }
     }
@@ -144,6 +150,12 @@ fn action_lines(action: &Action) -> Vec<String> {
             format!("pressure_mpa = {}", toml_float(*pressure_mpa)),
             format!("follower = {follower}"),
         ],
+        ActionKind::Temperature { change_k } => {
+            vec!["kind = \"temperature\"".into(), format!("change_k = {}", toml_float(*change_k))]
+        }
+        ActionKind::NaturalCurvature { change_per_mm } => {
+            vec!["kind = \"natural-curvature\"".into(), format!("change_per_mm = {}", list(change_per_mm))]
+        }
     });
     history(&mut lines, &action.history);
     lines

@@ -18,27 +18,54 @@ pub struct ShellStiffness {
 /// Stiffness at a point with reference tangents A₁, A₂.
 pub fn shell_stiffness(material: &Material, tangents: [[f64; 3]; 2]) -> ShellStiffness {
     match material {
-        Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm, .. } => {
-            isotropic(*youngs_modulus_mpa, *poissons_ratio, *thickness_mm, tangents)
+        Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm, offset_mm, .. } => {
+            isotropic(*youngs_modulus_mpa, *poissons_ratio, *thickness_mm, tangents).seen_from(*offset_mm)
         }
-        Material::Orthotropic { law, angle_deg, thickness_mm, .. } => layered(
-            &[Ply { thickness_mm: *thickness_mm, angle_deg: *angle_deg, law: *law, density_kg_m3: None }],
-            tangents,
-        ),
-        Material::Laminate { plies } => layered(plies, tangents),
+        Material::Orthotropic { law, angle_deg, thickness_mm, offset_mm, .. } => {
+            let ply = Ply { thickness_mm: *thickness_mm, angle_deg: *angle_deg, law: *law, density_kg_m3: None };
+            layered(&[ply], *offset_mm, tangents)
+        }
+        Material::Laminate { plies, offset_mm } => layered(plies, *offset_mm, tangents),
     }
+}
+
+impl ShellStiffness {
+    /// Of a shell without coupling, from a surface at an offset from the one that it was formed for: at the old one the
+    /// strain is ε − offset κ.
+    fn seen_from(self, offset: f64) -> Self {
+        if offset == 0.0 {
+            return self;
+        }
+        let [mut coupling, mut bending] = [self.membrane, self.bending];
+        for i in 0..3 {
+            for j in 0..3 {
+                coupling[i][j] *= -offset;
+                bending[i][j] += offset * offset * self.membrane[i][j];
+            }
+        }
+        Self { bending, coupling: Some(coupling), ..self }
+    }
+}
+
+/// Heights of the bottom and the top of each ply along the normal of the surface, which lies `offset` above the middle
+/// of them all.
+pub(super) fn heights(plies: &[Ply], offset: f64) -> impl Iterator<Item = [f64; 2]> {
+    let total: f64 = plies.iter().map(|ply| ply.thickness_mm).sum();
+    plies.iter().scan(-0.5 * total - offset, |height, ply| {
+        let bottom = *height;
+        *height += ply.thickness_mm;
+        Some([bottom, *height])
+    })
 }
 
 /// A = Σ Q h, B = Σ Q (z₁² − z₀²)/2 and D = Σ Q (z₁³ − z₀³)/3 over plies from z₀ to z₁ (classical lamination theory;
 /// Reddy, *Mechanics of Laminated Composite Plates and Shells*, 2nd ed., section 3.3). At height z along the normal the
 /// strain is ε + z κ: with x + z n, half the change of the metric is ε − z (b − B) to first order in z, and κ = B − b.
-fn layered(plies: &[Ply], tangents: [[f64; 3]; 2]) -> ShellStiffness {
+fn layered(plies: &[Ply], offset: f64, tangents: [[f64; 3]; 2]) -> ShellStiffness {
     let total: f64 = plies.iter().map(|ply| ply.thickness_mm).sum();
     let [mut membrane, mut coupling, mut bending] = [[[0.0; 3]; 3]; 3];
-    let mut bottom = -0.5 * total;
     let mut largest = 0.0_f64;
-    for ply in plies {
-        let top = bottom + ply.thickness_mm;
+    for (ply, [bottom, top]) in plies.iter().zip(heights(plies, offset)) {
         let stiffness = ply_stiffness(ply);
         let first = 0.5 * (top * top - bottom * bottom);
         let second = (top.powi(3) - bottom.powi(3)) / 3.0;
@@ -50,7 +77,6 @@ fn layered(plies: &[Ply], tangents: [[f64; 3]; 2]) -> ShellStiffness {
             }
         }
         largest = largest.max(stiffness[0][0].max(stiffness[1][1]));
-        bottom = top;
     }
     let map = cartesian_strains(tangents);
     // Symmetric layers cancel to rounding.
@@ -64,12 +90,13 @@ fn layered(plies: &[Ply], tangents: [[f64; 3]; 2]) -> ShellStiffness {
 
 /// Plane-stress stiffness of a ply in axes (e₁ along A₁, e₂ = n × e₁), order (11, 22, 12) with engineering shear (Reddy,
 /// eq. 2.4.8 and 2.3.17).
-fn ply_stiffness(ply: &Ply) -> [[f64; 3]; 3] {
+pub(super) fn ply_stiffness(ply: &Ply) -> [[f64; 3]; 3] {
     let OrthotropicLaw {
         youngs_modulus_1_mpa: e1,
         youngs_modulus_2_mpa: e2,
         poissons_ratio_12: nu,
         shear_modulus_12_mpa: g,
+        ..
     } = ply.law;
     let scale = 1.0 / (1.0 - nu * nu * e2 / e1);
     let along = [[scale * e1, scale * nu * e2, 0.0], [scale * nu * e2, scale * e2, 0.0], [0.0, 0.0, g]];
@@ -105,7 +132,6 @@ fn turned(stiffness: &[[f64; 3]; 3], map: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     })
 }
 
-///
 /// St. Venant–Kirchhoff in plane stress: C^αβγδ = E/(1−ν²) [ν A^αβ A^γδ + ½(1−ν)(A^αγ A^βδ + A^αδ A^βγ)], with t C for
 /// the membrane and t³/12 C for bending (Kiendl 2011, section 3.3).
 fn isotropic(
@@ -146,6 +172,8 @@ mod tests {
         youngs_modulus_2_mpa: 10e3,
         poissons_ratio_12: 0.3,
         shear_modulus_12_mpa: 5e3,
+        thermal_expansion_1_per_k: None,
+        thermal_expansion_2_per_k: None,
     };
     const TANGENTS: [[f64; 3]; 2] = [[2.0, 0.1, 0.3], [-0.4, 1.5, 0.2]];
 
@@ -164,10 +192,11 @@ mod tests {
             youngs_modulus_2_mpa: e,
             poissons_ratio_12: nu,
             shear_modulus_12_mpa: e / (2.0 * (1.0 + nu)),
+            ..LAW
         };
         let expected = isotropic(e, nu, t, TANGENTS);
         let ply = |angle_deg: f64| Ply { thickness_mm: t / 4.0, angle_deg, law, density_kg_m3: None };
-        let found = layered(&[ply(0.0), ply(30.0), ply(-70.0), ply(90.0)], TANGENTS);
+        let found = layered(&[ply(0.0), ply(30.0), ply(-70.0), ply(90.0)], 0.0, TANGENTS);
         close(found.membrane, expected.membrane);
         close(found.bending, expected.bending);
         assert_eq!(found.coupling, None);
@@ -178,14 +207,14 @@ mod tests {
     fn a_cross_ply_strip_couples_as_by_hand() {
         let ply = |angle_deg: f64| Ply { thickness_mm: 0.1, angle_deg, law: LAW, density_kg_m3: None };
         let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        let found = layered(&[ply(0.0), ply(90.0)], unit);
+        let found = layered(&[ply(0.0), ply(90.0)], 0.0, unit);
         let scale = 1.0 / (1.0 - 0.3 * 0.3 * 10.0 / 140.0);
         let coupling = found.coupling.unwrap();
         assert!((coupling[0][0] / (scale * (10e3 - 140e3) * 0.04 / 8.0) - 1.0).abs() < 1e-12);
         assert!((coupling[0][0] + coupling[1][1]).abs() < 1e-9 && coupling[0][1].abs() < 1e-9);
         assert!((found.membrane[0][0] / (scale * 150e3 * 0.1) - 1.0).abs() < 1e-12);
         assert!((found.bending[2][2] / (5e3 * 0.008 / 12.0) - 1.0).abs() < 1e-12);
-        assert_eq!(layered(&[ply(0.0), ply(90.0), ply(90.0), ply(0.0)], unit).coupling, None);
+        assert_eq!(layered(&[ply(0.0), ply(90.0), ply(90.0), ply(0.0)], 0.0, unit).coupling, None);
     }
 
     /// The energy of ε + z κ through the thickness, by Gauss points in each ply.
@@ -195,14 +224,14 @@ mod tests {
             Ply { thickness_mm: 0.1, angle_deg: 20.0, law: LAW, density_kg_m3: None },
             Ply { thickness_mm: 0.25, angle_deg: -50.0, law: LAW, density_kg_m3: None },
         ];
-        let stiffness = layered(&plies, TANGENTS);
+        let stiffness = layered(&plies, 0.07, TANGENTS);
         let (membrane, bending) = ([1e-3, -2e-3, 5e-4], [4e-3, 1e-3, -2e-3]);
         let form = |m: &[[f64; 3]; 3], a: [f64; 3], b: [f64; 3]| -> f64 { (0..3).map(|i| a[i] * dot(m[i], b)).sum() };
         let found = 0.5 * form(&stiffness.membrane, membrane, membrane)
             + form(&stiffness.coupling.unwrap(), membrane, bending)
             + 0.5 * form(&stiffness.bending, bending, bending);
         let map = cartesian_strains(TANGENTS);
-        let (mut exact, mut bottom) = (0.0, -0.175);
+        let (mut exact, mut bottom) = (0.0, -0.175 - 0.07);
         for ply in &plies {
             for [node, weight] in crate::shell::gauss_legendre(3) {
                 let z = bottom + 0.5 * ply.thickness_mm * (1.0 + node);
@@ -213,5 +242,23 @@ mod tests {
             bottom += ply.thickness_mm;
         }
         assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+    }
+
+    /// The same shell seen from two surfaces: ε at the middle is ε − offset κ at the surface.
+    #[test]
+    fn an_offset_surface_sees_the_same_energy() {
+        let (e, nu, t, offset) = (70e3, 0.3, 0.4, 0.13);
+        let found = isotropic(e, nu, t, TANGENTS).seen_from(offset);
+        let law = OrthotropicLaw {
+            youngs_modulus_1_mpa: e,
+            youngs_modulus_2_mpa: e,
+            poissons_ratio_12: nu,
+            shear_modulus_12_mpa: e / (2.0 * (1.0 + nu)),
+            ..LAW
+        };
+        let layer = layered(&[Ply { thickness_mm: t, angle_deg: 20.0, law, density_kg_m3: None }], offset, TANGENTS);
+        close(found.membrane, layer.membrane);
+        close(found.bending, layer.bending);
+        close(found.coupling.unwrap(), layer.coupling.unwrap());
     }
 }

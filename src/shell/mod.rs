@@ -1,5 +1,6 @@
 //! The Kirchhoff–Love shell at a point: strains, energy and its derivatives, material, quadrature.
 
+mod free_strain;
 mod lane_vector;
 pub(crate) mod lanes;
 #[cfg(target_arch = "x86_64")]
@@ -11,6 +12,7 @@ mod quadrature;
 mod stretching_batch;
 mod vector;
 
+pub use free_strain::{FreeStrain, thermal_strain};
 pub use material::{ShellStiffness, shell_stiffness};
 pub use point::{Hessian, PointReference, Strains};
 pub use point_batch::PointBatch;

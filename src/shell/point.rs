@@ -14,7 +14,7 @@
 //! ∂f/∂a₁ = a₂ × v, ∂f/∂a₂ = v × a₁, ∂²f = Wᵢᵀ F Wⱼ (+ the term of ∂²w), W₁ x = x × a₂, W₂ x = a₁ × x.
 
 use crate::scene::Material;
-use crate::shell::{add, cross, dot, norm, scaled, shell_stiffness, sub};
+use crate::shell::{FreeStrain, add, cross, dot, norm, scaled, shell_stiffness, sub};
 
 /// Gradient of the energy: `[k][c]`, k over (a₁, a₂, a₁₁, a₂₂, a₁₂), c over x, y, z.
 pub type Gradient = [[f64; 3]; 5];
@@ -39,6 +39,8 @@ pub struct PointReference {
     pub(super) coupling: [[f64; 3]; 3],
     /// Whether the layers are not symmetric, so that membrane and bending strains act on each other.
     pub(super) coupled: bool,
+    /// Strains without energy.
+    free: Strains,
 }
 
 /// Strains at a point in the parameter basis, order (11, 22, 12), engineering shear.
@@ -73,7 +75,33 @@ impl PointReference {
             bending: times(stiffness.bending),
             coupling: times(stiffness.coupling.unwrap_or_default()),
             coupled: stiffness.coupling.is_some(),
+            free: Strains { membrane: [0.0; 3], bending: [0.0; 3] },
         }
+    }
+
+    /// The same point where the shell has a free strain; the energy that layers keep in each other is left out.
+    pub fn under(self, free: &FreeStrain) -> Self {
+        let [a1, a2, ..] = self.derivatives;
+        let unit = scaled(1.0 / self.area, self.cross);
+        let [b11, b22, b12] = [2, 3, 4].map(|k| dot(self.derivatives[k], unit));
+        // A₁ = l e₁ and A₂ = m e₁ + n e₂.
+        let l = norm(a1);
+        let (m, n) = (dot(a1, a2) / l, self.area / l);
+        // The curvature of the surface in e₁, e₂.
+        let c11 = b11 / (l * l);
+        let c12 = (b12 - l * m * c11) / (l * n);
+        let c22 = (b22 - m * m * c11 - 2.0 * m * n * c12) / (n * n);
+        let [e11, e22, shear] = free.membrane;
+        let half = 0.5 * shear;
+        let [k11, k22, twist] = free.bending;
+        let bending = [
+            k11 - (e11 * c11 + half * c12),
+            k22 - (e22 * c22 + half * c12),
+            twist - ((e11 + e22) * c12 + half * (c11 + c22)),
+        ];
+        let covariant =
+            |[x, y, z]: [f64; 3]| [l * l * x, m * m * x + n * n * y + m * n * z, 2.0 * l * m * x + l * n * z];
+        Self { free: Strains { membrane: covariant(free.membrane), bending: covariant(bending) }, ..self }
     }
 
     /// The same point without stiffness against stretching.
@@ -151,17 +179,19 @@ impl PointReference {
 
     /// Energy, membrane forces and bending moments, all times the point's area.
     fn resultants(&self, strains: &Strains) -> (f64, [f64; 3], [f64; 3]) {
-        let mut forces = self.membrane.map(|row| dot(row, strains.membrane));
-        let mut moments = self.bending.map(|row| dot(row, strains.bending));
+        let membrane = sub(strains.membrane, self.free.membrane);
+        let bending = sub(strains.bending, self.free.bending);
+        let mut forces = self.membrane.map(|row| dot(row, membrane));
+        let mut moments = self.bending.map(|row| dot(row, bending));
         if self.coupled {
             for i in 0..3 {
                 for j in 0..3 {
-                    forces[i] += self.coupling[i][j] * strains.bending[j];
-                    moments[i] += self.coupling[j][i] * strains.membrane[j];
+                    forces[i] += self.coupling[i][j] * bending[j];
+                    moments[i] += self.coupling[j][i] * membrane[j];
                 }
             }
         }
-        (0.5 * (dot(forces, strains.membrane) + dot(moments, strains.bending)), forces, moments)
+        (0.5 * (dot(forces, membrane) + dot(moments, bending)), forces, moments)
     }
 }
 
@@ -314,6 +344,7 @@ fn geometric_part(d: &Deformed, forces: [f64; 3], moments: [f64; 3], hessian: &m
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::shell::thermal_strain;
 
     pub(in crate::shell) fn sample() -> (PointReference, [[f64; 3]; 5]) {
         sample_of(&Material::Isotropic {
@@ -321,6 +352,8 @@ pub(super) mod tests {
             poissons_ratio: 0.3,
             thickness_mm: 0.5,
             density_kg_m3: None,
+            offset_mm: 0.0,
+            thermal_expansion_per_k: None,
         })
     }
 
@@ -330,6 +363,8 @@ pub(super) mod tests {
             youngs_modulus_2_mpa: 20.0,
             poissons_ratio_12: 0.3,
             shear_modulus_12_mpa: 15.0,
+            thermal_expansion_1_per_k: None,
+            thermal_expansion_2_per_k: None,
         };
         let ply = |angle_deg: f64, modulus: f64| crate::scene::Ply {
             thickness_mm: 0.3,
@@ -337,7 +372,11 @@ pub(super) mod tests {
             law: law(modulus),
             density_kg_m3: None,
         };
-        Material::Laminate { plies: vec![ply(10.0, 100.0), ply(-60.0, 40.0)] }
+        Material::Laminate { plies: vec![ply(10.0, 100.0), ply(-60.0, 40.0)], offset_mm: 0.0 }
+    }
+
+    pub(in crate::shell) fn free_strain() -> FreeStrain {
+        FreeStrain { membrane: [0.1, -0.2, 0.15], bending: [0.3, 0.1, -0.2] }
     }
 
     pub(in crate::shell) fn sample_of(material: &Material) -> (PointReference, [[f64; 3]; 5]) {
@@ -350,6 +389,7 @@ pub(super) mod tests {
     fn gradient_is_the_derivative_of_the_energy_and_hessian_that_of_the_gradient() {
         for (point, u) in [sample(), sample_of(&laminate())] {
             check_derivatives(&point, u);
+            check_derivatives(&point.under(&free_strain()), u);
         }
     }
 
@@ -389,6 +429,24 @@ pub(super) mod tests {
         for (value, exact) in strains.membrane.iter().chain(&strains.bending).zip(expected) {
             assert!((value - exact).abs() < 1e-14, "{value} {exact}");
         }
+    }
+
+    /// Strains that are free in the surface's axes are those of a motion that has them.
+    #[test]
+    fn a_shell_that_grows_evenly_is_free_of_stress() {
+        let material = Material::Isotropic {
+            youngs_modulus_mpa: 100.0,
+            poissons_ratio: 0.3,
+            thickness_mm: 0.5,
+            offset_mm: 0.2,
+            thermal_expansion_per_k: Some(1e-8),
+            density_kg_m3: None,
+        };
+        let (point, _) = sample_of(&material);
+        let u = point.derivatives.map(|x| scaled(1e-8, x));
+        let (strain, _) = thermal_strain(&material).unwrap();
+        let [free, held] = [point.under(&strain), point].map(|point| point.energy(&u));
+        assert!(free < 1e-12 * held, "{free} {held}");
     }
 
     #[test]

@@ -10,6 +10,7 @@
 //! +[v×] for α ≠ β. W_1ᵀ W_1 = a₂·a₂ I − a₂ a₂ᵀ, W_1ᵀ W_2 = a₁ a₂ᵀ − a₁·a₂ I, W_2ᵀ W_2 = a₁·a₁ I − a₁ a₁ᵀ join the
 //! membrane's C and f.
 
+use super::free_strain::FreeStrain;
 use super::lane_vector::{accumulate, add, combination, cross, dot, outer, scaled, sub};
 use super::lanes::FourLanes;
 use super::point::PointReference;
@@ -25,17 +26,24 @@ pub(crate) type BatchHessian<const SIZE: usize> = [[Four; SIZE]; SIZE];
 
 /// Four points whose energy depends on the first `ROWS` of u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂; `SIZE` is 3 `ROWS`.
 pub(crate) trait PointKernel<const ROWS: usize, const SIZE: usize> {
-    /// Energies for derivatives of the displacement.
-    fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; ROWS]) -> V;
+    /// Energies for derivatives of the displacement, where the shell has a free strain if there is one.
+    fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; ROWS], free: Option<&FreeStrain>) -> V;
 
     /// Energies, and their gradients.
-    fn gradient<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; ROWS], gradient: &mut BatchGradient<ROWS>) -> V;
+    fn gradient<V: FourLanes>(
+        &self,
+        proof: V::Proof,
+        u: &[[V; 3]; ROWS],
+        free: Option<&FreeStrain>,
+        gradient: &mut BatchGradient<ROWS>,
+    ) -> V;
 
     /// Energies, gradients and Hessians.
     fn hessian<V: FourLanes>(
         &self,
         proof: V::Proof,
         u: &[[V; 3]; ROWS],
+        free: Option<&FreeStrain>,
         gradient: &mut BatchGradient<ROWS>,
         hessian: &mut BatchHessian<SIZE>,
     ) -> V;
@@ -78,7 +86,7 @@ impl PointBatch {
     }
 
     #[inline(always)]
-    fn deform<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 5]) -> Deformed<V> {
+    fn deform<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 5], free: Option<&FreeStrain>) -> Deformed<V> {
         let zero = V::splat(proof, 0.0);
         let mut reference = [[zero; 3]; 5];
         let mut a = reference;
@@ -104,17 +112,42 @@ impl PointBatch {
         for k in 0..3 {
             bending[k] = zero - (dot(u[2 + k], normal) + dot(reference[2 + k], turn));
         }
-        Deformed {
-            a,
-            normal,
-            inverse,
-            membrane: [
-                half * stretch(&reference, u, 0, 0),
-                half * stretch(&reference, u, 1, 1),
-                stretch(&reference, u, 0, 1),
-            ],
-            bending,
+        let mut membrane =
+            [half * stretch(&reference, u, 0, 0), half * stretch(&reference, u, 1, 1), stretch(&reference, u, 0, 1)];
+        if let Some(free) = free {
+            let free = self.free_strains(proof, free);
+            membrane = sub(membrane, free[0]);
+            bending = sub(bending, free[1]);
         }
+        Deformed { a, normal, inverse, membrane, bending }
+    }
+
+    /// ε₁₁, ε₂₂, 2ε₁₂ and κ₁₁, κ₂₂, κ₁₂ that have no energy, as in [`PointReference::under`].
+    #[inline(always)]
+    fn free_strains<V: FourLanes>(&self, proof: V::Proof, free: &FreeStrain) -> [[V; 3]; 2] {
+        let mut reference = [[V::splat(proof, 0.0); 3]; 5];
+        for k in 0..5 {
+            reference[k] = load3(proof, &self.derivatives[k]);
+        }
+        let [a1, a2, a11, a22, a12] = reference;
+        let area = V::load(proof, &self.area);
+        let unit = scaled(V::splat(proof, 1.0) / area, load3(proof, &self.cross));
+        let (half, two) = (V::splat(proof, 0.5), V::splat(proof, 2.0));
+        let l = dot(a1, a1).sqrt();
+        let (m, n) = (dot(a1, a2) / l, area / l);
+        let c11 = dot(a11, unit) / (l * l);
+        let c12 = (dot(a12, unit) - l * m * c11) / (l * n);
+        let c22 = (dot(a22, unit) - m * m * c11 - two * m * n * c12) / (n * n);
+        let membrane = splat3(proof, free.membrane);
+        let mut bending = splat3(proof, free.bending);
+        let [e11, e22, shear] = membrane;
+        let tilt = half * shear;
+        bending[0] = bending[0] - (e11 * c11 + tilt * c12);
+        bending[1] = bending[1] - (e22 * c22 + tilt * c12);
+        bending[2] = bending[2] - ((e11 + e22) * c12 + tilt * (c11 + c22));
+        let mut bending = covariant([l, m, n], two, bending);
+        bending[2] = half * bending[2];
+        [covariant([l, m, n], two, membrane), bending]
     }
 
     #[inline(always)]
@@ -242,14 +275,20 @@ impl PointBatch {
 
 impl PointKernel<5, 15> for PointBatch {
     #[inline(always)]
-    fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 5]) -> V {
-        let deformed = self.deform(proof, u);
+    fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 5], free: Option<&FreeStrain>) -> V {
+        let deformed = self.deform(proof, u, free);
         self.resultants(proof, &deformed).energy
     }
 
     #[inline(always)]
-    fn gradient<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 5], gradient: &mut BatchGradient<5>) -> V {
-        let deformed = self.deform(proof, u);
+    fn gradient<V: FourLanes>(
+        &self,
+        proof: V::Proof,
+        u: &[[V; 3]; 5],
+        free: Option<&FreeStrain>,
+        gradient: &mut BatchGradient<5>,
+    ) -> V {
+        let deformed = self.deform(proof, u, free);
         let resultants = self.resultants(proof, &deformed);
         gradient_of(proof, &deformed, &resultants, gradient);
         resultants.energy
@@ -260,10 +299,11 @@ impl PointKernel<5, 15> for PointBatch {
         &self,
         proof: V::Proof,
         u: &[[V; 3]; 5],
+        free: Option<&FreeStrain>,
         gradient: &mut BatchGradient<5>,
         hessian: &mut BatchHessian<15>,
     ) -> V {
-        let deformed = self.deform(proof, u);
+        let deformed = self.deform(proof, u, free);
         let resultants = self.resultants(proof, &deformed);
         gradient_of(proof, &deformed, &resultants, gradient);
         self.hessian_of(proof, &deformed, &resultants, hessian);
@@ -279,6 +319,12 @@ pub(super) fn lanes_of(points: &[PointReference], number: impl Fn(&PointReferenc
 /// A stiffness of each point; those that are missing have none.
 pub(super) fn stiffness_of(points: &[PointReference], number: impl Fn(&PointReference) -> f64) -> Four {
     std::array::from_fn(|lane| points.get(lane).map_or(0.0, &number))
+}
+
+/// Strains (11, 22, 12 with engineering shear) by A₁ = l e₁ and A₂ = m e₁ + n e₂ from those by e₁ and e₂.
+#[inline(always)]
+pub(super) fn covariant<V: FourLanes>([l, m, n]: [V; 3], two: V, [x, y, z]: [V; 3]) -> [V; 3] {
+    [l * l * x, m * m * x + n * n * y + m * n * z, two * l * m * x + l * n * z]
 }
 
 /// a_i·a_j − A_i·A_j.
@@ -298,9 +344,9 @@ struct Deformed<V> {
     normal: [V; 3],
     /// 1 / J.
     inverse: V,
-    /// ε₁₁, ε₂₂, 2ε₁₂.
+    /// ε₁₁, ε₂₂, 2ε₁₂, less those without energy.
     membrane: [V; 3],
-    /// κ₁₁, κ₂₂, κ₁₂.
+    /// κ₁₁, κ₂₂, κ₁₂, less those without energy.
     bending: [V; 3],
 }
 
@@ -404,6 +450,11 @@ pub(super) fn load3<V: FourLanes>(proof: V::Proof, from: &[Four; 3]) -> [V; 3] {
 }
 
 #[inline(always)]
+pub(super) fn splat3<V: FourLanes>(proof: V::Proof, x: [f64; 3]) -> [V; 3] {
+    [V::splat(proof, x[0]), V::splat(proof, x[1]), V::splat(proof, x[2])]
+}
+
+#[inline(always)]
 pub(super) fn store3<V: FourLanes>(x: [V; 3], to: &mut [Four; 3]) {
     for c in 0..3 {
         x[c].store(&mut to[c]);
@@ -415,19 +466,20 @@ mod tests {
     use super::*;
     use crate::shell::Hessian;
     use crate::shell::lanes::{Lanes, Portable};
-    use crate::shell::point::tests::{laminate, sample, sample_of};
+    use crate::shell::point::tests::{free_strain, laminate, sample, sample_of};
 
-    /// Four points, three and one, with and without coupling, each against the slow way.
+    /// Four points, three and one, with and without coupling and free strain, each against the slow way.
     #[test]
     fn a_batch_is_its_points() {
         for (point, u) in [sample(), sample_of(&laminate())] {
             for count in [1, 3, 4] {
-                check(&vec![point; count], u);
+                check(&vec![point; count], u, None);
+                check(&vec![point; count], u, Some(&free_strain()));
             }
         }
     }
 
-    fn check(points: &[PointReference], u: [[f64; 3]; 5]) {
+    fn check(points: &[PointReference], u: [[f64; 3]; 5], free: Option<&FreeStrain>) {
         // A displacement of its own for each point.
         let of_lane = |lane: usize| u.map(|row| row.map(|x| x * (1.0 - 0.2 * lane as f64)));
         let lanes = std::array::from_fn(|k| {
@@ -436,14 +488,14 @@ mod tests {
         let batch = PointBatch::new(points);
         let (mut gradient, mut hessian) = ([[[0.0; 4]; 3]; 5], [[[0.0; 4]; 15]; 15]);
         let mut energies = [[0.0; 4]; 3];
-        batch.hessian::<Portable>((), &lanes, &mut gradient, &mut hessian).store(&mut energies[0]);
+        batch.hessian::<Portable>((), &lanes, free, &mut gradient, &mut hessian).store(&mut energies[0]);
         let mut alone = gradient;
-        batch.gradient::<Portable>((), &lanes, &mut alone).store(&mut energies[1]);
-        batch.energy::<Portable>((), &lanes).store(&mut energies[2]);
+        batch.gradient::<Portable>((), &lanes, free, &mut alone).store(&mut energies[1]);
+        batch.energy::<Portable>((), &lanes, free).store(&mut energies[2]);
         assert_eq!(alone, gradient);
         assert_eq!([energies[1], energies[2]], [energies[0]; 2]);
         for lane in 0..4 {
-            let Some(point) = points.get(lane) else {
+            let Some(point) = points.get(lane).map(|point| free.map_or(*point, |free| point.under(free))) else {
                 assert_eq!(energies[0][lane], 0.0);
                 assert!(hessian.iter().flatten().all(|number| number[lane] == 0.0));
                 continue;

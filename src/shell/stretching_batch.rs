@@ -3,10 +3,11 @@
 //!
 //! With f the membrane forces and C their stiffness: ∂w/∂a_α = f^{αβ} a_β and H_αβ = f^{αβ} I + Σ C^{αγβδ} a_γ a_δᵀ.
 
-use super::lane_vector::{accumulate, add, dot, outer, scaled};
+use super::free_strain::FreeStrain;
+use super::lane_vector::{accumulate, add, cross, dot, outer, scaled, sub};
 use super::lanes::FourLanes;
 use super::point::PointReference;
-use super::point_batch::{Four, PointKernel, lanes_of, load3, put, stiffness_of, store3, stretch};
+use super::point_batch::{Four, PointKernel, covariant, lanes_of, load3, put, splat3, stiffness_of, store3, stretch};
 
 /// The undeformed shell at four quadrature points; where fewer are left, the last stands for the rest, without
 /// stiffness.
@@ -30,11 +31,17 @@ impl StretchingBatch {
     }
 
     #[inline(always)]
-    fn deform<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 2]) -> Stretched<V> {
+    fn deform<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 2], free: Option<&FreeStrain>) -> Stretched<V> {
         let reference = [load3(proof, &self.tangents[0]), load3(proof, &self.tangents[1])];
         let half = V::splat(proof, 0.5);
-        let strains =
+        let mut strains =
             [half * stretch(&reference, u, 0, 0), half * stretch(&reference, u, 1, 1), stretch(&reference, u, 0, 1)];
+        if let Some(free) = free {
+            let [a1, a2] = reference;
+            let (l, normal) = (dot(a1, a1).sqrt(), cross(a1, a2));
+            let frame = [l, dot(a1, a2) / l, dot(normal, normal).sqrt() / l];
+            strains = sub(strains, covariant(frame, V::splat(proof, 2.0), splat3(proof, free.membrane)));
+        }
         let mut forces = strains;
         for i in 0..3 {
             forces[i] = dot(load3(proof, &self.membrane[i]), strains);
@@ -64,13 +71,19 @@ impl<V: FourLanes> Stretched<V> {
 
 impl PointKernel<2, 6> for StretchingBatch {
     #[inline(always)]
-    fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 2]) -> V {
-        self.deform(proof, u).energy
+    fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 2], free: Option<&FreeStrain>) -> V {
+        self.deform(proof, u, free).energy
     }
 
     #[inline(always)]
-    fn gradient<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; 2], gradient: &mut [[Four; 3]; 2]) -> V {
-        let stretched = self.deform(proof, u);
+    fn gradient<V: FourLanes>(
+        &self,
+        proof: V::Proof,
+        u: &[[V; 3]; 2],
+        free: Option<&FreeStrain>,
+        gradient: &mut [[Four; 3]; 2],
+    ) -> V {
+        let stretched = self.deform(proof, u, free);
         stretched.store_gradient(gradient);
         stretched.energy
     }
@@ -80,10 +93,11 @@ impl PointKernel<2, 6> for StretchingBatch {
         &self,
         proof: V::Proof,
         u: &[[V; 3]; 2],
+        free: Option<&FreeStrain>,
         gradient: &mut [[Four; 3]; 2],
         hessian: &mut [[Four; 6]; 6],
     ) -> V {
-        let stretched = self.deform(proof, u);
+        let stretched = self.deform(proof, u, free);
         stretched.store_gradient(gradient);
         let ([a1, a2], [f11, f22, f12]) = (stretched.tangents, stretched.forces);
         let c = [load3(proof, &self.membrane[0]), load3(proof, &self.membrane[1]), load3(proof, &self.membrane[2])];
@@ -109,20 +123,25 @@ mod tests {
     use super::*;
     use crate::shell::Hessian;
     use crate::shell::lanes::{Lanes, Portable};
-    use crate::shell::point::tests::sample;
+    use crate::shell::point::tests::{free_strain, sample};
 
-    /// Three points against the slow way, whose bending is taken away.
+    /// Three points against the slow way, whose bending is taken away, with and without free strain.
     #[test]
     fn a_batch_is_the_stretching_of_its_points() {
+        check(None);
+        check(Some(&free_strain()));
+    }
+
+    fn check(free: Option<&FreeStrain>) {
         let (whole, u) = sample();
         let point = whole.stretching_alone();
         let batch = StretchingBatch::new(&[point; 3]);
         let mut hessian: Hessian = [[0.0; 16]; 15];
-        let (energy, gradient) = point.hessian(&u, &mut hessian);
+        let (energy, gradient) = free.map_or(point, |free| point.under(free)).hessian(&u, &mut hessian);
         let lanes = [0, 1].map(|k| u[k].map(|value| Portable::splat((), value)));
         let (mut found_gradient, mut found) = ([[[0.0; 4]; 3]; 2], [[[0.0; 4]; 6]; 6]);
         let mut energies = [0.0; 4];
-        batch.hessian((), &lanes, &mut found_gradient, &mut found).store(&mut energies);
+        batch.hessian((), &lanes, free, &mut found_gradient, &mut found).store(&mut energies);
         for lane in 0..3 {
             assert!((energies[lane] / energy - 1.0).abs() < 1e-13);
             for i in 0..6 {

@@ -58,7 +58,7 @@ fn modulus(material: &Material) -> f64 {
     match material {
         Material::Isotropic { youngs_modulus_mpa, .. } => *youngs_modulus_mpa,
         Material::Orthotropic { law, .. } => law.youngs_modulus_1_mpa,
-        Material::Laminate { plies } => plies.first().map_or(f64::NAN, |ply| ply.law.youngs_modulus_1_mpa),
+        Material::Laminate { plies, .. } => plies.first().map_or(f64::NAN, |ply| ply.law.youngs_modulus_1_mpa),
     }
 }
 

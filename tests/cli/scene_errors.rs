@@ -397,6 +397,40 @@ fn help() {
     pin("help", &help_text());
 }
 
+/// What actions of [`GENERAL`] are put in front of.
+const FIRST_PROBE: &str = "[[probe]]\nname = \"tip\"";
+
+#[test]
+fn offset_expansion_and_free_strain() {
+    let action = |lines: &str| format!("[[action]]\n{lines}\n{FIRST_PROBE}");
+    let heated = action("kind = \"temperature\"\nchange_k = -100.0");
+    let half = "thermal_expansion_1_per_k = 1e-6\n[[ply]]";
+    let large = "thermal_expansion_1_per_k = 1.0\nthermal_expansion_2_per_k = 22.5\n[[ply]]";
+    let general = general_errors(&[
+        ("[[ply]]", "offset_mm = 0.2\n[[ply]]"),
+        ("[[ply]]", half),
+        ("[[ply]]", large),
+        (FIRST_PROBE, &heated),
+        (FIRST_PROBE, &action("kind = \"temperature\"")),
+        (FIRST_PROBE, &action("kind = \"natural-curvature\"\nchange_per_mm = 0.01")),
+        (FIRST_PROBE, &action("kind = \"natural-curvature\"\ncurvature_per_mm = [0.01, 0.0, 0.0]")),
+        (FIRST_PROBE, &action("kind = \"temperature\"\nchange_k = 9.0\nhistory = [[0.0, 1.0], [1.0, 2.0]]")),
+    ]);
+    let isotropic = |lines: &str| {
+        let law = "kind = \"isotropic\"\nyoungs_modulus_mpa = 70e3\npoissons_ratio = 0.3\nthickness_mm = 0.1";
+        let (from, to) = (GENERAL.find("kind = \"laminate\"").unwrap(), GENERAL.find("[mesh]").unwrap());
+        format!("{}{law}\n{lines}\n{}", &GENERAL[..from], &GENERAL[to..])
+    };
+    let wrong = [
+        isotropic("").replace(FIRST_PROBE, &heated),
+        isotropic("offset_mm = -0.11"),
+        isotropic("thermal_expansion_per_k = 23.1"),
+        isotropic("cte = 23.1e-6"),
+    ];
+    let errors = wrong.map(|text| report(&parse(&text, "scene.toml").unwrap_err()));
+    pin("offset_expansion_and_free_strain", &(general + "\n" + &errors.join("\n")));
+}
+
 /// A plate and a laminate with supports, actions and probes of their own.
 const GENERAL: &str = r#"# A plate.
 [geometry]

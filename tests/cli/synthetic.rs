@@ -37,6 +37,8 @@ pub fn scene() -> Scene {
             poissons_ratio: 0.3,
             thickness_mm: 0.1,
             density_kg_m3: None,
+            offset_mm: 0.0,
+            thermal_expansion_per_k: None,
         },
         mesh: MeshSpec { degree: [3, 3], elements: [4, 4], quadrature: Quadrature::Full },
         symmetry: Symmetry::Quarter,

@@ -131,6 +131,8 @@ fn another_value(key: &Key) -> Option<&'static str> {
         "material.poissons_ratio" => "0.31",
         "material.thickness_mm" => "0.2",
         "material.density_kg_m3" => "7850",
+        "material.offset_mm" => "0.05",
+        "material.thermal_expansion_per_k" => "23.1e-6",
         "mesh.degree" => "[3, 4]",
         "mesh.elements" => "[4, 6]",
         "mesh.quadrature" => "reduced",

@@ -56,10 +56,10 @@ fn residual_and_stiffness_are_derivatives_of_the_energy() {
         let moved = |q: &[f64]| discretization.unknowns.place(q, 8.5).displacement();
         let direction = &noise(2 * count)[count..];
         let at = |step: f64| -> Vec<f64> { point.iter().zip(direction).map(|(q, d)| q + step * d).collect() };
-        let energy = |step: f64| strain_energy(&mesh, &discretization.tables, &moved(&at(step)));
+        let energy = |step: f64| strain_energy(&mesh, &discretization.tables, &moved(&at(step)), None);
         let mut assembled = Assembled::new(&discretization);
         let mut gradient = |step: f64| {
-            assembled.assemble(&discretization, &moved(&at(step)), Want::Residual);
+            assembled.assemble(&discretization, &moved(&at(step)), 8.5, Want::Residual);
             placement.restrict(&assembled.residual)
         };
         let step = 1e-6;
@@ -70,7 +70,7 @@ fn residual_and_stiffness_are_derivatives_of_the_energy() {
         let change: Vec<f64> =
             gradient(step).iter().zip(gradient(-step)).map(|(a, b)| (a - b) / (2.0 * step)).collect();
         let mut assembled = Assembled::new(&discretization);
-        assembled.assemble(&discretization, &placement.displacement(), Want::Stiffness);
+        assembled.assemble(&discretization, &placement.displacement(), 8.5, Want::Stiffness);
         let field = placement.velocity(direction, &[]);
         let product = placement.restrict(&assembled.multiply(&discretization, &field));
         let difference: Vec<f64> = product.iter().zip(&change).map(|(a, b)| a - b).collect();

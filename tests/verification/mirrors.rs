@@ -11,6 +11,8 @@ const LAW: OrthotropicLaw = OrthotropicLaw {
     youngs_modulus_2_mpa: 9_000.0,
     poissons_ratio_12: 0.3,
     shear_modulus_12_mpa: 5_000.0,
+    thermal_expansion_1_per_k: None,
+    thermal_expansion_2_per_k: None,
 };
 
 fn laminate(angles: &[f64]) -> foldline::scene::Material {
@@ -20,7 +22,7 @@ fn laminate(angles: &[f64]) -> foldline::scene::Material {
         law: LAW,
         density_kg_m3: None,
     };
-    foldline::scene::Material::Laminate { plies: angles.iter().map(ply).collect() }
+    foldline::scene::Material::Laminate { plies: angles.iter().map(ply).collect(), offset_mm: 0.0 }
 }
 
 fn spring(symmetry: Symmetry, angles: &[f64]) -> Result<(), ModelError> {

@@ -55,7 +55,7 @@ fn panel_of(thickness: f64, degree: usize, elements: [usize; 2], quadrature: Qua
 fn eigenvalues(scene: &Scene, mesh: &Arc<Mesh>, displacement: &[[f64; 3]]) -> Vec<f64> {
     let discretization = Discretization::new(scene, mesh).unwrap();
     let mut assembled = Assembled::new(&discretization);
-    assembled.assemble(&discretization, displacement, Want::Stiffness);
+    assembled.assemble(&discretization, displacement, 0.0, Want::Stiffness);
     let count = mesh.control_points.len();
     let mut matrix = DMatrix::zeros(3 * count, 3 * count);
     for column in 0..3 * count {
@@ -162,7 +162,7 @@ fn too_few_points_would_show() {
     let lost: usize = (0..elements).map(|element| poor.tables.points.element_points(element).len()).sum();
     poor.tables.points.functions[..lost * 5 * poor.tables.padded].fill(0.0);
     let mut assembled = Assembled::new(&poor);
-    assembled.assemble(&poor, &still, Want::Stiffness);
+    assembled.assemble(&poor, &still, 0.0, Want::Stiffness);
     let mut corner = still.clone();
     corner[0] = [1.0, 0.0, 0.0];
     let force = assembled.multiply(&poor, &corner);

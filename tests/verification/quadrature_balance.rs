@@ -189,7 +189,7 @@ fn linear(scene: &Scene, mesh: &Arc<Mesh>, forces: &[[f64; 3]]) -> Vec<[f64; 3]>
     let discretization = Discretization::new(scene, mesh).unwrap();
     let mut assembled = Assembled::new(&discretization);
     let still = vec![[0.0; 3]; mesh.control_points.len()];
-    assembled.assemble(&discretization, &still, Want::Stiffness);
+    assembled.assemble(&discretization, &still, 0.0, Want::Stiffness);
     let count = discretization.unknowns.count();
     let placement = discretization.unknowns.place(&vec![0.0; count], 0.0);
     let mut matrix = DMatrix::zeros(count, count);
@@ -227,7 +227,7 @@ fn varying_error(ratio: f64, degree: usize, count: usize, graded: bool, quadratu
     let discretization = Discretization::new(&exact_scene, &fine).unwrap();
     let mut assembled = Assembled::new(&discretization);
     let still = vec![[0.0; 3]; fine.control_points.len()];
-    assembled.assemble(&discretization, &still, Want::Stiffness);
+    assembled.assemble(&discretization, &still, 0.0, Want::Stiffness);
     let forces = assembled.multiply(&discretization, &given);
     let found = linear(&scene, &coarse, &restricted(&coarse, &new, &forces));
     let off = (0..=200).map(|sample| {

@@ -55,7 +55,7 @@ fn dense(scene: &Scene, state: &State) -> Vec<f64> {
     let free = unknowns.of_displacement(&state.displacement, &state.turns, state.parameter);
     let placement = unknowns.place(&free, state.parameter);
     let mut assembled = Assembled::new(&discretization);
-    assembled.assemble(&discretization, &state.displacement, Want::Stiffness);
+    assembled.assemble(&discretization, &state.displacement, state.parameter, Want::Stiffness);
     let Mesh { knots, degree, .. } = &*state.mesh;
     let [along, across] = [0, 1].map(|way| shares(&knots[way], degree[way]));
     let count = unknowns.count();

@@ -44,6 +44,7 @@ fn point(distance: f64, turn: f64, rate: f64, negative_pivots: usize, iterations
             turns: vec![],
             energy: 0.0,
             work: 0.0,
+            put_in: 0.0,
             moment: 0.0,
             negative_pivots,
             largest_force: 0.0,

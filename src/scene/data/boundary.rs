@@ -182,6 +182,17 @@ pub enum ActionKind {
         /// undeformed shell (dead).
         follower: bool,
     },
+    /// A change of temperature, the same in the whole shell. The material says how much it expands.
+    Temperature {
+        /// Kelvin.
+        change_k: f64,
+    },
+    /// A change of the curvature that the shell has where it is free of stress, the same in the whole shell.
+    NaturalCurvature {
+        /// κ₁₁, κ₂₂, κ₁₂ in axes e₁ along the u direction and e₂ = n × e₁, 1/mm: positive where the side that the normal
+        /// points to gets longer, so that the surface bends away from the normal. κ₁₂ is the twist, half of the shear.
+        change_per_mm: [f64; 3],
+    },
 }
 
 /// A dead force, or force per length or area.

@@ -17,8 +17,14 @@ pub enum Material {
         /// Density ρ, kg/m³; only [`super::ActionKind::Gravity`] asks for it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         density_kg_m3: Option<f64>,
+        /// Where the surface of the geometry lies; see [`Material::offset_mm`].
+        #[serde(default, skip_serializing_if = "is_zero")]
+        offset_mm: f64,
+        /// Strain of a free shell per kelvin.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        thermal_expansion_per_k: Option<f64>,
     },
-    /// One orthotropic layer, symmetric about the mid-surface.
+    /// One orthotropic layer.
     Orthotropic {
         /// Moduli in the material axes.
         #[serde(flatten)]
@@ -30,12 +36,17 @@ pub enum Material {
         /// Density ρ, kg/m³; only [`super::ActionKind::Gravity`] asks for it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         density_kg_m3: Option<f64>,
+        /// Where the surface of the geometry lies; see [`Material::offset_mm`].
+        #[serde(default, skip_serializing_if = "is_zero")]
+        offset_mm: f64,
     },
-    /// Plies through the thickness, from the side that the normal points away from (bottom) to the other (top); the
-    /// surface of the geometry lies in the middle of the total thickness.
+    /// Plies through the thickness, from the side that the normal points away from (bottom) to the other (top).
     Laminate {
         /// From bottom to top.
         plies: Vec<Ply>,
+        /// Where the surface of the geometry lies; see [`Material::offset_mm`].
+        #[serde(default, skip_serializing_if = "is_zero")]
+        offset_mm: f64,
     },
 }
 
@@ -44,7 +55,7 @@ impl Material {
     pub fn thickness_mm(&self) -> f64 {
         match self {
             Material::Isotropic { thickness_mm, .. } | Material::Orthotropic { thickness_mm, .. } => *thickness_mm,
-            Material::Laminate { plies } => plies.iter().map(|ply| ply.thickness_mm).sum(),
+            Material::Laminate { plies, .. } => plies.iter().map(|ply| ply.thickness_mm).sum(),
         }
     }
 
@@ -54,9 +65,34 @@ impl Material {
         match self {
             Material::Isotropic { density_kg_m3, thickness_mm, .. }
             | Material::Orthotropic { density_kg_m3, thickness_mm, .. } => layer(*density_kg_m3, *thickness_mm),
-            Material::Laminate { plies } => plies.iter().map(|ply| layer(ply.density_kg_m3, ply.thickness_mm)).sum(),
+            Material::Laminate { plies, .. } => {
+                plies.iter().map(|ply| layer(ply.density_kg_m3, ply.thickness_mm)).sum()
+            }
         }
     }
+
+    /// Distance of the surface of the geometry from the middle of the thickness, along the normal, mm: half the thickness
+    /// puts the surface on top, minus half of it at the bottom.
+    pub fn offset_mm(&self) -> f64 {
+        match self {
+            Material::Isotropic { offset_mm, .. }
+            | Material::Orthotropic { offset_mm, .. }
+            | Material::Laminate { offset_mm, .. } => *offset_mm,
+        }
+    }
+
+    /// Whether it is said how much the material expands when it is heated.
+    pub fn expands(&self) -> bool {
+        match self {
+            Material::Isotropic { thermal_expansion_per_k, .. } => thermal_expansion_per_k.is_some(),
+            Material::Orthotropic { law, .. } => law.expansion_per_k().is_some(),
+            Material::Laminate { plies, .. } => plies.iter().all(|ply| ply.law.expansion_per_k().is_some()),
+        }
+    }
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 /// A cubic millimetre in cubic metres.
@@ -73,6 +109,19 @@ pub struct OrthotropicLaw {
     pub poissons_ratio_12: f64,
     /// Shear modulus G₁₂.
     pub shear_modulus_12_mpa: f64,
+    /// Strain of a free layer along material axis 1 per kelvin.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thermal_expansion_1_per_k: Option<f64>,
+    /// The same across.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thermal_expansion_2_per_k: Option<f64>,
+}
+
+impl OrthotropicLaw {
+    /// Strains of a free layer along and across material axis 1 per kelvin, where both are given.
+    pub fn expansion_per_k(&self) -> Option<[f64; 2]> {
+        Some([self.thermal_expansion_1_per_k?, self.thermal_expansion_2_per_k?])
+    }
 }
 
 /// A ply of a laminate.
