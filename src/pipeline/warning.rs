@@ -13,11 +13,15 @@ use crate::adapt::{Blocked, Halving};
 use crate::pipeline::step_control::next_stage;
 use crate::pipeline::{Report, Stages};
 use crate::scene::Stage;
-use crate::state::State;
+use crate::state::{Refinement, State};
 use crate::units::{count, signed};
 
 /// Change of the strain energy, relative to it, from which on it is said.
 const LARGE: f64 = 0.05;
+
+/// The same of the last refinement, taken for the whole mesh, up to which a run that refines has seen that its elements are
+/// fine enough; halving them all to see it again would cost `baseline-quarter.toml` a tenth of its time.
+const SMALL: f64 = 0.01;
 
 /// A mesh that cannot show what the shell does, with the numbers that say so.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -130,6 +134,10 @@ impl Stages {
     }
 
     fn coarse_elements(&self, state: &State) -> Option<Warning> {
+        let has_shown = |last: Refinement| last.of_all_n_mm() <= SMALL * state.strain_energy_n_mm;
+        if state.refinement.is_some_and(has_shown) {
+            return None;
+        }
         let energy_share = Halving::of(&self.scene, state)?.energy_share();
         let (parameter, elements) = (state.parameter, state.mesh.element_counts());
         let is_said = energy_share.is_finite() && energy_share > LARGE;
