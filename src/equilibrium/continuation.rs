@@ -124,10 +124,10 @@ impl<'a> Continuation<'a> {
 
     /// A step to a value of the parameter at which a history has a corner. The path may turn there by any angle, back on
     /// itself where what drove the shell stops and something else sets in: the heading at the end is that beyond the
-    /// corner, where the parameter goes on as before.
+    /// corner, where the parameter goes on as before; where nothing moves beyond, that by which the path came.
     ///
     /// # Errors
-    /// Where no equilibrium is found in a few iterations, or nothing moves beyond.
+    /// Where no equilibrium is found in a few iterations.
     pub fn step_to_corner(
         &mut self,
         from: Standing,
@@ -138,7 +138,10 @@ impl<'a> Continuation<'a> {
         let Solved { displacement, turns, largest_force, .. } = &point.solved;
         let sense = Sense::Parameter { grows: parameter > from.parameter };
         let there = Standing { displacement, turns, parameter, largest_force: *largest_force };
-        let heading = self.heading_at(there, sense)?;
+        let heading = match self.heading_at(there, sense) {
+            Err(SolveError::NothingMoves { .. }) => point.heading.clone(),
+            found => found?,
+        };
         Ok(ContinuedPoint { heading, turn: 1.0, chord: 1.0, ..point })
     }
 
@@ -243,7 +246,16 @@ impl<'a> Continuation<'a> {
         };
         let chord = motion(from.displacement, &point.displacement);
         let sense = onwards.unwrap_or(&chord);
-        let end = tangent(&mut equations, &point, metric, Sense::Along(sense))?.direction;
+        let end = match tangent(&mut equations, &point, metric, Sense::Along(sense)) {
+            Ok(tangent) => tangent.direction,
+            // A run may end where its histories do: there the path has the heading by which it came.
+            Err(SolveError::NothingMoves { .. }) if metric.length(&chord) > 0.0 => {
+                let share = 1.0 / metric.length(&chord);
+                let motion = chord.iter().map(|step| scaled(share, *step)).collect();
+                Direction { motion, parameter: share * (parameter - from.parameter) }
+            }
+            Err(error) => return Err(error),
+        };
         let (last, ended) = (point.iterate, point.ended(&equations, from, effort));
         let mean: Vec<[f64; 3]> = heading.motion.iter().zip(&end.motion).map(|(a, b)| add(*a, *b)).collect();
         let lengths = metric.length(&chord) * metric.length(&mean);

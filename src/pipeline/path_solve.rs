@@ -273,11 +273,11 @@ impl Stages {
     }
 }
 
-/// The first load factor on the way at which a history has a corner, short of where the run ends.
+/// The first load factor on the way at which a history has a corner, up to where the run ends.
 fn corner_between(scene: &Scene, from: f64, to: f64) -> Option<f64> {
     let histories =
         scene.actions.iter().map(|action| &action.history).chain(scene.supports.iter().map(|support| &support.history));
-    let end = scene.load.target() * (1.0 - AT_TARGET);
+    let end = scene.load.target() * (1.0 + AT_TARGET);
     let way = (to - from).signum();
     let distance = |corner: &f64| way * (corner - from);
     histories

@@ -353,7 +353,7 @@ fn a_symmetric_line_holds_the_turn() {
 fn lines_that_are_no_planes_of_symmetry_are_refused() {
     let clamp =
         "[[support]]\non = \"v-start\"\nkind = \"clamped\"\n[[support]]\non = \"v=0.3\"\nkind = \"symmetric\"\n";
-    let push = "[[action]]\nkind = \"area-force\"\nforce_n_per_mm2 = [0.0, 0.0, 1e-6]\n";
+    let push = "[[action]]\nkind = \"area-force\"\nforce_n_per_mm2 = [1e-6, 0.0, 0.0]\n";
     let zone = "kind = \"sphere-zone\"\nradius_mm = 30.0\nlatitude_deg = [0.0, 60.0]\narc_deg = 60.0";
     let error = refused(shell(zone, 0.5, [3, 3], &format!("{clamp}{push}")));
     assert!(error.contains("no plane of symmetry"), "{error}");

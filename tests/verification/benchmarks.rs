@@ -353,3 +353,48 @@ fn a_tape_spring_in_other_words() {
     );
     assert!((report.strain_energy_n_mm / turned.strain_energy_n_mm - 1.0).abs() < 1e-9);
 }
+
+/// A history that ends where the run does is no path that ends before.
+#[test]
+fn a_path_reaches_the_end_of_its_histories() {
+    let text = r#"
+        [geometry]
+        kind = "plate"
+        length_mm = 10.0
+        width_mm = 1.0
+        [material]
+        kind = "isotropic"
+        youngs_modulus_mpa = 1.2e6
+        poissons_ratio = 0.0
+        thickness_mm = 0.1
+        [mesh]
+        elements = [8, 1]
+        [load]
+        kind = "steps"
+        increment = 0.1
+        [continuation]
+        control = "arc-length"
+        [[support]]
+        on = "u-start"
+        kind = "clamped"
+        [[action]]
+        on = "u-end"
+        kind = "line-force"
+        force_n_per_mm = [0.0, 0.0, 2.0]
+        HISTORY
+        [[probe]]
+        name = "w"
+        kind = "displacement"
+        on = [1.0, 0.5]
+        component = "z"
+    "#;
+    let last = |history: &str| {
+        let stages = crate::support::run(parse(&text.replace("HISTORY", history), "strip.toml").unwrap());
+        let (state, record) = stages.last().unwrap().clone();
+        assert_eq!(state.parameter, 1.0);
+        record.report.probes[0].value
+    };
+    let proportional = last("");
+    assert!((last("history = [[0.0, 0.0], [1.0, 1.0]]") / proportional - 1.0).abs() < 1e-5);
+    assert!((last("history = [[0.0, 0.0], [0.5, 2.0], [1.0, 1.0]]") / proportional - 1.0).abs() < 1e-5);
+}

@@ -32,6 +32,15 @@ impl Part {
         }
     }
 
+    /// Arcs of one segment that it is built from.
+    fn segments(self) -> usize {
+        match self {
+            Part::Whole => 3,
+            Part::Half => 2,
+            Part::Quarter => 1,
+        }
+    }
+
     /// Geometry, and supports beside that of the end.
     fn tables(self) -> &'static str {
         match self {
@@ -64,10 +73,11 @@ fn tube(part: Part, radius_over_thickness: f64, degree: usize, quadrature: &str)
          [[support]]\non = \"u-start\"\nkind = \"symmetric\"\n\
          [material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = {MODULUS:?}\npoissons_ratio = 0.3\n\
          thickness_mm = {thickness:?}\n\
-         [mesh]\ndegree = [{degree}, {degree}]\nelements = [1, 1]\nquadrature = \"{quadrature}\"\n\
+         [mesh]\ndegree = [{degree}, {degree}]\nelements = [1, {}]\nquadrature = \"{quadrature}\"\n\
          [load]\nkind = \"steps\"\nincrement = 1.0\n\
          [[action]]\nkind = \"pressure\"\npressure_mpa = {pressure:?}\n",
-        part.tables()
+        part.tables(),
+        part.segments()
     );
     parse(&text, "tube.toml").unwrap_or_else(|error| panic!("{error}"))
 }
