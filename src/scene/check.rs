@@ -63,8 +63,8 @@ fn scene(reader: &Reader<'_, '_>, folder: &std::path::Path) -> Checked<Scene> {
         outcome: reader.word(&keys::OUTCOME)?.value,
         same_as: reader.maybe_text(&keys::SAME_AS)?,
         least_bits: reader.count(&keys::LEAST_BITS)?.value,
-        peak: maybe_number(reader, &keys::PEAK)?,
-        last: maybe_number(reader, &keys::LAST)?,
+        peak: reader.maybe_number(&keys::PEAK)?,
+        last: reader.maybe_number(&keys::LAST)?,
         inexact: reader.maybe_text(&keys::INEXACT)?,
     };
     let expect = reader.document.header(keys::OUTCOME.section).map(|_| expect);
@@ -381,11 +381,6 @@ fn stages(reader: &Reader<'_, '_>) -> Checked<Found<Vec<Stage>>> {
     let adapts = reader.document.header(keys::THRESHOLD.section).is_some();
     let value = if adapts { Stage::REFINING.to_vec() } else { vec![Stage::Solve] };
     Ok(Found { value, place: None })
-}
-
-/// A number that may be left out.
-fn maybe_number(reader: &Reader<'_, '_>, key: &'static super::Key) -> Checked<Option<f64>> {
-    reader.entry(key).map(|_| reader.number(key).map(|found| found.value)).transpose()
 }
 
 /// A number for both directions, or one for each.

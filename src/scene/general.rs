@@ -19,19 +19,34 @@ pub(super) const LOADS: [&str; 1] = ["steps"];
 /// Keys that tables of these kinds have and those of the first kind, which the table of keys knows, have not.
 const KEYS_OF_KINDS: [(&str, &str, &[&str]); 8] = [
     ("geometry", "plate", &["width_mm"]),
-    ("geometry", "cylinder-panel", &["seam"]),
-    ("geometry", "annulus", &["inner_radius_mm", "outer_radius_mm", "seam"]),
-    ("geometry", "sphere-zone", &["latitude_deg", "seam"]),
+    ("geometry", "cylinder-panel", &["seam", "from_deg"]),
+    ("geometry", "annulus", &["inner_radius_mm", "outer_radius_mm", "seam", "from_deg"]),
+    ("geometry", "sphere-zone", &["latitude_deg", "seam", "from_deg"]),
     ("geometry", "nurbs", &["degrees", "knots_u", "knots_v", "control_points_mm", "weights", "file", "seam"]),
     (
         "material",
         "orthotropic",
-        &["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa", "angle_deg"],
+        &[
+            "youngs_modulus_1_mpa",
+            "youngs_modulus_2_mpa",
+            "poissons_ratio_12",
+            "shear_modulus_12_mpa",
+            "thermal_expansion_1_per_k",
+            "thermal_expansion_2_per_k",
+            "angle_deg",
+        ],
     ),
     (
         "material",
         "laminate",
-        &["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa"],
+        &[
+            "youngs_modulus_1_mpa",
+            "youngs_modulus_2_mpa",
+            "poissons_ratio_12",
+            "shear_modulus_12_mpa",
+            "thermal_expansion_1_per_k",
+            "thermal_expansion_2_per_k",
+        ],
     ),
     ("load", "steps", &["increment", "longest_increment", "factor", "least_increment", "snap_tolerance"]),
 ];
@@ -134,32 +149,60 @@ fn seam(table: &Table<'_, '_>, arc_deg: f64) -> Checked<Option<Seam>> {
     }
 }
 
-/// Moduli of one table; what is missing comes from `default`.
-fn law(table: &Table<'_, '_>, default: Option<OrthotropicLaw>) -> Checked<OrthotropicLaw> {
-    let modulus = |name: &'static str, default: Option<f64>| {
-        match (table.maybe_number(name, MODULUS)?, default) {
-        (Some(value), _) | (None, Some(value)) => Ok(value),
-        (None, None) => Err(table.missing(name, "an orthotropic layer has youngs_modulus_1_mpa, youngs_modulus_2_mpa, poissons_ratio_12, shear_modulus_12_mpa")),
+/// What one table says of a layer: moduli, Poisson's ratio and expansions.
+#[derive(Clone, Copy, Default)]
+struct GivenLaw {
+    youngs_modulus_1_mpa: Option<f64>,
+    youngs_modulus_2_mpa: Option<f64>,
+    poissons_ratio_12: Option<f64>,
+    shear_modulus_12_mpa: Option<f64>,
+    thermal_expansion_1_per_k: Option<f64>,
+    thermal_expansion_2_per_k: Option<f64>,
+}
+
+impl GivenLaw {
+    fn read(table: &Table<'_, '_>) -> Checked<Self> {
+        let ratio =
+            Range { above: -10.0, most: 10.0, reason: "Poisson's ratio nu12 is below sqrt(E1/E2) in magnitude" };
+        Ok(Self {
+            youngs_modulus_1_mpa: table.maybe_number("youngs_modulus_1_mpa", MODULUS)?,
+            youngs_modulus_2_mpa: table.maybe_number("youngs_modulus_2_mpa", MODULUS)?,
+            poissons_ratio_12: table.maybe_number("poissons_ratio_12", ratio)?,
+            shear_modulus_12_mpa: table.maybe_number("shear_modulus_12_mpa", MODULUS)?,
+            thermal_expansion_1_per_k: table.maybe_number("thermal_expansion_1_per_k", EXPANSION)?,
+            thermal_expansion_2_per_k: table.maybe_number("thermal_expansion_2_per_k", EXPANSION)?,
+        })
     }
+
+    /// What is missing comes from `default`.
+    fn or(self, default: Self) -> Self {
+        Self {
+            youngs_modulus_1_mpa: self.youngs_modulus_1_mpa.or(default.youngs_modulus_1_mpa),
+            youngs_modulus_2_mpa: self.youngs_modulus_2_mpa.or(default.youngs_modulus_2_mpa),
+            poissons_ratio_12: self.poissons_ratio_12.or(default.poissons_ratio_12),
+            shear_modulus_12_mpa: self.shear_modulus_12_mpa.or(default.shear_modulus_12_mpa),
+            thermal_expansion_1_per_k: self.thermal_expansion_1_per_k.or(default.thermal_expansion_1_per_k),
+            thermal_expansion_2_per_k: self.thermal_expansion_2_per_k.or(default.thermal_expansion_2_per_k),
+        }
+    }
+}
+
+/// Law of the layer of one table; what is missing comes from `default`.
+fn law(table: &Table<'_, '_>, default: GivenLaw) -> Checked<OrthotropicLaw> {
+    let given = GivenLaw::read(table)?.or(default);
+    let modulus = |name: &'static str, value: Option<f64>| {
+        let remedy = "an orthotropic layer has youngs_modulus_1_mpa, youngs_modulus_2_mpa, poissons_ratio_12, shear_modulus_12_mpa";
+        value.ok_or_else(|| table.missing(name, remedy))
     };
-    let ratio = Range { above: -10.0, most: 10.0, reason: "Poisson's ratio nu12 is below sqrt(E1/E2) in magnitude" };
     let law = OrthotropicLaw {
-        youngs_modulus_1_mpa: modulus("youngs_modulus_1_mpa", default.map(|law| law.youngs_modulus_1_mpa))?,
-        youngs_modulus_2_mpa: modulus("youngs_modulus_2_mpa", default.map(|law| law.youngs_modulus_2_mpa))?,
-        poissons_ratio_12: match (table.maybe_number("poissons_ratio_12", ratio)?, default) {
-            (Some(value), _) => value,
-            (None, Some(law)) => law.poissons_ratio_12,
-            (None, None) => {
-                return Err(table.missing("poissons_ratio_12", "write for example `poissons_ratio_12 = 0.3`"));
-            }
-        },
-        shear_modulus_12_mpa: modulus("shear_modulus_12_mpa", default.map(|law| law.shear_modulus_12_mpa))?,
-        thermal_expansion_1_per_k: table
-            .maybe_number("thermal_expansion_1_per_k", EXPANSION)?
-            .or(default.and_then(|law| law.thermal_expansion_1_per_k)),
-        thermal_expansion_2_per_k: table
-            .maybe_number("thermal_expansion_2_per_k", EXPANSION)?
-            .or(default.and_then(|law| law.thermal_expansion_2_per_k)),
+        youngs_modulus_1_mpa: modulus("youngs_modulus_1_mpa", given.youngs_modulus_1_mpa)?,
+        youngs_modulus_2_mpa: modulus("youngs_modulus_2_mpa", given.youngs_modulus_2_mpa)?,
+        poissons_ratio_12: given
+            .poissons_ratio_12
+            .ok_or_else(|| table.missing("poissons_ratio_12", "write for example `poissons_ratio_12 = 0.3`"))?,
+        shear_modulus_12_mpa: modulus("shear_modulus_12_mpa", given.shear_modulus_12_mpa)?,
+        thermal_expansion_1_per_k: given.thermal_expansion_1_per_k,
+        thermal_expansion_2_per_k: given.thermal_expansion_2_per_k,
     };
     if law.thermal_expansion_1_per_k.is_some() != law.thermal_expansion_2_per_k.is_some() {
         let (given, other) = match law.thermal_expansion_1_per_k {
@@ -192,7 +235,7 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
     let kind = table.word("kind", &MATERIALS.map(|kind| (kind, kind)))?;
     if kind == "orthotropic" {
         let material = Material::Orthotropic {
-            law: law(&table, None)?,
+            law: law(&table, GivenLaw::default())?,
             angle_deg: table.number_or("angle_deg", ANY, 0.0)?,
             thickness_mm: table.number("thickness_mm", LENGTH, "0.1")?,
             density_kg_m3: table.maybe_number("density_kg_m3", DENSITY)?,
@@ -202,8 +245,7 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
         return no_plies(plies).map(|()| material);
     }
     let offset_mm = table.number_or("offset_mm", ANY, 0.0)?;
-    let any = ["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa"];
-    let default = if any.iter().any(|name| table.entry(name).is_some()) { Some(law(&table, None)?) } else { None };
+    let default = GivenLaw::read(&table)?;
     let density_kg_m3 = table.maybe_number("density_kg_m3", DENSITY)?;
     if plies.is_empty() {
         return Err(table.wrong(

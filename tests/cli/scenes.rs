@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use foldline::scene::{Geometry, LengthLimit, Quadrature, Scene, Sense, Stage, Symmetry, parse};
+use foldline::scene::{Geometry, LengthLimit, Material, Quadrature, Scene, Sense, Stage, Symmetry, parse};
 
 fn read(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines").join(name);
@@ -79,4 +79,40 @@ fn the_uniform_scene_has_no_stage_that_refines() {
     assert_eq!(uniform.adapt, None);
     assert_eq!(uniform.symmetry, Symmetry::Quarter);
     assert_eq!(uniform.mesh.elements, [128, 16]);
+}
+
+/// What [material] says of a laminate holds for plies that say nothing of it, each key on its own.
+#[test]
+fn plies_take_from_their_material_what_they_lack() {
+    let text = r#"
+        [geometry]
+        kind = "plate"
+        length_mm = 10.0
+        width_mm = 5.0
+        [material]
+        kind = "laminate"
+        thermal_expansion_1_per_k = 1e-6
+        thermal_expansion_2_per_k = 2e-6
+        poissons_ratio_12 = 0.3
+        density_kg_m3 = 1600.0
+        [[ply]]
+        thickness_mm = 0.1
+        youngs_modulus_1_mpa = 1e5
+        youngs_modulus_2_mpa = 1e4
+        shear_modulus_12_mpa = 5e3
+        density_kg_m3 = 1500.0
+        [mesh]
+        elements = [2, 2]
+        [load]
+        kind = "steps"
+        increment = 1.0
+        [[support]]
+        on = "u-start"
+        kind = "clamped"
+    "#;
+    let Material::Laminate { plies, .. } = parse(text, "laminate.toml").unwrap().material else { panic!("a laminate") };
+    assert_eq!(plies[0].law.thermal_expansion_2_per_k, Some(2e-6));
+    assert_eq!((plies[0].law.poissons_ratio_12, plies[0].density_kg_m3), (0.3, Some(1500.0)));
+    let error = parse(&text.replace("youngs_modulus_2_mpa = 1e4", ""), "laminate.toml").unwrap_err().to_string();
+    assert!(error.contains("`youngs_modulus_2_mpa` is missing"), "{error}");
 }

@@ -1,6 +1,6 @@
 //! The default quadrature leaves constant membrane forces on curved surfaces in balance: tubes under pressure, whole and cut,
-//! uniform and graded, of every degree and thin to R/t = 3000, against p R²/(E t). Under stress that varies, and on other
-//! shells, it is as good as p + 2 points.
+//! uniform and graded, of every degree and thin to R/t = 3000, against p R²/(E t). On other shells it is at most 1.25 times as
+//! far off as p + 2 points, and 2.5 times under membrane stress that varies along the arc; found are 1.21 and 1.03 at worst.
 
 use std::sync::Arc;
 
@@ -373,6 +373,7 @@ fn difference(found: &[[f64; 3]], exact: &[[f64; 3]]) -> f64 {
 }
 
 fn check_shells(degrees: &[usize], ratios: &[f64], counts: &[usize], reference: usize, print: bool) {
+    let mut worse = Vec::new();
     for (name, size, text) in SHELLS {
         for ratio in ratios {
             let exact = sampled(&shell(text, size, *ratio, 5, "full-plus-one"), &sizes(reference, false));
@@ -395,14 +396,14 @@ fn check_shells(degrees: &[usize], ratios: &[f64], counts: &[usize], reference: 
                     }
                     // Where p + 2 points are better than the reference can tell, nothing is asked.
                     let most = (1.25 * exact.0).max(1e-4);
-                    assert!(print || found.0 < most, "{what}: {:e}, p + 2 points {:e}", found.0, exact.0);
-                    if print && found.0 >= most {
-                        println!("  MORE THAN ASKED");
+                    if found.0 >= most {
+                        worse.push(format!("{what}: {:e}, p + 2 points {:e}", found.0, exact.0));
                     }
                 }
             }
         }
     }
+    assert!(worse.is_empty(), "{worse:#?}");
 }
 
 #[test]
