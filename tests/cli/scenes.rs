@@ -109,6 +109,9 @@ fn plies_take_from_their_material_what_they_lack() {
         [[support]]
         on = "u-start"
         kind = "clamped"
+        [[action]]
+        kind = "temperature"
+        change_k = 1.0
     "#;
     let Material::Laminate { plies, .. } = parse(text, "laminate.toml").unwrap().material else { panic!("a laminate") };
     assert_eq!(plies[0].law.thermal_expansion_2_per_k, Some(2e-6));
