@@ -8,7 +8,8 @@
 //!   reactions and loads, so they are much the larger, and count by a share alone.
 //! - A shell that is unloaded keeps no force at all: there it is the largest of these that the run has met, by a share
 //!   again, since a shell that has snapped carries a tenth of what it carried before and is to be found as precisely.
-//! - Rounding is below all of it: displacements that are off by their last bit already exert ε |K| |u|.
+//! - Rounding is below all of it: displacements that are off by their last bit already exert ε |K| |u|. But where that is more
+//!   than a thousandth of the loads, rounding hides them, and a solve goes on until it meets its limits.
 //!
 //! All are Euclidean norms, over control points, and over the control points of each element: the sum Σ |f_e| of
 //! magnitudes would grow with the number of elements for one and the same stress, which the norm of membrane forces does
@@ -24,6 +25,17 @@ const OF_ELEMENTS: f64 = 1e-3;
 /// Share of the largest forces met before that counts.
 const OF_FORCES_MET: f64 = 1e-3;
 
+/// Roundings in a displacement's strain, each of its last bit. A plate of 3 × 3 cubic elements that a section carries off by
+/// 1 mm, without any strain, has a residual of two to three.
+const ROUNDINGS: f64 = 8.0;
+
+/// Share of known forces up to which a residual is taken for rounding. A strip of 100 mm and 1 µm has roundings above its
+/// load, and did not move at all where they were taken for balance.
+const OF_KNOWN: f64 = 1e-3;
+
+/// Reactions of so many roundings are none.
+const CLEAR: f64 = 30.0;
+
 /// What the residual at a point is held against, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceScale {
@@ -34,6 +46,8 @@ pub struct ForceScale {
     pub met: f64,
     /// Forces of a rounding error of the displacement.
     pub rounding: f64,
+    /// A residual up to which nothing but rounding is left: [`Self::rounding`], but never more than a small share of what acts.
+    pub floor: f64,
 }
 
 impl ForceScale {
@@ -49,13 +63,22 @@ impl ForceScale {
         // The first block of a control point is its own.
         let own = assembled.stiffness.chunks_exact(blocks).zip(displacement);
         let squares = own.flat_map(|(block, u)| [0, 1, 2].map(|c| (block[4 * c] * u[c]).powi(2)));
+        let rounding = ROUNDINGS * f64::EPSILON * squares.sum::<f64>().sqrt();
+        let (reactions, loads) = (length(&assembled.residual), length(loads));
+        // Loads are known, and so are reactions that stand out of the rounding.
+        let known = match loads > 0.0 {
+            true => loads,
+            false if reactions > CLEAR * rounding => reactions,
+            false => f64::INFINITY,
+        };
         Self {
-            acting: length(&assembled.residual)
-                .max(length(loads))
+            acting: reactions
+                .max(loads)
                 .max(assembled.free_strain_forces)
                 .max(OF_ELEMENTS * assembled.element_forces),
             met,
-            rounding: f64::EPSILON * squares.sum::<f64>().sqrt(),
+            rounding,
+            floor: rounding.min(OF_KNOWN * known),
         }
     }
 
@@ -66,12 +89,12 @@ impl ForceScale {
 
     /// Whether a residual is nothing beside the forces, to this tolerance.
     pub fn balances(&self, residual: f64, tolerance: f64) -> bool {
-        residual <= (tolerance * self.force()).max(self.rounding)
+        residual <= (tolerance * self.force()).max(self.floor)
     }
 
-    /// A residual relative to the forces; 0 where it is rounding.
+    /// A residual relative to the forces; 0 where there are none.
     pub fn share(&self, residual: f64) -> f64 {
-        if residual <= self.rounding { 0.0 } else { residual / self.force() }
+        if self.force() > 0.0 { residual / self.force() } else { 0.0 }
     }
 
     /// What the run has met, with this point.

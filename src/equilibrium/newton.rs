@@ -10,7 +10,7 @@
 use std::sync::Arc;
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
-use crate::equilibrium::descent::{Descent, Ended, largest, product};
+use crate::equilibrium::descent::{Descent, Ended, largest, length, product};
 use crate::equilibrium::external::{External, subtract};
 use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::ledger::Before;
@@ -103,8 +103,9 @@ pub struct Solved {
     /// Work of loads, given motions and changes of the natural state on the whole shell since the start of the solve, N·mm: reactions, and factors of the
     /// actions, by their means before and after; strokes of the actions along the way that the solve took.
     pub work: f64,
-    /// What the change of the natural state would have put into the whole shell had it stayed, N·mm; 0 where there is none.
-    /// Where a shell follows its natural state this is the measure of energies, not the little that it stores.
+    /// What the change of the natural state would have put into the whole shell had it stayed, and at least a hundred times
+    /// what rounding of the displacement is worth, N·mm. Where a shell follows its natural state, or is carried off without
+    /// strain, this is the measure of energies, not the little that it stores.
     pub put_in: f64,
     /// Turning ends: moment at each end of the whole shell, dΠ/dθ / 2, N·mm. Otherwise 0.
     pub moment: f64,
@@ -436,6 +437,7 @@ impl Workspace {
         let largest_force = last.forces.met_here();
         let at = Standing { displacement: &ended.displacement, turns: &ended.turns, parameter, largest_force };
         let put_in = before.put_in(&self.discretization, parameter, &ended.displacement);
+        let rounding = last.forces.rounding * length(&ended.displacement);
         self.factored_at = Some(Factored::new(at, last.negative_pivots));
         let unknowns = &self.discretization.unknowns;
         let parts = scene.symmetry.copies() as f64;
@@ -449,7 +451,7 @@ impl Workspace {
             work: parts
                 * (before.work(&self.discretization, parameter, &ended.reactions, &ended.strokes)
                     + 0.5 * (put_in[0] + put_in[1])),
-            put_in: parts * put_in[0].abs().max(put_in[1].abs()),
+            put_in: parts * put_in[0].abs().max(put_in[1].abs()).max(100.0 * rounding),
             moment,
             negative_pivots: last.negative_pivots,
             residual: last.relative_residual(),

@@ -3,11 +3,18 @@
 use crate::model::Unknowns;
 use crate::model::place::parameters_of;
 use crate::scene::{Action, ActionKind, ForceVector, Geometry, Scene, SurfaceDirection};
-use crate::shell::{cross, norm, scaled};
-use crate::spline::{Mesh, mid_surface_point};
-use crate::units::rounded;
+use crate::shell::{PointReference, cross, dot, norm, scaled};
+use crate::spline::{Mesh, Spans, mid_surface_point};
+use crate::units::{rounded, significant};
 
-/// A sentence for each support of rigid motions (what it holds) and for each action along the normal (which side that is).
+/// Offset over radius from which on it is said. A tube under pressure on a surface t/2 off is 1.5 offset/R off.
+const LARGE_OFFSET: f64 = 5e-3;
+/// Length of quadratic elements, in sqrt(R t) of the curvature along them, from which on it is said. The baseline on 4 across,
+/// 4.8 of these, has 384 N·mm at 8° in place of 285, and on 16, 1.2, it is right to 2 %.
+const LOCKED: f64 = 2.0;
+
+/// A sentence for each support of rigid motions (what it holds), for each action along the normal (which side that is), and for
+/// what the shell's theory or its elements leave out from the start.
 pub fn remarks(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Vec<String> {
     let supports = unknowns.supports().held_motions.iter().map(|held| {
         let name = &unknowns.supports().traces[held.support].name;
@@ -21,7 +28,55 @@ pub fn remarks(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Vec<String> {
         )
     });
     let actions = scene.actions.iter().filter_map(|action| of_action(scene, mesh, action));
-    supports.chain(actions).collect()
+    supports.chain(actions).chain(of_offset(scene, mesh)).chain(of_degree_2(scene, mesh)).collect()
+}
+
+/// A surface off the middle of the thickness whose radius is not far larger: the shell's theory leaves z/R out.
+fn of_offset(scene: &Scene, mesh: &Mesh) -> Option<String> {
+    let offset_mm = scene.material.offset_mm();
+    let curvature = |sample: usize| {
+        let at = [(sample % 5) as f64 / 4.0, (sample / 5) as f64 / 4.0];
+        let derivatives = mid_surface_point(mesh, &[], at).derivatives;
+        PointReference::new(derivatives, &scene.material, 1.0).largest_curvature()
+    };
+    let share = offset_mm.abs() * (0..25).map(curvature).fold(0.0, f64::max);
+    (share > LARGE_OFFSET).then(|| {
+        format!(
+            "the surface lies {} mm off the middle of the thickness, {} % of its smallest radius: results may be off by as much and \
+             half again, and weight acts on the surface; draw the middle surface instead",
+            significant(offset_mm, 3),
+            significant(100.0 * share, 2)
+        )
+    })
+}
+
+/// Elements of degree 2 that are long for the curvature along them: a change of curvature stretches them.
+fn of_degree_2(scene: &Scene, mesh: &Mesh) -> Option<String> {
+    let thickness = scene.material.thickness_mm();
+    let lengths = |way: usize| {
+        let spans = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
+        spans.into_iter().map(move |[from, to]| {
+            let middle = 0.5 * (from + to);
+            let point = mid_surface_point(mesh, &[], if way == 0 { [middle, 0.5] } else { [0.5, middle] });
+            let [a1, a2, a11, a22, _] = point.derivatives;
+            let (tangent, second) = if way == 0 { (a1, a11) } else { (a2, a22) };
+            let normal = cross(a1, a2);
+            let curvature = (dot(second, normal) / (norm(normal) * dot(tangent, tangent))).abs();
+            ((to - from) * norm(tangent), (thickness / curvature).sqrt())
+        })
+    };
+    let quadratic = (0..2).filter(|way| mesh.degree[*way] == 2);
+    let worst = quadratic.flat_map(|way| lengths(way).map(move |(length, layer)| (way, length, layer)));
+    let (way, length, layer) = worst.max_by(|one, other| (one.1 / one.2).total_cmp(&(other.1 / other.2)))?;
+    (length > LOCKED * layer).then(|| {
+        format!(
+            "elements of degree 2 are {} mm long in {}, where {LOCKED} sqrt(R t) is {} mm: they lock, and moments may be too large by \
+             half; write a higher mesh.degree, or more elements",
+            significant(length, 3),
+            ["u", "v"][way],
+            significant(LOCKED * layer, 3)
+        )
+    })
 }
 
 fn of_action(scene: &Scene, mesh: &Mesh, Action { name, kind, .. }: &Action) -> Option<String> {

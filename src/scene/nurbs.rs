@@ -6,8 +6,9 @@ use super::general::SEAMS;
 use super::keys::number;
 use super::table::Table;
 
-/// Knots that differ by less than this share of their range are meant to be one: text of seven digits does not say more.
-const NEAR: f64 = 1e-6;
+/// Knots that differ by less than this share of their range are meant to be one: text of six digits does not say more, and
+/// elements so short leave nothing of the digits of a displacement.
+const NEAR: f64 = 1e-5;
 
 /// The keys of a surface in a file of its own.
 #[derive(serde::Deserialize)]
@@ -30,6 +31,10 @@ pub(super) fn nurbs(table: &Table<'_, '_>, folder: &std::path::Path) -> Checked<
                 let problem = format!("{} cannot be read: {error}", path.display());
                 table.wrong(table.place_of("file").as_ref(), problem, "the path is relative to the scene file; the file is a JSON object with the keys degrees, knots_u, knots_v, control_points_mm, weights")
             };
+            // A device or a pipe may never end.
+            if std::fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
+                return Err(wrong("it is no regular file".into()));
+            }
             let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
             // Some programs put a byte-order mark in front, which JSON does not know.
             let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
