@@ -29,17 +29,20 @@ const CENTROID_POINTS: usize = 8;
 /// # Errors
 /// Where the surface has no normal on the edge.
 pub fn edge_rows(mesh: &Mesh, edge: Edge) -> Result<EdgeRows, ModelError> {
-    let (way, at_end) = side(edge);
-    let running = 1 - way;
-    let counts = mesh.control_counts();
-    let row = |k: usize| {
-        let along = if at_end { counts[way] - 1 - k } else { k };
-        let index = move |j: usize| if way == 0 { along * counts[1] + j } else { j * counts[1] + along };
-        (0..counts[running]).map(index).collect::<Vec<usize>>()
-    };
-    let (outer, inner) = (row(0), row(1));
+    let [outer, inner] = rows_of(mesh, edge);
     let normals = inner.iter().enumerate().map(|(j, control)| normal_beside(mesh, edge, j, *control));
     Ok(EdgeRows { normals: normals.collect::<Result<_, _>>()?, centroid: centroid(mesh, edge), outer, inner })
+}
+
+/// Control points of an edge, and of the row beside it.
+pub fn rows_of(mesh: &Mesh, edge: Edge) -> [Vec<usize>; 2] {
+    let (way, at_end) = side(edge);
+    let counts = mesh.control_counts();
+    [0, 1].map(|k| {
+        let along = if at_end { counts[way] - 1 - k } else { k };
+        let index = |j: usize| if way == 0 { along * counts[1] + j } else { j * counts[1] + along };
+        (0..counts[1 - way]).map(index).collect()
+    })
 }
 
 /// Direction (0 or 1) that is constant along an edge, and whether the edge is at its end.

@@ -6,9 +6,12 @@ use crate::model::place::parameters_of;
 use crate::scene::{ParametricDirection, Place, Scene};
 use crate::spline::{Mesh, basis_derivatives, basis_derivatives_len, evaluate_surface, find_span};
 
+/// A weighted sum of control points.
+pub(super) type Sum = Vec<(usize, f64)>;
+
 /// Displacements of a place as weighted sums of control points (weights of 1 in all): each control point of an edge, the
 /// point, each control point of a line.
-pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Result<Vec<Vec<(usize, f64)>>, ModelError> {
+pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Result<Vec<Sum>, ModelError> {
     let [_, n2] = mesh.control_counts();
     Ok(match on {
         Place::Edge(edge) => edge_rows(mesh, edge)?.outer.into_iter().map(|point| vec![(point, 1.0)]).collect(),
@@ -18,38 +21,40 @@ pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Resu
             let control = |a: usize| (first[0] + a / columns) * n2 + first[1] + a % columns;
             vec![nonzero(functions[0].iter().enumerate().map(|(a, value)| (control(a), *value)).collect())]
         }
-        Place::Line(direction, fraction) => line_expressions(scene, mesh, direction, fraction),
+        Place::Line(direction, fraction) => {
+            let way = if direction == ParametricDirection::U { 0 } else { 1 };
+            let terms = line_terms(mesh, way, parameters_of(&scene.geometry, [fraction; 2])[way]);
+            terms.iter().map(|[values, _]| shares(values)).collect()
+        }
         Place::Whole => (0..mesh.control_points.len()).map(|point| vec![(point, 1.0)]).collect(),
     })
 }
 
-/// Σ_i N_i w_ij u_ij / Σ_i N_i w_ij for each j: the control points of the line as a curve.
-fn line_expressions(
-    scene: &Scene,
-    mesh: &Mesh,
-    direction: ParametricDirection,
-    fraction: f64,
-) -> Vec<Vec<(usize, f64)>> {
-    let way = if direction == ParametricDirection::U { 0 } else { 1 };
-    let parameter = parameters_of(&scene.geometry, [fraction; 2])[way];
+/// N_i w_ij and N_i′ w_ij on the line on which the parameter of direction `way` has a value, with their control points: for each
+/// j, the terms of a control point of the line as a curve and of its derivative across.
+pub(super) fn line_terms(mesh: &Mesh, way: usize, parameter: f64) -> Vec<[Sum; 2]> {
     let [n1, n2] = mesh.control_counts();
     let degree = mesh.degree[way];
     let span = find_span(&mesh.knots[way], degree, parameter);
     let mut basis = vec![0.0; basis_derivatives_len(degree)];
     basis_derivatives(&mesh.knots[way], degree, span, parameter, &mut basis);
-    let running = if way == 0 { n2 } else { n1 };
-    (0..running)
-        .map(|j| {
-            let control = |a: usize| if way == 0 { (span - degree + a) * n2 + j } else { j * n2 + span - degree + a };
-            let weighted: Vec<(usize, f64)> =
-                (0..=degree).map(|a| (control(a), basis[a] * mesh.control_points[control(a)][3])).collect();
-            let total: f64 = weighted.iter().map(|(_, value)| value).sum();
-            nonzero(weighted.into_iter().map(|(point, value)| (point, value / total)).collect())
+    let (values, slopes) = basis.split_at(degree + 1);
+    let terms = |j: usize| {
+        let control = |a: usize| if way == 0 { (span - degree + a) * n2 + j } else { j * n2 + span - degree + a };
+        [values, slopes].map(|functions| {
+            (0..=degree).map(|a| (control(a), functions[a] * mesh.control_points[control(a)][3])).collect()
         })
-        .collect()
+    };
+    (0..if way == 0 { n2 } else { n1 }).map(terms).collect()
 }
 
-fn nonzero(mut sum: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
+/// Terms over their sum: weights of 1 in all.
+pub(super) fn shares(terms: &[(usize, f64)]) -> Sum {
+    let total: f64 = terms.iter().map(|(_, value)| value).sum();
+    nonzero(terms.iter().map(|(point, value)| (*point, value / total)).collect())
+}
+
+pub(super) fn nonzero(mut sum: Sum) -> Sum {
     sum.retain(|(_, factor)| *factor != 0.0);
     sum
 }

@@ -27,7 +27,7 @@ const SECTIONS: [f64; 3] = [0.02, 0.5, 0.98];
 /// Imbalance of `counts` Gauss points on the elements of one direction; dimensionless. `stretching_over_bending` is A/D, 1/mm².
 pub(super) fn imbalance(mesh: &Mesh, direction: usize, counts: &[usize], stretching_over_bending: f64) -> f64 {
     let sections = SECTIONS.iter().map(|share| Section::new(mesh, direction, *share));
-    sections.map(|section| section.imbalance(counts, stretching_over_bending)).fold(0.0, f64::max)
+    sections.map(|section| section.imbalance(counts, stretching_over_bending)).fold(0.0, largest)
 }
 
 /// Membrane forces: three constant ones. The first index is that of the force, the second that of the function.
@@ -85,7 +85,7 @@ impl<'a> Section<'a> {
                 .iter()
                 .zip(exact)
                 .map(|(found, exact)| found.iter().zip(exact).map(|(f, e)| sub(*f, *e)).collect::<Vec<[f64; 3]>>());
-            errors.map(|forces| largest_moment(&positions, &forces)).fold(0.0, f64::max)
+            errors.map(|forces| largest_moment(&positions, &forces)).fold(0.0, largest)
         };
         let moments = moment(&found_along, &along) + moment(&found_across, &across) / size;
         moments * size * stretching_over_bending
@@ -169,13 +169,18 @@ fn tractions([a1, a2]: [[f64; 3]; 2]) -> [[[f64; 3]; 2]; 3] {
 /// Largest |Σ_{a before s} (x_a − x_s) × f_a|.
 fn largest_moment(positions: &[[f64; 3]], forces: &[[f64; 3]]) -> f64 {
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
-    let mut largest = 0.0_f64;
+    let mut most = 0.0;
     for (position, more) in positions.iter().zip(forces) {
-        largest = largest.max(norm(sub(moment, cross(*position, force))));
+        most = largest(most, norm(sub(moment, cross(*position, force))));
         force = add(force, *more);
         moment = add(moment, cross(*position, *more));
     }
-    largest
+    most
+}
+
+/// The larger of two numbers; not a number where either is none, which nothing may take for balance.
+fn largest(one: f64, other: f64) -> f64 {
+    if one.is_nan() || one > other { one } else { other }
 }
 
 /// Half the diagonal of the box of some points.
@@ -184,4 +189,17 @@ fn half_diagonal(points: &[[f64; 3]]) -> f64 {
         points.iter().fold(points[0], |bound, point| [0, 1, 2].map(|c| pick(bound[c], point[c])))
     };
     0.5 * norm(sub(bound(f64::max), bound(f64::min)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_is_not_taken_for_balance() {
+        for values in [[f64::NAN, 1.0], [1.0, f64::NAN]] {
+            assert!(values.into_iter().fold(0.0, largest).is_nan());
+        }
+        assert_eq!([1.0, 3.0, 2.0].into_iter().fold(0.0, largest), 3.0);
+    }
 }

@@ -5,24 +5,21 @@
 //! the two axes.
 
 use crate::model::ModelError;
-use crate::model::edge::side;
-use crate::model::joint::SMOOTH;
+use crate::model::edge::{rows_of, side};
+use crate::model::mirror_image::check_own_image;
 use crate::model::place::parameters_of;
-use crate::model::soundness::POSITION;
 use crate::model::supports::supports_of;
 use crate::model::symmetric_line::Line;
+use crate::model::symmetry_plane::{ANGLE, NoPlane, square_to, symmetry_plane, unit};
 use crate::scene::{
     ActionKind, Edge, ForceVector, Hold, Material, ParametricDirection, Place, Scene, Support, SurfaceDirection,
 };
-use crate::shell::{add, cross, dot, norm, scaled, shell_stiffness, sub, thermal_strain};
+use crate::shell::{cross, dot, norm, shell_stiffness, sub, thermal_strain};
 use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 use crate::units::{place, significant};
 
-/// Angles (rad) between an edge's normal plane and the surface that are rounding of coordinates given to five digits; also
-/// the share of a stiffness that turning the axes by as much makes.
-pub(super) const ANGLE: f64 = SMOOTH;
-/// Deviations below this are rounding of a computation: elimination finds constraints redundant that differ by as little.
-const ROUNDING: f64 = 1e-12;
+/// Parameters (of a range from 0 to 1) that differ by less are the same.
+pub(super) const SAME_PARAMETER: f64 = 1e-9;
 
 /// An edge, or a line inside, in a plane of symmetry.
 #[derive(Clone, Debug)]
@@ -39,55 +36,6 @@ pub struct Mirror {
     pub normal: [f64; 3],
 }
 
-/// Why an edge or a line is no plane of symmetry.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum NoPlane {
-    /// It is not plane.
-    #[error(
-        "it leaves a plane by {} mm at {at} (up to {} mm, {POSITION} of its size, is taken for rounding)",
-        significant(*off_mm, 3),
-        significant(*tolerance_mm, 3)
-    )]
-    NotPlane {
-        /// Largest distance from the plane, mm.
-        off_mm: f64,
-        /// Where.
-        at: String,
-        /// What is taken for rounding, mm.
-        tolerance_mm: f64,
-    },
-    /// The surface leaves the plane at another angle.
-    #[error(
-        "the surface crosses its plane at {at} {}° off a right angle (up to {}° is taken for rounding)",
-        significant(*off_deg, 3),
-        significant(ANGLE.to_degrees(), 2)
-    )]
-    NotAtRightAngles {
-        /// Angle, degrees.
-        off_deg: f64,
-        /// Where.
-        at: String,
-    },
-    /// The lines of control points leave the plane at another angle.
-    #[error(
-        "the parametric lines of the surface cross its plane at {at} {}° off a right angle (up to {}° is taken for \
-         rounding): put the second row of control points straight behind the first",
-        significant(*off_deg, 3),
-        significant(ANGLE.to_degrees(), 2)
-    )]
-    Skewed {
-        /// Angle, degrees.
-        off_deg: f64,
-        /// Where.
-        at: String,
-    },
-    /// The weights across a line inside are shared out differently along it.
-    #[error(
-        "the weights of the surface change across the line in shares that differ along it, so that no spline keeps its slope: model the half, whose edge lies there"
-    )]
-    UnevenWeights,
-}
-
 impl Mirror {
     /// The planes of symmetry among some supports. Those that meet at right angles within the tolerance do so to rounding, and
     /// so do those along an axis: constraints that differ by less than the coordinates' rounding must not both hold.
@@ -97,22 +45,18 @@ impl Mirror {
     pub fn all(scene: &Scene, supports: &[Support], mesh: &Mesh) -> Result<Vec<Self>, ModelError> {
         let mut mirrors: Vec<Self> = Vec::new();
         for support in supports.iter().filter(|support| support.hold == Hold::Symmetric) {
-            let found = match support.on {
+            let (edge, way, parameter) = match support.on {
                 Place::Edge(edge) => {
                     let (way, at_end) = side(edge);
-                    let parameter = if at_end { 1.0 } else { 0.0 };
-                    symmetry_plane(mesh, edge).map(|plane| (Some(edge), way, parameter, plane))
+                    (Some(edge), way, if at_end { 1.0 } else { 0.0 })
                 }
                 Place::Line(direction, fraction) => {
                     let way = if direction == ParametricDirection::U { 0 } else { 1 };
-                    let parameter = parameters_of(&scene.geometry, [fraction; 2])[way];
-                    Line::new(mesh, way, parameter)
-                        .and_then(|line| line.normal(mesh))
-                        .map(|normal| (None, way, parameter, along_axis(normal)))
+                    (None, way, parameters_of(&scene.geometry, [fraction; 2])[way])
                 }
                 Place::Point(_) | Place::Whole => return Err(ModelError::NotAnEdge { support: support.name.clone() }),
             };
-            let (edge, way, parameter, plane) = found.map_err(|reason| ModelError::NotASymmetryPlane {
+            let plane = plane_of(mesh, edge, way, parameter).map_err(|reason| ModelError::NotASymmetryPlane {
                 support: support.name.clone(),
                 reason: reason.to_string(),
             })?;
@@ -123,88 +67,32 @@ impl Mirror {
     }
 
     /// The point of the surface at a parameter along it.
-    fn point(&self, mesh: &Mesh, parameter: f64) -> SurfacePoint {
+    pub(super) fn point(&self, mesh: &Mesh, parameter: f64) -> SurfacePoint {
         let at = if self.way == 0 { [self.parameter, parameter] } else { [parameter, self.parameter] };
         mid_surface_point(mesh, &[], at)
     }
-}
 
-/// The vector itself, or without its share along another unit vector where that is rounding of coordinates.
-fn square_to(vector: [f64; 3], other: [f64; 3]) -> [f64; 3] {
-    let share = dot(vector, other);
-    if !(ROUNDING..2.0 * ANGLE).contains(&share.abs()) {
-        return vector;
+    /// Whether a parameter across it is its own.
+    fn is_at(&self, parameter: f64) -> bool {
+        (parameter - self.parameter).abs() <= SAME_PARAMETER
     }
-    unit(sub(vector, scaled(share, other)))
 }
 
-/// The vector itself, or the axis that it differs from by rounding of coordinates.
-fn along_axis(vector: [f64; 3]) -> [f64; 3] {
-    let largest = (0..3).fold(0, |best, c| if vector[c].abs() > vector[best].abs() { c } else { best });
-    let mut axis = [0.0; 3];
-    axis[largest] = 1.0_f64.copysign(vector[largest]);
-    if (ROUNDING..ANGLE).contains(&norm(sub(vector, axis))) { axis } else { vector }
-}
-
-fn unit(vector: [f64; 3]) -> [f64; 3] {
-    scaled(1.0 / norm(vector), vector)
-}
-
-/// The unit normal of the plane of symmetry that an edge can lie in: the direction from its control points to those of the
-/// row beside it.
-///
-/// # Errors
-/// Why it cannot.
-pub fn symmetry_plane(mesh: &Mesh, edge: Edge) -> Result<[f64; 3], NoPlane> {
-    let (way, at_end) = side(edge);
-    let counts = mesh.control_counts();
-    let running = counts[1 - way];
-    let point = |k: usize, j: usize| {
-        let along = if at_end { counts[way] - 1 - k } else { k };
-        let [x, y, z, w] = mesh.control_points[if way == 0 { along * counts[1] + j } else { j * counts[1] + along }];
-        [x / w, y / w, z / w]
+/// Unit normal of the plane of symmetry that an edge, or a line inside, can lie in.
+fn plane_of(mesh: &Mesh, edge: Option<Edge>, way: usize, parameter: f64) -> Result<[f64; 3], NoPlane> {
+    let Some(edge) = edge else {
+        let line = Line::new(mesh, way, parameter)?;
+        return symmetry_plane(&line.points(mesh), &line.steps(mesh));
     };
-    let points: Vec<[f64; 3]> = (0..running).map(|j| point(0, j)).collect();
-    let steps: Vec<[f64; 3]> = (0..running).map(|j| sub(point(1, j), points[j])).collect();
-    let off_axis = |normal: [f64; 3], step: [f64; 3]| norm(cross(step, normal)).atan2(dot(step, normal));
-    let first = unit(steps[0]);
-    let parallel = steps.iter().all(|step| off_axis(first, *step) <= ROUNDING);
-    let normal = if parallel { first } else { unit(steps.iter().fold([0.0; 3], |sum, step| add(sum, *step))) };
-    let normal = along_axis(normal);
-
-    let origin = scaled(1.0 / running as f64, points.iter().fold([0.0; 3], |sum, point| add(sum, *point)));
-    let size = points.iter().map(|point| norm(sub(*point, points[0]))).fold(norm(steps[0]), f64::max);
-    let distance = |point: &[f64; 3]| dot(sub(*point, origin), normal).abs();
-    let farthest = points.iter().max_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(&points[0]);
-    if distance(farthest) > POSITION * size {
-        // A plane edge whose surface leaves it at an angle, or no plane at all: the edge alone says which.
-        let (off_mm, at) = off_own_plane(&points);
-        return Err(match off_mm > POSITION * size {
-            true => NoPlane::NotPlane { off_mm, at: place(at), tolerance_mm: POSITION * size },
-            false => {
-                let along = unit(sub(points[running - 1], points[0]));
-                let off_deg = dot(along, normal).abs().asin().to_degrees();
-                NoPlane::NotAtRightAngles { off_deg, at: place(points[0]) }
-            }
-        });
-    }
-    let skewest = (0..running).map(|j| (off_axis(normal, steps[j]), points[j]));
-    let (off, at) = skewest.fold((0.0, points[0]), |worst, one| if one.0 > worst.0 { one } else { worst });
-    match off > ANGLE {
-        true => Err(NoPlane::Skewed { off_deg: off.to_degrees(), at: place(at) }),
-        false => Ok(normal),
-    }
-}
-
-/// The point that lies farthest from the plane through the two that span most with the first and the last, and how far, mm.
-fn off_own_plane(points: &[[f64; 3]]) -> (f64, [f64; 3]) {
-    let arms: Vec<[f64; 3]> = points.iter().map(|x| sub(*x, points[0])).collect();
-    let last = arms[arms.len() - 1];
-    let normal =
-        arms.iter().map(|x| cross(*x, last)).fold([0.0; 3], |best, x| if norm(x) > norm(best) { x } else { best });
-    let length = norm(normal).max(f64::MIN_POSITIVE);
-    let off = arms.iter().zip(points).map(|(arm, point)| (dot(*arm, normal).abs() / length, *point));
-    off.fold((0.0, points[0]), |worst, one| if one.0 > worst.0 { one } else { worst })
+    let [points, beside] = rows_of(mesh, edge).map(|row| {
+        let point = |control: usize| {
+            let [x, y, z, w] = mesh.control_points[control];
+            [x / w, y / w, z / w]
+        };
+        row.into_iter().map(point).collect::<Vec<_>>()
+    });
+    let steps: Vec<[f64; 3]> = beside.iter().zip(&points).map(|(beside, point)| sub(*beside, *point)).collect();
+    symmetry_plane(&points, &steps)
 }
 
 /// Refuses material and loads that are not their own mirror images at the planes of symmetry that a scene asks for.
@@ -216,6 +104,9 @@ pub fn check_mirror_images(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError>
         check_material(&scene.material, mesh, &mirror)?;
         check_loads(scene, &mirror)?;
         check_natural_states(scene, mesh, &mirror)?;
+        if mirror.edge.is_none() {
+            check_own_image(scene, mesh, &mirror)?;
+        }
     }
     Ok(())
 }
@@ -306,8 +197,8 @@ fn shear_coupling(material: &Material, [a1, a2]: [[f64; 3]; 2], tangent: [f64; 3
         .collect()
 }
 
-/// Refuses what acts on the line itself, or everywhere, and would be undone by its mirror image. A load elsewhere has its image
-/// elsewhere.
+/// Refuses what acts on the line itself, or everywhere, and would be undone by its mirror image. Behind an edge the image of a
+/// load elsewhere is not modelled; behind a line inside it is ([`check_own_image`]).
 fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
     let axis = place(mirror.normal);
     let normal = axis.trim_end_matches(" mm");
@@ -315,9 +206,9 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
         Place::Edge(edge) => Some(*edge) == mirror.edge,
         Place::Line(direction, fraction) => {
             let way = if *direction == ParametricDirection::U { 0 } else { 1 };
-            way == mirror.way && parameters_of(&scene.geometry, [*fraction; 2])[way] == mirror.parameter
+            way == mirror.way && mirror.is_at(parameters_of(&scene.geometry, [*fraction; 2])[way])
         }
-        Place::Point(at) => parameters_of(&scene.geometry, *at)[mirror.way] == mirror.parameter,
+        Place::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.way]),
         Place::Whole => false,
     };
     for action in &scene.actions {
@@ -360,19 +251,8 @@ mod tests {
     fn edges_of_a_tape_spring_lie_in_planes_of_symmetry() {
         let scene = parse(include_str!("../../pipelines/baseline.toml"), "baseline.toml").unwrap();
         let mesh = starting_mesh(&scene).unwrap();
-        assert_eq!(symmetry_plane(&mesh, Edge::UEnd).map(|normal| normal.map(f64::abs)), Ok([1.0, 0.0, 0.0]));
+        assert_eq!(plane_of(&mesh, Some(Edge::UEnd), 0, 1.0).map(|normal| normal.map(f64::abs)), Ok([1.0, 0.0, 0.0]));
         // The free edge of a cylinder lies in its own radial plane.
-        assert!(symmetry_plane(&mesh, Edge::VStart).is_ok());
-    }
-
-    #[test]
-    fn rounding_of_coordinates_is_taken_out_and_no_more() {
-        let slanted = unit([1.0, 2e-4, 0.0]);
-        assert_eq!(along_axis(slanted), [1.0, 0.0, 0.0]);
-        assert_eq!(along_axis(unit([-1.0, 0.0, 3e-3])), unit([-1.0, 0.0, 3e-3]));
-        let square = square_to(slanted, unit([3e-4, 1.0, 0.0]));
-        assert!(dot(square, unit([3e-4, 1.0, 0.0])).abs() < 1e-15);
-        let exact = [1.0, 3e-16, 0.0];
-        assert_eq!(along_axis(exact), exact, "bits of exact planes stay");
+        assert!(plane_of(&mesh, Some(Edge::VStart), 1, 0.0).is_ok());
     }
 }

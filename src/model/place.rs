@@ -4,7 +4,7 @@
 //! the weights (1, cos(s/2), 1), the half-angle tangent about its middle is linear in t.
 
 use crate::scene::{Geometry, ParametricDirection, Place, Scene};
-use crate::spline::{Mesh, segment_count};
+use crate::spline::{Mesh, Spans, segment_count};
 
 /// Parameters of a point at fractions of the length or the angle in u and v.
 pub fn parameters_of(geometry: &Geometry, fractions: [f64; 2]) -> [f64; 2] {
@@ -30,6 +30,12 @@ fn on_arc(arc_deg: f64, fraction: f64) -> f64 {
     let part = sweep / segments;
     let t = 0.5 + 0.5 * (0.5 * (within - 0.5) * part).tan() / (0.25 * part).tan();
     (segment + t) / segments
+}
+
+/// Parameters of points spread over a direction: the ends and the middles of its spans.
+pub(super) fn sample_parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
+    let bounds = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
+    bounds.iter().flat_map(|[from, to]| [*from, 0.5 * (from + to)]).chain([1.0]).collect()
 }
 
 /// Direction (0 or 1) of a line or an edge, and the first control index whose function stands beyond it.

@@ -94,8 +94,7 @@ fn rows(body: Body, supports: &Supports, points: &[[f64; 3]]) -> Vec<[f64; 6]> {
         .collect();
     for section in &supports.sections {
         let fields = body.fields(section.centre);
-        for (motion, law) in section.motions.iter().enumerate().filter(|(_, law)| law.is_some()) {
-            let _ = law;
+        for motion in (0..6).filter(|motion| section.motions[*motion].is_some()) {
             rows.push([0, 1, 2, 3, 4, 5].map(|k| match motion {
                 0..=2 => fields[k][motion],
                 _ => f64::from(u8::from(k == motion)),

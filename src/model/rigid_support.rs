@@ -17,7 +17,7 @@ use crate::model::rigid_motion::{Body, FreeMotions};
 use crate::model::supports::Supports;
 use crate::model::{Loads, ModelError, Unknowns};
 use crate::scene::{Place, Scene};
-use crate::shell::{norm, sub};
+use crate::shell::{cross, dot, norm, sub};
 use crate::spline::{Mesh, mid_surface_point};
 
 /// Fractions of u and v of the points. Three remain on a closed turn, evenly spaced and never on one line; so few that
@@ -56,7 +56,12 @@ impl Supports {
         points: &[[f64; 3]],
     ) -> Result<(), ModelError> {
         let spread = self.spread_points(scene, mesh)?;
-        let body = Body::around(&spread.iter().map(|point| point.position).collect::<Vec<_>>());
+        let positions: Vec<[f64; 3]> = spread.iter().map(|point| point.position).collect();
+        if on_one_line(&positions) {
+            let support = self.traces[index].name.clone();
+            return Err(ModelError::TooFewPoints { support, count: spread.len() });
+        }
+        let body = Body::around(&positions);
         let free = FreeMotions::new(body, self, points);
         if free.basis.ncols() == 0 {
             return Err(ModelError::NoFreeMotion { support: self.traces[index].name.clone() });
@@ -100,6 +105,14 @@ impl Supports {
         }
         Ok(once)
     }
+}
+
+/// Whether some points span no triangle.
+fn on_one_line(points: &[[f64; 3]]) -> bool {
+    let Some(first) = points.first() else { return true };
+    let arms = points.iter().map(|point| sub(*point, *first));
+    let longest = arms.clone().fold([0.0; 3], |best, arm| if norm(arm) > norm(best) { arm } else { best });
+    arms.map(|arm| norm(cross(arm, longest))).fold(0.0, f64::max) <= SAME * dot(longest, longest)
 }
 
 /// Refuses loads that push along a motion that only a support of rigid motions holds.

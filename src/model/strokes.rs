@@ -19,6 +19,9 @@ use crate::model::loads::{Kind, LoadPoint};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
+/// Sums of two unit tangents shorter than this have no direction but rounding.
+const TURNED_ROUND: f64 = 1e-9;
+
 impl Loads {
     /// Strokes of all actions, N·mm.
     pub fn strokes(&self, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
@@ -59,7 +62,10 @@ impl Kind {
             }
             Kind::Moment(running) => {
                 let unit = |vector: [f64; 3]| scaled(1.0 / norm(vector), vector);
-                let axis = unit(add(unit(ends[0][running]), unit(ends[1][running])));
+                let [tangent, after] = ends.map(|tangents| unit(tangents[running]));
+                let sum = add(tangent, after);
+                // Where the tangent turns round there is no mean: about the one before it, the normal's half turn counts.
+                let axis = if norm(sum) > TURNED_ROUND { unit(sum) } else { tangent };
                 let [before, after] = normals.map(|normal| sub(normal, scaled(dot(normal, axis), axis)));
                 dot(cross(before, after), axis).atan2(dot(before, after))
             }
@@ -142,6 +148,19 @@ mod tests {
         assert!((there.abs() - expected).abs() < 1e-9 * expected, "{there} {expected}");
         let back: Vec<f64> = angles.iter().rev().copied().collect();
         assert!((sweep(&back) + there).abs() < 1e-9 * expected);
+    }
+
+    /// A half turn about the normal takes the edge's tangent round: its stroke is a number, and nothing for a normal that stays.
+    #[test]
+    fn a_moment_whose_edge_turns_round_does_finite_work() {
+        let plate = plate(ActionKind::Force { on: [0.0, 0.0], force_n: [0.0; 3].into() });
+        let Discretization { mesh, loads, .. } = &plate;
+        let still = vec![[0.0; 3]; mesh.control_points.len()];
+        let about_z: Vec<[f64; 3]> = mesh.control_points.iter().map(|[x, y, _, _]| [-2.0 * x, -2.0 * y, 0.0]).collect();
+        let about_x: Vec<[f64; 3]> = mesh.control_points.iter().map(|[_, y, z, _]| [0.0, -2.0 * y, -2.0 * z]).collect();
+        let work = |to: &[[f64; 3]]| loads.work(&loads.strokes(mesh, &still, to), 1.0);
+        assert!(work(&about_z).abs() < 1e-9, "{}", work(&about_z));
+        assert!(work(&about_x).is_finite());
     }
 
     /// Between two shapes with the same edges a pressure sweeps one volume, on whatever way.

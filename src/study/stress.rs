@@ -17,7 +17,7 @@ use crate::study::stress_run::{Done, StressEnd};
 
 /// Work that smooth steps may do beyond what goes into strain energy, as a share of the largest strain energy: a step
 /// that is off by 1 % of the energy counts as a jump and is cut, and smooth steps stay far below.
-const MOST_IMBALANCE: f64 = 0.02;
+const MOST_UNACCOUNTED: f64 = 0.02;
 /// Error of a symmetric stiffness that is rounding.
 const MOST_ASYMMETRY: f64 = 1e-12;
 /// What running an equilibrium again from its state may change of its energy, relatively.
@@ -224,8 +224,8 @@ fn judge_numbers(scene: &Scene, done: &Done, row: &mut StressRow) {
     if let Some(residual) = row.worst_residual.filter(|residual| residual.is_nan() || *residual > tolerance) {
         row.faults.push(StressFault::OutOfBalance { residual, tolerance });
     }
-    if let Some(balance) = row.energy_balance.filter(|balance| balance.is_nan() || balance.abs() > MOST_IMBALANCE) {
-        row.faults.push(StressFault::EnergyOutOfBalance { balance, most: MOST_IMBALANCE });
+    if let Some(balance) = row.energy_balance.filter(|balance| balance.is_nan() || balance.abs() > MOST_UNACCOUNTED) {
+        row.faults.push(StressFault::EnergyOutOfBalance { balance, most: MOST_UNACCOUNTED });
     }
     let least = scene.expect.as_ref().map_or(Expectation::LEAST_BITS, |expect| expect.least_bits) as f64;
     if let Some(bits) = row.significant_bits.filter(|bits| bits.is_nan() || *bits < least) {

@@ -135,6 +135,17 @@ fn a_force_by_the_projected_area() {
     assert_close("whole area", carried(""), 1e-5 * 30.0 * 20.0 * PI, 1e-9);
 }
 
+/// On more than half a cylinder one part lies below another.
+#[test]
+fn a_force_by_the_projected_area_meets_one_side_alone() {
+    let tables = "[[support]]\non = \"u-start\"\nkind = \"clamped\"\n[[action]]\nname = \"snow\"\nkind = \"area-force\"\n\
+         force_n_per_mm2 = [0.0, 0.0, -1e-5]\nper = \"projected-area\"\n";
+    let panel = |arc: f64| format!("kind = \"cylinder-panel\"\nlength_mm = 30.0\nradius_mm = 20.0\narc_deg = {arc:?}");
+    let error = refused(shell(&panel(350.0), 1.0, [2, 16], tables));
+    assert!(error.contains("\"snow\"") && error.contains("meets one side of the surface at (0, 0, 20) mm"), "{error}");
+    Stages::new(shell(&panel(180.0), 1.0, [2, 16], tables)).start().unwrap();
+}
+
 /// The zone of a sphere in its membrane state, all of it free.
 #[test]
 fn a_zone_of_a_sphere_under_pressure() {
@@ -322,33 +333,90 @@ fn symmetric_lines_inside_a_symmetric_shell_change_nothing() {
     assert_close("energy", 2.0 * half.strain_energy_n_mm, whole.strain_energy_n_mm, 1e-3);
 }
 
-/// A hinged strip under a force at a quarter of its length that may not turn in the middle: the force is half an even pair on
-/// the hinged beam and half an odd pair on two propped ones, w = P L³/(E I) (1/96 + 7/12288).
-#[test]
-fn a_symmetric_line_holds_the_turn() {
-    let hinges = "[[support]]\non = \"u-start\"\nkind = \"fixed\"\nhold = [\"y\", \"z\"]\n[[support]]\non = \"u-end\"\nkind = \"fixed\"\nhold = [\"z\"]\n";
-    for line in [0.5, 0.4] {
-        let tables = format!(
-            "{hinges}[[support]]\nname = \"middle\"\non = \"u={line:?}\"\nkind = \"symmetric\"\n[[action]]\non = \"u=0.25\"\nkind = \"line-force\"\n\
-             force_n_per_mm = [0.0, 0.0, 1e-6]\n{}{}",
-            displacement_probe("w", [0.25, 0.5], "z"),
-            displacement_probe("across", [line, 0.5], "x")
-        );
-        let mut strip = shell("kind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 2.0", 0.5, [64, 1], &tables);
-        // The moment jumps at the line, which splines of degree 2 can show at a knot.
-        strip.mesh.degree = [2, 2];
-        let foldline::scene::Material::Isotropic { poissons_ratio, .. } = &mut strip.material else { panic!() };
-        *poissons_ratio = 0.0;
-        strip.solver.tolerance = 1e-8;
-        let report = solve(strip);
-        let rigidity = 70000.0 * 0.125 / 12.0;
-        if line == 0.5 {
-            assert_close("w", probe(&report, "w"), 1e-6 * 1e6 / rigidity * (1.0 / 96.0 + 7.0 / 12288.0), 1e-3);
-        }
-        assert!(probe(&report, "across").abs() < 1e-12);
-    }
+/// A strip of 100 x 2 mm that is hinged along both short edges and symmetric about the line at a fraction of its length.
+fn strip(line: f64, tables: &str) -> Scene {
+    let hinge = |edge: &str| format!("[[support]]\non = \"{edge}\"\nkind = \"fixed\"\nhold = [\"y\", \"z\"]\n");
+    let tables = format!(
+        "{}{}[[support]]\nname = \"middle\"\non = \"u={line:?}\"\nkind = \"symmetric\"\n{tables}",
+        hinge("u-start"),
+        hinge("u-end")
+    );
+    shell("kind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 2.0", 0.5, [64, 1], &tables)
 }
 
+fn line_force(u: f64, z: f64) -> String {
+    format!("[[action]]\non = \"u={u:?}\"\nkind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, {z:e}]\n")
+}
+
+/// A hinged strip under two forces at quarters of its length, w = P L³/(48 E I) below each: the line in the middle is all that
+/// holds it along x, and it does not turn there.
+#[test]
+fn a_symmetric_line_holds_a_symmetric_strip() {
+    let probes = displacement_probe("w", [0.25, 0.5], "z") + &displacement_probe("across", [0.5, 0.5], "x");
+    let mut strip = strip(0.5, &(line_force(0.25, 1e-6) + &line_force(0.75, 1e-6) + &probes));
+    let foldline::scene::Material::Isotropic { poissons_ratio, .. } = &mut strip.material else { panic!() };
+    *poissons_ratio = 0.0;
+    strip.solver.tolerance = 1e-8;
+    let report = solve(strip);
+    let rigidity = 70000.0 * 0.125 / 12.0;
+    assert_close("w", probe(&report, "w"), 1e-6 * 1e6 / rigidity / 48.0, 1e-3);
+    assert!(probe(&report, "across").abs() < 1e-12);
+}
+
+/// A symmetric line inside would hold what nothing else does where one side is not the image of the other.
+#[test]
+fn a_symmetric_line_asks_for_two_sides_alike() {
+    let moment =
+        |on: &str, size: f64| format!("[[action]]\non = \"{on}\"\nkind = \"edge-moment\"\nmoment_n = {size:?}\n");
+    let force =
+        |u: f64, v: f64, force: &str| format!("[[action]]\non = [{u:?}, {v:?}]\nkind = \"force\"\nforce_n = {force}\n");
+    let pull = |u: f64, x: f64| force(u, 0.3, &format!("[{x:?}, 0.1, 0.2]"));
+    let ramp = line_force(0.75, 1e-6) + "history = [[0.0, 0.0], [0.5, 1.0], [1.0, 1.0]]\n";
+    let lift = |u: f64, z: f64| format!("[[support]]\non = [{u:?}, 0.5]\nkind = \"displacement\"\nz_mm = {z:?}\n");
+    let taken = [
+        line_force(0.2, 1e-6) + &line_force(0.8, 1e-6),
+        line_force(0.5, 1e-6),
+        moment("u-start", 1e-3) + &moment("u-end", -1e-3),
+        moment("v-start", 1e-3),
+        pull(0.1, 1.0) + &pull(0.9, -1.0),
+        pull(0.1, 1.0) + &pull(0.1, 1.0) + &pull(0.9, -1.0) + &pull(0.9, -1.0),
+        force(0.0, 0.0, "1.0\nalong = \"normal\"") + &force(1.0, 0.0, "1.0\nalong = \"normal\""),
+        lift(0.3, 0.1) + &lift(0.7, 0.1),
+    ];
+    for tables in taken {
+        Stages::new(strip(0.5, &tables)).start().unwrap_or_else(|error| panic!("{error}\n{tables}"));
+    }
+    let one_sided = [
+        line_force(0.2, 1e-6),
+        line_force(0.2, 1e-6) + &line_force(0.8, 2e-6),
+        line_force(0.25, 1e-6) + &ramp,
+        moment("u-start", 1e-3) + &moment("u-end", 1e-3),
+        pull(0.1, 1.0) + &pull(0.9, 1.0),
+        pull(0.1, 1.0) + &pull(0.1, 1.0) + &pull(0.9, -1.0),
+        force(0.0, 0.0, "1.0\nalong = \"normal\"") + &force(1.0, 1.0, "1.0\nalong = \"normal\""),
+        lift(0.3, 0.1) + &lift(0.7, 0.2),
+        lift(0.3, 0.1),
+    ];
+    for tables in one_sided {
+        let error = refused(strip(0.5, &tables));
+        assert!(error.contains("has no mirror image on the other side"), "{error}\n{tables}");
+    }
+    let error = refused(strip(0.4, &line_force(0.2, 1e-6)));
+    assert!(error.contains("\"middle\", a line inside: the line does not lie in its middle"), "{error}");
+    // Square to its plane on the line, and wider on one side of it.
+    let net = [(0.0, 20.0), (30.0, 10.0), (70.0, 15.0), (100.0, 15.0)]
+        .map(|(x, y)| format!("[{x:?}, {:?}, 0], [{x:?}, {y:?}, 0]", -y));
+    let uneven = format!(
+        "kind = \"nurbs\"\ndegrees = [3, 1]\nknots_u = [0, 0, 0, 0, 1, 1, 1, 1]\nknots_v = [0, 0, 1, 1]\ncontrol_points_mm = [{}]",
+        net.join(", ")
+    );
+    let held = "[[support]]\non = \"u=0.5\"\nkind = \"symmetric\"\n[[support]]\nkind = \"rigid-motions\"\n\
+         [[action]]\nkind = \"pressure\"\npressure_mpa = 1e-4\n";
+    let error = refused(shell(&uneven, 0.5, [4, 4], held));
+    assert!(error.contains("mm off the surface"), "{error}");
+}
+
+/// Edges and lines inside of a parallelogram are told the same.
 #[test]
 fn lines_that_are_no_planes_of_symmetry_are_refused() {
     let clamp =
@@ -357,9 +425,39 @@ fn lines_that_are_no_planes_of_symmetry_are_refused() {
     let zone = "kind = \"sphere-zone\"\nradius_mm = 30.0\nlatitude_deg = [0.0, 60.0]\narc_deg = 60.0";
     let error = refused(shell(zone, 0.5, [3, 3], &format!("{clamp}{push}")));
     assert!(error.contains("no plane of symmetry"), "{error}");
-    // The equator is one.
-    let around = zone.replace("[0.0, 60.0]", "[-18.0, 42.0]");
-    Stages::new(shell(&around, 0.5, [3, 3], &format!("{clamp}{push}"))).start().unwrap();
+    // The equator is one, where both sides of it are held.
+    let around = zone.replace("[0.0, 60.0]", "[-30.0, 30.0]");
+    let middle = clamp.replace("v=0.3", "v=0.5");
+    let other = "[[support]]\non = \"v-end\"\nkind = \"clamped\"\n";
+    Stages::new(shell(&around, 0.5, [3, 3], &format!("{middle}{other}{push}"))).start().unwrap();
+    let error = refused(shell(&around, 0.5, [3, 3], &format!("{middle}{push}")));
+    assert!(error.contains("support \"support 1\" has no mirror image"), "{error}");
+
+    let parallelogram = "kind = \"nurbs\"\ndegrees = [1, 1]\nknots_u = [0, 0, 1, 1]\nknots_v = [0, 0, 1, 1]\n\
+         control_points_mm = [[0, 0, 0], [20, 40, 0], [60, 0, 0], [80, 40, 0]]";
+    for on in ["u-start", "u=0.5"] {
+        let held = format!("[[support]]\nname = \"plane\"\non = \"{on}\"\nkind = \"symmetric\"\n{push}");
+        let error = refused(shell(parallelogram, 0.5, [4, 4], &held));
+        assert!(
+            error.contains("the surface crosses its plane") && error.contains("26.6° off a right angle"),
+            "{error}"
+        );
+    }
+}
+
+/// Where two moving sections carry the whole shell, no point is left to hold its rigid motions by.
+#[test]
+fn rigid_motions_need_points_that_no_moving_section_carries() {
+    let free = ["x_mm", "y_mm", "z_mm", "rotation_x_deg", "rotation_y_deg", "rotation_z_deg"]
+        .map(|key| format!("{key} = \"free\"\n"));
+    let section = |on: &str| format!("[[support]]\non = \"{on}\"\nkind = \"rigid\"\n{}", free.concat());
+    let pull =
+        |u: f64, x: f64| format!("[[action]]\non = [{u:?}, 0.5]\nkind = \"force\"\nforce_n = [{x:?}, 0.0, 0.0]\n");
+    let tables = [section("u-start"), section("u-end"), FREE.into(), pull(0.0, -1.0), pull(1.0, 1.0)].concat();
+    let plate = "kind = \"plate\"\nlength_mm = 60.0\nwidth_mm = 40.0";
+    let error = refused(shell(plate, 0.5, [1, 4], &tables));
+    assert!(error.contains("0 of them remain: put more elements between"), "{error}");
+    Stages::new(shell(plate, 0.5, [6, 4], &tables)).start().unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]

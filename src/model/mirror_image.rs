@@ -1,0 +1,218 @@
+//! Whether a whole shell is its own mirror image in the plane of a line inside.
+//!
+//! A symmetric line inside holds what a symmetric shell does by itself. On any other it would be a hold that nothing makes:
+//! surface, supports and actions must be mapped onto themselves. The parameter across the line goes over into 1 − ξ; tangents
+//! along it are mirrored and those across mirrored and turned round, so that the normal of the image is the image of the normal:
+//! loads along directions of the surface keep their size. Forces and translations are mirrored, moments and turns mirrored and
+//! turned round. What acts on the whole surface is looked at on the line ([`super::mirror`]).
+
+use crate::model::ModelError;
+use crate::model::edge::{on_edge, side};
+use crate::model::mirror::{Mirror, SAME_PARAMETER};
+use crate::model::place::{parameters_of, sample_parameters};
+use crate::model::soundness::POSITION;
+use crate::model::supports::supports_of;
+use crate::model::symmetry_plane::{ANGLE, ROUNDING, unit};
+use crate::scene::{
+    Action, ActionKind, ForceVector, History, Hold, Motion, ParametricDirection, Place, Scene, Support,
+};
+use crate::shell::{dot, norm, scaled, sub};
+use crate::spline::{Mesh, mid_surface_point};
+use crate::units::{place, significant};
+
+/// A vector whose components are given or free.
+type Given = [Option<f64>; 3];
+
+/// A mirror that the shell stands on both sides of.
+struct Plane {
+    normal: [f64; 3],
+    /// A point of it, mm.
+    origin: [f64; 3],
+    /// Distances below are rounding of coordinates, mm.
+    rounding_mm: f64,
+}
+
+/// A support or an action, as far as a mirror changes it.
+#[derive(Clone)]
+struct Part {
+    /// In words.
+    name: String,
+    /// What no mirror changes.
+    kind: String,
+    /// Points of the place: one, or start, middle and end of a line; none for the whole surface.
+    points: Vec<[f64; 3]>,
+    /// Forces, translations, arms.
+    vectors: Vec<Given>,
+    /// Moments and turns.
+    turns: Vec<Given>,
+    history: History,
+}
+
+/// Refuses a shell that is not its own mirror image in the plane of a line inside.
+///
+/// # Errors
+/// Where the line is not in its middle, or a surface point, a support or an action has no image.
+pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
+    let refused = |what: String| Err(ModelError::NotItsOwnImage { support: mirror.support.clone(), what });
+    if (mirror.parameter - 0.5).abs() > SAME_PARAMETER {
+        return refused("the line does not lie in its middle, at 0.5".into());
+    }
+    let origin = mirror.point(mesh, 0.0).position;
+    let samples = samples(mesh, mirror.way);
+    let size = samples.iter().map(|[point, _]| norm(sub(*point, origin))).fold(0.0, f64::max);
+    let plane = Plane { normal: mirror.normal, origin, rounding_mm: POSITION * size };
+    let off = samples.iter().map(|[point, opposite]| (norm(sub(plane.point(*point), *opposite)), *point));
+    let (off_mm, at) = off.fold((0.0, origin), |worst, one| if one.0 > worst.0 { one } else { worst });
+    if off_mm > plane.rounding_mm {
+        let [off, most] = [off_mm, plane.rounding_mm].map(|value| significant(value, 3));
+        let at = place(at);
+        return refused(format!(
+            "the image of {at} is {off} mm off the surface (up to {most} mm is taken for rounding)"
+        ));
+    }
+    let supports = supports_of(scene);
+    let supports = supports.iter().map(|support| Part::of_support(scene, mesh, support, origin));
+    let actions = scene.actions.iter().filter_map(|action| Part::of_action(scene, mesh, action));
+    let parts: Vec<Part> = supports.chain(actions).collect();
+    let count = |part: &Part| parts.iter().filter(|other| plane.is_same(part, other)).count();
+    let unmatched = |part: &&Part| plane.image(part).is_none_or(|image| count(&image) != count(part));
+    match parts.iter().find(unmatched) {
+        Some(part) => refused(format!("{} has no mirror image on the other side", part.name)),
+        None => Ok(()),
+    }
+}
+
+/// Points of the surface, two in every span each way, each with the one that stands opposite.
+fn samples(mesh: &Mesh, way: usize) -> Vec<[[f64; 3]; 2]> {
+    let [us, vs] = [0, 1].map(|way| sample_parameters(mesh, way));
+    let pair = |at: [f64; 2]| {
+        let mut opposite = at;
+        opposite[way] = 1.0 - at[way];
+        [at, opposite].map(|at| mid_surface_point(mesh, &[], at).position)
+    };
+    us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])).map(pair).collect()
+}
+
+/// Points of a place that tell it from others.
+fn points_of(scene: &Scene, mesh: &Mesh, on: Place) -> Vec<[f64; 3]> {
+    let along = |way: usize, fraction: f64| {
+        [0.0, 0.5, 1.0].map(|along| if way == 0 { [fraction, along] } else { [along, fraction] }).to_vec()
+    };
+    let fractions = match on {
+        Place::Point(at) => vec![at],
+        Place::Line(ParametricDirection::U, fraction) => along(0, fraction),
+        Place::Line(ParametricDirection::V, fraction) => along(1, fraction),
+        Place::Edge(edge) => {
+            let (way, at_end) = side(edge);
+            along(way, if at_end { 1.0 } else { 0.0 })
+        }
+        Place::Whole => vec![],
+    };
+    let position = |at: [f64; 2]| mid_surface_point(mesh, &[], parameters_of(&scene.geometry, at)).position;
+    fractions.into_iter().map(position).collect()
+}
+
+impl Part {
+    fn of_support(scene: &Scene, mesh: &Mesh, support: &Support, origin: [f64; 3]) -> Self {
+        let (kind, vectors, turns) = match &support.hold {
+            Hold::Symmetric => ("symmetric", vec![], vec![]),
+            Hold::RigidMotions => ("rigid motions", vec![], vec![]),
+            Hold::Displacement { displacement_mm } => ("displacement", vec![*displacement_mm], vec![]),
+            Hold::Rigid { motions, reference_mm, normals_turn } => {
+                let value = |motion: Motion| match motion {
+                    Motion::Given(value) => Some(value),
+                    Motion::Free(_) => None,
+                };
+                let [x, y, z, about_x, about_y, about_z] = motions.map(value);
+                let arm = reference_mm.map(|point| sub(point, origin).map(Some));
+                let kind = if *normals_turn { "clamped section" } else { "hinged section" };
+                (kind, [Some([x, y, z]), arm].into_iter().flatten().collect(), vec![[about_x, about_y, about_z]])
+            }
+        };
+        Self {
+            name: format!("support \"{}\"", support.name),
+            kind: kind.into(),
+            points: points_of(scene, mesh, support.on),
+            vectors,
+            turns,
+            history: support.history.clone(),
+        }
+    }
+
+    /// `None` for what acts on the whole surface.
+    fn of_action(scene: &Scene, mesh: &Mesh, action: &Action) -> Option<Self> {
+        let forced = |kind: &str, force: ForceVector| match force {
+            ForceVector::Components(force) => (kind.to_owned(), vec![force.map(Some)], vec![]),
+            ForceVector::Along(size, direction) => (format!("{kind} of {size:?} {direction:?}"), vec![], vec![]),
+        };
+        let (on, (kind, vectors, turns)) = match action.kind {
+            ActionKind::Force { on, force_n } => (Place::Point(on), forced("force", force_n)),
+            ActionKind::LineForce { on, force_n_per_mm } => (on, forced("line force", force_n_per_mm)),
+            ActionKind::EdgeMoment { on, moment_n } => {
+                let (way, _) = side(on);
+                let along = unit(on_edge(mesh, on, 0.5).derivatives[1 - way]);
+                (Place::Edge(on), ("edge moment".into(), vec![], vec![scaled(moment_n, along).map(Some)]))
+            }
+            ActionKind::AreaForce { .. }
+            | ActionKind::Gravity { .. }
+            | ActionKind::Pressure { .. }
+            | ActionKind::Temperature { .. }
+            | ActionKind::NaturalCurvature { .. } => return None,
+        };
+        Some(Self {
+            name: format!("action \"{}\"", action.name),
+            kind,
+            points: points_of(scene, mesh, on),
+            vectors,
+            turns,
+            history: action.history.clone(),
+        })
+    }
+}
+
+impl Plane {
+    fn vector(&self, vector: [f64; 3]) -> [f64; 3] {
+        sub(vector, scaled(2.0 * dot(vector, self.normal), self.normal))
+    }
+
+    fn point(&self, point: [f64; 3]) -> [f64; 3] {
+        let arm = sub(point, self.origin);
+        sub(point, scaled(2.0 * dot(arm, self.normal), self.normal))
+    }
+
+    /// `None` where the image of a given component has a share along one that is free.
+    fn given(&self, vector: &Given) -> Option<Given> {
+        let mixes = |i: usize, j: usize| i != j && (self.normal[i] * self.normal[j]).abs() > ROUNDING;
+        let parted = |i: usize| (0..3).any(|j| mixes(i, j) && vector[i].is_some() != vector[j].is_some());
+        let image = self.vector(vector.map(Option::unwrap_or_default));
+        (!(0..3).any(parted)).then(|| [0, 1, 2].map(|c| vector[c].map(|_| image[c])))
+    }
+
+    fn image(&self, part: &Part) -> Option<Part> {
+        let turned = |turn: &Given| Some(self.given(turn)?.map(|component| component.map(|value| -value)));
+        Some(Part {
+            points: part.points.iter().map(|point| self.point(*point)).collect(),
+            vectors: part.vectors.iter().map(|vector| self.given(vector)).collect::<Option<_>>()?,
+            turns: part.turns.iter().map(turned).collect::<Option<_>>()?,
+            ..part.clone()
+        })
+    }
+
+    /// Whether two parts do the same in the same place. A mirror turns lines that cross it round.
+    fn is_same(&self, one: &Part, other: &Part) -> bool {
+        let near = |(a, b): (&[f64; 3], &[f64; 3])| norm(sub(*a, *b)) <= 2.0 * self.rounding_mm;
+        let alike = |(a, b): (&Given, &Given)| {
+            let [x, y] = [a, b].map(|vector| vector.map(Option::unwrap_or_default));
+            let free = |vector: &Given| vector.map(|component| component.is_none());
+            free(a) == free(b) && norm(sub(x, y)) <= 2.0 * ANGLE * norm(x)
+        };
+        let all_alike = |a: &[Given], b: &[Given]| a.len() == b.len() && a.iter().zip(b).all(alike);
+        one.kind == other.kind
+            && one.history == other.history
+            && one.points.len() == other.points.len()
+            && (one.points.iter().zip(&other.points).all(near)
+                || one.points.iter().zip(other.points.iter().rev()).all(near))
+            && all_alike(&one.vectors, &other.vectors)
+            && all_alike(&one.turns, &other.turns)
+    }
+}

@@ -1,0 +1,42 @@
+//! Forces by the projected area: which of two layers one above the other carries them, the area alone does not say.
+
+use crate::model::ModelError;
+use crate::model::place::sample_parameters;
+use crate::model::symmetry_plane::{ANGLE, unit};
+use crate::scene::{ActionKind, ForceVector, LoadedArea, Scene};
+use crate::shell::{cross, dot, norm};
+use crate::spline::{Mesh, mid_surface_point};
+use crate::units::place;
+
+/// Refuses forces by the projected area that meet both sides of the surface.
+///
+/// # Errors
+/// Where one does, by more than rounding.
+pub(super) fn check_overhangs(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
+    for action in &scene.actions {
+        let ActionKind::AreaForce { force_n_per_mm2: ForceVector::Components(force), per: LoadedArea::Projected } =
+            action.kind
+        else {
+            continue;
+        };
+        if norm(force) == 0.0 {
+            continue;
+        }
+        let [us, vs] = [0, 1].map(|way| sample_parameters(mesh, way));
+        let points = us.iter().flat_map(|u| vs.iter().map(|v| mid_surface_point(mesh, &[], [*u, *v])));
+        let facing = points.map(|point| {
+            let normal = unit(cross(point.derivatives[0], point.derivatives[1]));
+            (dot(normal, unit(force)), point.position)
+        });
+        let [mut least, mut most] = [(0.0, [0.0; 3]); 2];
+        for one in facing {
+            least = if one.0 < least.0 { one } else { least };
+            most = if one.0 > most.0 { one } else { most };
+        }
+        if least.0 < -ANGLE && most.0 > ANGLE {
+            let [one, other] = [least.1, most.1].map(place);
+            return Err(ModelError::Overhang { action: action.name.clone(), one, other });
+        }
+    }
+    Ok(())
+}
