@@ -108,7 +108,8 @@ impl Warning {
             ),
             Self::RefinementBlocked { spans, decay_lengths, over_threshold, .. } => {
                 let each_way = spans.iter().zip(["u", "v"]).filter(|(number, _)| **number > 0);
-                let kept: Vec<String> = each_way.map(|(number, way)| format!("{} along {way}", count(*number, "span"))).collect();
+                let kept: Vec<String> =
+                    each_way.map(|(number, way)| format!("{} along {way}", count(*number, "span"))).collect();
                 format!(
                     "the length limit keeps {} up to {decay_lengths:.1} times as long as the decay of their bending, √(t/κ), \
                      with indicators up to {over_threshold:.0} times the threshold; write a lower adapt.length_limit_mm",
@@ -153,8 +154,39 @@ impl Stages {
         let Some(adapt) = self.scene.adapt.clone().filter(|_| state.refinement.is_some_and(is_small)) else {
             return false;
         };
-        let Ok((scene, work)) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators) else { return false };
+        let Ok((scene, work)) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators) else {
+            return false;
+        };
         let indicators = evaluate_indicators(scene, &adapt, work.discretization(), &state.displacement);
         indicators.marked.iter().all(Vec::is_empty) && indicators.blocked.is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::{MemorySink, Run};
+    use crate::scene::{LengthLimit, Scene, parse};
+
+    /// Whether refining has shown enough at the end of a run.
+    fn has_shown(scene: Scene) -> bool {
+        let start = Stages::new(scene.clone()).start().unwrap();
+        let mut sink = MemorySink::default();
+        Run::new(Stages::new(scene.clone()), start, None).to_end(None, &|| false, &mut sink).unwrap();
+        Stages::new(scene).refining_has_shown(&sink.stages.pop().unwrap().0)
+    }
+
+    /// The baseline, refined behind its snap, halves no elements to see what refining has shown; a cylinder that the length
+    /// limit keeps coarse since its first small load does.
+    #[test]
+    fn what_refining_has_shown_is_not_looked_for_again() {
+        let text = include_str!("../../pipelines/baseline-quarter.toml");
+        let mut baseline = parse(text, "baseline-quarter.toml").unwrap();
+        baseline.load.set_target(20.0);
+        assert!(has_shown(baseline));
+        let text = include_str!("../../tests/verification/scenes/pulled-cylinder.toml");
+        let mut cylinder = parse(text, "pulled-cylinder.toml").unwrap();
+        cylinder.adapt.as_mut().unwrap().length_limit = LengthLimit::SqrtRadiusThickness;
+        assert!(!has_shown(cylinder));
     }
 }
