@@ -34,6 +34,7 @@ pub(crate) fn reading(value: f64, decimals: usize) -> String {
         size if size == 0.0 || size >= least => format!("{value:.decimals$}"),
         _ => format!("{value:.decimals$e}"),
     }
+    .replace('-', "−")
 }
 
 /// A point in space as "(x, y, z) mm"; what is a millionth of the largest component or less is 0.
@@ -78,7 +79,10 @@ mod tests {
             ["0", "1.59e−6", "−0.0123", "12.3", "1230", "1.23e7"],
             [0.0, 1.59e-6, -0.012345, 12.345, 1234.5, 12_345_678.0].map(|value| significant(value, 3)).as_slice()
         );
-        assert_eq!(["0.0000", "0.0123", "1.5900e-6"], [0.0, 0.0123, 1.59e-6].map(|value| reading(value, 4)).as_slice());
+        assert_eq!(
+            ["0.0000", "−0.0123", "1.5900e−6"],
+            [0.0, -0.0123, 1.59e-6].map(|value| reading(value, 4)).as_slice()
+        );
         assert_eq!(place([1e-17, -2.0, 3.0e-4]), "(0, −2, 3e−4) mm");
         assert_eq!(count(1, "stage"), "1 stage");
         assert_eq!(count(0, "stage"), "0 stages");

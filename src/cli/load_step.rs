@@ -18,6 +18,7 @@ pub(super) struct LoadStep {
     passed: Option<CriticalPoint>,
     /// Energy released where it jumped, as far as it is known.
     released_n_mm: Option<Option<f64>>,
+    loads_follow: bool,
     /// Whether a ripple of the mesh was passed.
     rippled: bool,
 }
@@ -52,7 +53,7 @@ impl LoadStep {
     pub(super) fn events(&self) -> Vec<String> {
         let mut events = Vec::new();
         if let Some(released) = self.released_n_mm {
-            events.push(format!("snapped, {}", released_in_words(released, 2)));
+            events.push(format!("snapped, {}", released_in_words(released, self.loads_follow, 2)));
         }
         if self.rippled {
             events.push("a ripple of the mesh".to_string());
@@ -96,6 +97,7 @@ impl LoadStep {
 #[derive(Debug)]
 pub(super) struct Gatherer {
     refines: bool,
+    loads_follow: bool,
     last_stage: Option<Stage>,
     elements: Option<[usize; 2]>,
     pending_rejections: [usize; 4],
@@ -109,6 +111,7 @@ impl Gatherer {
     pub(super) fn new(scene: &Scene) -> Self {
         Self {
             refines: scene.pipeline.contains(&Stage::RefineKnots),
+            loads_follow: scene.loads_follow(),
             last_stage: scene.pipeline.last().copied(),
             elements: None,
             pending_rejections: [0; 4],
@@ -132,6 +135,7 @@ impl Gatherer {
                     wall_s: std::mem::take(&mut self.pending_wall_s),
                     rejected: std::mem::take(&mut self.pending_rejections),
                     released_n_mm: None,
+                    loads_follow: self.loads_follow,
                     rippled: report.rippled,
                     passed: report.critical_point,
                 });

@@ -239,6 +239,7 @@ mod tests {
             outcome: Outcome::Done,
             driven_by: Parameter::Rotation,
             work_n_mm: 0.0,
+            put_in_n_mm: 0.0,
             probes: vec![],
             path_length_mm: None,
             critical_point: None,

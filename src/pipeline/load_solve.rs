@@ -35,6 +35,34 @@ fn leaves_path(state: &State, to: f64, solved: &Solved) -> bool {
     length(&state.displacement, &solved.displacement) > LEFT * rate * (to - state.parameter)
 }
 
+/// How a solve came to its equilibrium.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// Along the path.
+    Along,
+    /// Over a ripple of the mesh.
+    OverRipple,
+    /// By a jump, or onto another path.
+    OffPath,
+}
+
+impl Way {
+    /// Of a solve that moved the load on from a state.
+    fn of(state: &State, attempt: &Attempt, watch: &Watch, solved: &Solved) -> Self {
+        let released = energy_released(state, solved);
+        let ripples = watch.unstable && solved.negative_pivots == 0 && is_ripple(state, released);
+        let bracketed = watch.unstable && state.control.jump_seen_at_deg.is_some();
+        let left = (ripples || bracketed) && leaves_path(state, attempt.target_deg, solved);
+        if left || is_jump(released, state.strain_energy_n_mm.max(solved.put_in), solved.energy) {
+            Way::OffPath
+        } else if ripples {
+            Way::OverRipple
+        } else {
+            Way::Along
+        }
+    }
+}
+
 /// Equilibrium at another load. A descent leaves an unstable branch; a run that stands on one follows it by Newton's method, as
 /// far as that goes.
 fn reach(
@@ -76,12 +104,13 @@ impl Stages {
         match solved {
             Ok(solved) => {
                 let released = energy_released(state, &solved);
-                let small = watch.unstable && solved.negative_pivots == 0 && is_ripple(state, released);
-                let bracketed = watch.unstable && state.control.jump_seen_at_deg.is_some();
-                let left = (small || bracketed) && leaves_path(state, attempt.target_deg, &solved);
-                let jumped = left || is_jump(released, state.strain_energy_n_mm.max(solved.put_in), solved.energy);
-                let rippled = small && !jumped;
-                if (jumped || watch.unstable && !rippled) && !attempt.may_jump {
+                let way = Way::of(state, &attempt, &watch, &solved);
+                let is_to_be_located = match way {
+                    Way::Along => watch.unstable,
+                    Way::OverRipple => false,
+                    Way::OffPath => true,
+                };
+                if is_to_be_located && !attempt.may_jump {
                     report.record_effort(solved.effort);
                     let control = attempt.control_after_jump(&state.control);
                     return Ok(reject(state, report, Outcome::RejectedJump, control));
@@ -92,18 +121,18 @@ impl Stages {
                 next.control = attempt.control_after_success(&self.scene, &state.control, solved.effort.iterations);
                 next.path = None;
                 // The path bends on from an equilibrium before only where it is one path, and where displacements say all.
-                let onwards = !jumped && !rippled && state.negative_pivots == 0 && next.turns.is_empty();
+                let onwards = way == Way::Along && state.negative_pivots == 0 && next.turns.is_empty();
                 next.previous =
                     onwards.then(|| Previous { displacement: state.displacement.clone(), parameter: state.parameter });
                 report.record(&next, &solved);
-                if let Some(refinement) = next.refinement.as_mut().filter(|_| jumped || rippled) {
-                    refinement.ripple_n_mm = if rippled { released.max(0.0) } else { 0.0 };
+                if let Some(refinement) = next.refinement.as_mut().filter(|_| way != Way::Along) {
+                    refinement.ripple_n_mm = if way == Way::OverRipple { released.max(0.0) } else { 0.0 };
                 }
                 report.probes = self.read_probes(&next)?;
-                report.jumped = jumped;
-                report.rippled = rippled;
-                report.critical_point = CriticalPoint::passed_by_load(state, &next).filter(|_| !jumped && !rippled);
-                report.energy_released_n_mm = if jumped || rippled { known_release(released) } else { Some(0.0) };
+                report.jumped = way == Way::OffPath;
+                report.rippled = way == Way::OverRipple;
+                report.critical_point = CriticalPoint::passed_by_load(state, &next).filter(|_| way == Way::Along);
+                report.energy_released_n_mm = if way == Way::Along { Some(0.0) } else { known_release(released) };
                 Ok((next, report))
             }
             Err(cause) => {

@@ -27,9 +27,12 @@ pub struct Report {
     pub moment_n_mm: f64,
     /// Strain energy of the whole shell, N·mm.
     pub strain_energy_n_mm: f64,
-    /// Work of loads and given motions in this stage (forces by their means before and after, strokes of the loads along the
-    /// way of the solve), N·mm.
+    /// Work in this stage of loads and given motions (forces by their means before and after, strokes of the loads along the
+    /// way of the solve), and of changes of the natural state (the mean of what they put in before and after), N·mm.
     pub work_n_mm: f64,
+    /// Energy that changes of the natural state would have put in, had the shell stayed before or after, whichever is more,
+    /// N·mm; 0 where nothing changes it.
+    pub put_in_n_mm: f64,
     /// Elements (along u, along v) of the model.
     pub elements: [usize; 2],
     /// Free unknowns of the model.
@@ -63,11 +66,12 @@ pub struct Report {
     pub warnings: Vec<Warning>,
 }
 
-/// Energy that a jump released, in words, with so many decimals.
-pub fn released_in_words(energy_n_mm: Option<f64>, decimals: usize) -> String {
+/// Energy that a jump released, in words, with so many decimals; it may not be known for two reasons.
+pub fn released_in_words(energy_n_mm: Option<f64>, loads_follow: bool, decimals: usize) -> String {
     match energy_n_mm {
         Some(energy) => format!("released {energy:.decimals$} N·mm"),
-        None => "energy released not known: the loads have no potential".into(),
+        None if loads_follow => "energy released not known: the loads have no potential".into(),
+        None => "energy released not known: less than the rule of work resolves".into(),
     }
 }
 
@@ -117,6 +121,10 @@ pub struct Reading {
     pub at: Option<[f64; 2]>,
 }
 
+fn is_nothing(energy: &f64) -> bool {
+    *energy == 0.0
+}
+
 /// A report as it is written: JSON that names its parameter, and leaves out what the scene has no use for.
 #[derive(Clone, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Report")]
@@ -149,10 +157,14 @@ pub struct WrittenReport {
     attempted_load_factor: Option<f64>,
     /// Strain energy of the whole shell, N·mm.
     strain_energy_n_mm: f64,
-    /// Work of loads and given motions in this stage (forces by their means before and after, strokes of the loads along the
-    /// way of the solve), N·mm.
+    /// Work in this stage of loads and given motions (forces by their means before and after, strokes of the loads along the
+    /// way of the solve), and of changes of the natural state (the mean of what they put in before and after), N·mm.
     #[serde(default)]
     work_n_mm: f64,
+    /// Energy that changes of the natural state would have put in, had the shell stayed before or after, whichever is more,
+    /// N·mm; only where something changes it.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    put_in_n_mm: f64,
     /// Elements (along u, along v) of the model.
     elements: [usize; 2],
     /// Free unknowns of the model.
@@ -165,8 +177,8 @@ pub struct WrittenReport {
     negative_pivots: u64,
     /// |residual| at the end of the stage over the forces that it is held against; 0 where it is rounding.
     residual: f64,
-    /// Energy that a jump released in this stage, N·mm; 0 where nothing jumped, and left out where it is not known, under
-    /// loads that have no potential.
+    /// Energy that a jump released in this stage, N·mm; 0 where nothing jumped, and left out where it is not known: less than
+    /// the rule of work resolves, or under loads that have no potential.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "f64")]
     energy_released_n_mm: Option<f64>,
@@ -208,6 +220,7 @@ impl From<WrittenReport> for Report {
             moment_n_mm: written.moment_n_mm.unwrap_or(0.0),
             strain_energy_n_mm: written.strain_energy_n_mm,
             work_n_mm: written.work_n_mm,
+            put_in_n_mm: written.put_in_n_mm,
             elements: written.elements,
             unknowns: written.unknowns,
             iterations: written.iterations,
@@ -242,6 +255,7 @@ impl From<Report> for WrittenReport {
             outcome: report.outcome,
             strain_energy_n_mm: report.strain_energy_n_mm,
             work_n_mm: report.work_n_mm,
+            put_in_n_mm: report.put_in_n_mm,
             elements: report.elements,
             unknowns: report.unknowns,
             iterations: report.iterations,

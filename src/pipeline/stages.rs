@@ -206,6 +206,7 @@ impl Stages {
             outcome: Outcome::Done,
             driven_by: Parameter::of(&self.scene),
             work_n_mm: 0.0,
+            put_in_n_mm: 0.0,
             probes: Vec::new(),
             parameter: state.parameter,
             attempted_parameter: state.parameter,
@@ -248,6 +249,7 @@ impl Report {
         self.negative_pivots = state.negative_pivots;
         self.residual = solved.residual;
         self.work_n_mm = solved.work;
+        self.put_in_n_mm = solved.put_in;
         self.path_length_mm = state.path.as_ref().map(|path| path.travelled_mm);
     }
 }

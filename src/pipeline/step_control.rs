@@ -21,9 +21,10 @@ use crate::equilibrium::Solved;
 use crate::scene::{Scene, Stage};
 use crate::state::{Rejection, State, StepControl};
 
-/// Energy that leaves the balance of a step, relative to the strain energy, above which the step jumped. The
-/// baseline's snap releases half of the energy; the trapezoidal rule over its smooth steps of 0.4° is off by less than
-/// 1e-4. Steps so large that the rule is off by more are cut, until it is not.
+/// Energy that leaves the balance of a step, relative to the strain energy, above which the step jumped. The baseline's
+/// snap releases half of the energy; the trapezoidal rule, by which given motions do work, is off by less than 1e-4 over its
+/// smooth steps of 0.4°. Loads take their strokes from the way of the solve, and only their factors from means. Steps so large
+/// that this is off by more are cut, until it is not.
 const JUMP_SHARE: f64 = 0.01;
 
 /// The same for re-equilibrating, where a finer mesh lowers the energy by itself: degree 2 on coarse meshes by up to 3
@@ -159,13 +160,14 @@ impl Attempt {
     }
 }
 
-/// Work of loads and given motions from a state to an equilibrium that did not go into strain energy, N·mm.
+/// Work of loads, given motions and changes of the natural state, from a state to an equilibrium, that did not go into strain
+/// energy, N·mm.
 pub fn energy_released(state: &State, solved: &Solved) -> f64 {
     state.strain_energy_n_mm + solved.work - solved.energy
 }
 
-/// Energy that left the balance, where it can be right: what a shell releases is never negative, so that what is comes from
-/// loads whose work depends on a way that the solve did not take.
+/// Energy that left the balance, where it can be right: what a shell releases is never negative, so that what is comes from the
+/// means that work is formed with, or from loads whose work depends on a way that the solve did not take.
 pub fn known_release(released: f64) -> Option<f64> {
     (released >= 0.0).then_some(released)
 }

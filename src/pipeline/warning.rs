@@ -9,7 +9,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::adapt::{Blocked, Halving};
+use crate::adapt::{Blocked, Halving, evaluate_indicators};
 use crate::pipeline::step_control::next_stage;
 use crate::pipeline::{Report, Stages};
 use crate::scene::Stage;
@@ -19,8 +19,9 @@ use crate::units::{count, signed};
 /// Change of the strain energy, relative to it, from which on it is said.
 const LARGE: f64 = 0.05;
 
-/// The same of the last refinement, taken for the whole mesh, up to which a run that refines has seen that its elements are
-/// fine enough; halving them all to see it again would cost `baseline-quarter.toml` a tenth of its time.
+/// The same of the last refinement, taken for the whole mesh, up to which a run whose indicators ask for no more has seen that
+/// its elements are fine enough; halving them all to see it again would cost `baseline-quarter.toml` a tenth of its time. Where
+/// the length limit keeps spans that bend much, the last refinement may have been at a load at which nothing bent yet.
 const SMALL: f64 = 0.01;
 
 /// A mesh that cannot show what the shell does, with the numbers that say so.
@@ -105,12 +106,16 @@ impl Warning {
                  more elements or a higher degree in [mesh], or a lower adapt.threshold",
                 100.0 * energy_share
             ),
-            Self::RefinementBlocked { spans: [n1, n2], decay_lengths, over_threshold, .. } => format!(
-                "the length limit keeps {} along u and {n2} along v up to {decay_lengths:.1} times as long as the decay of \
-                 their bending, √(t/κ), with indicators up to {over_threshold:.0} times the threshold; write a lower \
-                 adapt.length_limit_mm",
-                count(n1, "span")
-            ),
+            Self::RefinementBlocked { spans, decay_lengths, over_threshold, .. } => {
+                let each_way = spans.iter().zip(["u", "v"]).filter(|(number, _)| **number > 0);
+                let kept: Vec<String> =
+                    each_way.map(|(number, way)| format!("{} along {way}", count(*number, "span"))).collect();
+                format!(
+                    "the length limit keeps {} up to {decay_lengths:.1} times as long as the decay of their bending, √(t/κ), \
+                     with indicators up to {over_threshold:.0} times the threshold; write a lower adapt.length_limit_mm",
+                    kept.join(" and ")
+                )
+            }
             Self::EnergyChangedByRefining { elements: [n1, n2], energy_change, .. } => format!(
                 "refining to {n1} × {n2} elements changed the strain energy at the same load by {} %, and what was read before \
                  is as far off; start from a finer mesh, or lower adapt.threshold",
@@ -122,7 +127,7 @@ impl Warning {
 
 impl Stages {
     /// Adds what is to be said of the state that a stage made, or of the one before it.
-    pub(super) fn warn(&self, before: &State, after: &State, report: &mut Report) {
+    pub(super) fn warn(&mut self, before: &State, after: &State, report: &mut Report) {
         let refined = matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
         let of_refining = refined.then(|| Warning::of_refining(before, after, report.elements));
         // Where a number is most likely read: at the last equilibrium before a jump, and at the end of the run.
@@ -133,14 +138,55 @@ impl Stages {
         report.warnings.extend(of_refining.into_iter().chain(of_elements).flatten());
     }
 
-    fn coarse_elements(&self, state: &State) -> Option<Warning> {
-        let has_shown = |last: Refinement| last.of_all_n_mm() <= SMALL * state.strain_energy_n_mm;
-        if state.refinement.is_some_and(has_shown) {
+    fn coarse_elements(&mut self, state: &State) -> Option<Warning> {
+        if self.refining_has_shown(state) {
             return None;
         }
         let energy_share = Halving::of(&self.scene, state)?.energy_share();
         let (parameter, elements) = (state.parameter, state.mesh.element_counts());
         let is_said = energy_share.is_finite() && energy_share > LARGE;
         is_said.then_some(Warning::CoarseElements { parameter, elements, energy_share })
+    }
+
+    /// Whether refining has shown that elements are fine enough: the last time changed little, and the indicators are content.
+    fn refining_has_shown(&mut self, state: &State) -> bool {
+        let is_small = |last: Refinement| last.of_all_n_mm() <= SMALL * state.strain_energy_n_mm;
+        let Some(adapt) = self.scene.adapt.clone().filter(|_| state.refinement.is_some_and(is_small)) else {
+            return false;
+        };
+        let Ok((scene, work)) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators) else {
+            return false;
+        };
+        let indicators = evaluate_indicators(scene, &adapt, work.discretization(), &state.displacement);
+        indicators.marked.iter().all(Vec::is_empty) && indicators.blocked.is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::{MemorySink, Run};
+    use crate::scene::{LengthLimit, Scene, parse};
+
+    /// Whether refining has shown enough at the end of a run.
+    fn has_shown(scene: Scene) -> bool {
+        let start = Stages::new(scene.clone()).start().unwrap();
+        let mut sink = MemorySink::default();
+        Run::new(Stages::new(scene.clone()), start, None).to_end(None, &|| false, &mut sink).unwrap();
+        Stages::new(scene).refining_has_shown(&sink.stages.pop().unwrap().0)
+    }
+
+    /// The baseline, refined behind its snap, halves no elements to see what refining has shown; a cylinder that the length
+    /// limit keeps coarse since its first small load does.
+    #[test]
+    fn what_refining_has_shown_is_not_looked_for_again() {
+        let text = include_str!("../../pipelines/baseline-quarter.toml");
+        let mut baseline = parse(text, "baseline-quarter.toml").unwrap();
+        baseline.load.set_target(20.0);
+        assert!(has_shown(baseline));
+        let text = include_str!("../../tests/verification/scenes/pulled-cylinder.toml");
+        let mut cylinder = parse(text, "pulled-cylinder.toml").unwrap();
+        cylinder.adapt.as_mut().unwrap().length_limit = LengthLimit::SqrtRadiusThickness;
+        assert!(!has_shown(cylinder));
     }
 }

@@ -457,8 +457,9 @@ pub(super) static TOLERANCE: Key = Key {
     }),
     presence: Default("1e-7"),
     reach: Steps,
-    meaning: "A state is in equilibrium when |residual| <= tolerance |forces|: the largest of reactions and loads, or a thousandth \
-              of the forces inside the shell, or of the largest of these met before. Moments and reactions of tape \
+    meaning: "A state is in equilibrium when |residual| <= tolerance |forces|: the largest of reactions, loads and what heat or a \
+              natural curvature pushes with, or a thousandth of the forces inside the shell, or of the largest of these met \
+              before. Moments and reactions of tape \
               springs are then within 20 times the tolerance of their converged values, also next to limit points, and \
               within 100 times in a thin plate that is lifted and twisted; strain energies are far closer.",
     example: "1e-7",

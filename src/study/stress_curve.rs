@@ -68,7 +68,7 @@ pub(super) fn is_equilibrium(record: &Record) -> bool {
 }
 
 /// Work of loads and given motions less the change of strain energy over all load steps that did not jump, relative to
-/// the largest strain energy: what the trapezoidal rule is off by, and any energy that the equations lose. Refinement
+/// the largest strain energy: what the rules of work are off by, and any energy that the equations lose. Refinement
 /// changes the energy at fixed load and does no work; what it changes is not counted.
 pub(super) fn energy_balance<'r>(records: impl Iterator<Item = &'r Record>) -> Option<f64> {
     let (mut surplus, mut largest, mut before) = (0.0, 0.0_f64, 0.0);

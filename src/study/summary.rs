@@ -96,8 +96,8 @@ pub struct FoldMean {
 pub struct Said {
     /// The first one.
     pub first: Warning,
-    /// How many there are.
-    pub count: usize,
+    /// Load steps in which it was said.
+    pub steps: usize,
 }
 
 /// A mesh, and where the run came to it.
@@ -111,12 +111,12 @@ pub struct MeshChange {
     pub unknowns: usize,
 }
 
-/// Work of both end moments against strain energy, up to the first jump.
+/// Work against strain energy, up to the first jump.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
     /// Rotation of the last equilibrium that is counted, degrees.
     pub parameter: f64,
-    /// ∫ 2M dθ, N·mm.
+    /// Turning ends: ∫ 2M dθ; else of loads, given motions and changes of the natural state, N·mm.
     pub work_n_mm: f64,
     /// Strain energy there, N·mm.
     pub strain_energy_n_mm: f64,
@@ -126,12 +126,22 @@ pub struct EnergyBalance {
     pub taken_out_by_refinement_n_mm: f64,
     /// Energy that ripples of the mesh released, N·mm.
     pub released_in_ripples_n_mm: f64,
+    /// What changes of the natural state would have put into a shell that stays, over all steps, N·mm.
+    pub put_in_n_mm: f64,
 }
 
 impl EnergyBalance {
     /// Where the work has gone, N·mm.
     pub fn accounted_n_mm(&self) -> f64 {
         self.strain_energy_n_mm + self.taken_out_by_refinement_n_mm + self.released_in_ripples_n_mm
+    }
+
+    /// Work that has gone nowhere, relative to the largest energy that took part: a shell that is unloaded again stores none,
+    /// and one that takes its natural shape neither stores any nor takes work.
+    pub fn off(&self) -> f64 {
+        let stored = self.accounted_n_mm();
+        let energies = [self.largest_energy_n_mm, self.put_in_n_mm, stored.abs(), self.work_n_mm.abs()];
+        (self.work_n_mm - stored) / energies.into_iter().fold(0.0, f64::max)
     }
 }
 
@@ -183,7 +193,7 @@ impl Summary {
             warnings: warnings(records),
             peak_in_doubt: before_jump_and_with_it(records).any(Warning::doubts_results),
             ripples: ripples(records),
-            loads_follow: scene.actions.iter().any(|action| action.kind.follows()),
+            loads_follow: scene.loads_follow(),
             meshes: mesh_changes(records),
             work: work(records),
             rejections: records.iter().filter(|record| record.report.outcome != Outcome::Done).count(),
@@ -240,6 +250,7 @@ fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
                     Parameter::LoadFactor => report.work_n_mm,
                 };
                 sum.parameter = report.parameter;
+                sum.put_in_n_mm += report.put_in_n_mm;
                 sum.released_in_ripples_n_mm += report.energy_released_n_mm.unwrap_or(0.0);
             }
             // Refining integrates the energy anew, and re-equilibrating lowers it: neither is work of the ends.
@@ -331,14 +342,19 @@ fn fold_mean(path: &[PathPoint], snap: Option<&Snap>) -> Option<FoldMean> {
 
 /// Each kind of warning once, in the order in which they were first said.
 fn warnings(records: &[Record]) -> Vec<Said> {
-    let mut said: Vec<Said> = Vec::new();
+    let mut firsts: Vec<Warning> = Vec::new();
     for warning in records.iter().flat_map(|record| &record.report.warnings) {
-        match said.iter_mut().find(|said| said.first.name() == warning.name()) {
-            Some(said) => said.count += 1,
-            None => said.push(Said { first: *warning, count: 1 }),
+        if firsts.iter().all(|first| first.name() != warning.name()) {
+            firsts.push(*warning);
         }
     }
-    said
+    let steps_with = |first: &Warning| {
+        let says = |record: &&Record| record.report.warnings.iter().any(|warning| warning.name() == first.name());
+        let mut steps: Vec<u64> = records.iter().filter(says).map(|record| record.report.step).collect();
+        steps.dedup();
+        steps.len()
+    };
+    firsts.into_iter().map(|first| Said { first, steps: steps_with(&first) }).collect()
 }
 
 /// Warnings up to the load step of the first jump: those of the equilibria before it are said there.

@@ -95,22 +95,23 @@ impl Summary {
                 "snap",
                 self.at(snap.before_deg),
                 self.at(snap.after_deg),
-                released_in_words(snap.energy_released_n_mm, 3),
+                released_in_words(snap.energy_released_n_mm, self.loads_follow, 3),
                 if self.loads_follow && snap.energy_released_n_mm.is_some() { " along the descent" } else { "" }
             )?;
         }
         self.write_passed(f)?;
         let Some(balance) = self.balance else { return Ok(()) };
-        let stored = balance.accounted_n_mm();
-        // Of the largest energy: a shell that is unloaded again stores none.
-        let scale = balance.largest_energy_n_mm.max(stored.abs());
-        let off = signed(100.0 * (balance.work_n_mm - stored) / scale, 2);
+        let workers = match balance.put_in_n_mm {
+            0.0 => "loads and given motions",
+            _ => "loads, given motions and the natural state",
+        };
         writeln!(
             f,
-            "  {:<17}  {:>14} N·mm of loads and given motions, strain energy {}: {off} %",
+            "  {:<17}  {:>14} N·mm of {workers}, strain energy {}: {} %",
             "work",
             reading(balance.work_n_mm, 6),
-            reading(stored, 6)
+            reading(balance.accounted_n_mm(), 6),
+            signed(100.0 * balance.off(), 2)
         )
     }
 
@@ -144,7 +145,7 @@ impl Summary {
                 "{:.2} → {:.2} N·mm, {}{}",
                 snap.moment_before_n_mm,
                 snap.moment_after_n_mm,
-                released_in_words(snap.energy_released_n_mm, 2),
+                released_in_words(snap.energy_released_n_mm, self.loads_follow, 2),
                 if snap.after_deg > snap.before_deg {
                     format!("; located to {:.3}°", snap.after_deg - snap.before_deg)
                 } else {
@@ -261,10 +262,10 @@ impl Summary {
 
     /// Each kind of warning once.
     fn write_warnings(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        for Said { first, count } in &self.warnings {
-            let more = match count {
+        for Said { first, steps } in &self.warnings {
+            let more = match steps {
                 1 => String::new(),
-                n => format!(" (the first of {n})"),
+                n => format!(" (the first of {n} load steps)"),
             };
             writeln!(f, "  warning at {}{more}: {}", self.at(first.parameter()), first.in_words())?;
         }

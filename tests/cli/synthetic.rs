@@ -78,6 +78,7 @@ impl Script {
             step: 0,
             driven_by: Parameter::Rotation,
             work_n_mm: 0.0,
+            put_in_n_mm: 0.0,
             probes: vec![],
             path_length_mm: None,
             critical_point: None,

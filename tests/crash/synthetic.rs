@@ -83,6 +83,7 @@ pub fn next(state: &State) -> (State, Report) {
         outcome: if new.control.rejection.is_some() { Outcome::RejectedJump } else { Outcome::Done },
         driven_by: Parameter::Rotation,
         work_n_mm: 0.0,
+        put_in_n_mm: 0.0,
         probes: vec![],
         path_length_mm: None,
         critical_point: None,

@@ -69,6 +69,21 @@ fn refinement_that_the_limit_blocks_is_said() {
     assert!(warnings(&blocked).iter().any(is_blocked), "{:?}", warnings(&blocked));
 }
 
+/// The same without refinement, and with refinement that stops at the first small load: coarse either way.
+#[test]
+fn a_refinement_at_a_small_load_does_not_silence_the_end() {
+    let is_coarse = |warning: &Warning| matches!(warning, Warning::CoarseElements { parameter: 1.0, .. });
+    let mut blocked = pulled_cylinder();
+    blocked.adapt.as_mut().unwrap().length_limit = LengthLimit::SqrtRadiusThickness;
+    let mut uniform = pulled_cylinder();
+    uniform.adapt = None;
+    uniform.pipeline = vec![Stage::Solve];
+    for scene in [blocked, uniform] {
+        let found = warnings(&records(&scene));
+        assert!(found.iter().any(is_coarse), "{found:?}");
+    }
+}
+
 #[test]
 fn shipped_scenes_print_no_warning() {
     for name in [

@@ -235,8 +235,8 @@ pub enum LengthLimit {
 /// Tolerances and limits of the equilibrium solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solver {
-    /// A state is in equilibrium when |residual| ≤ tolerance · |forces|: the largest of reactions and loads, or a thousandth
-    /// of the forces of the elements, or of the largest of these met before.
+    /// A state is in equilibrium when |residual| ≤ tolerance · |forces|: the largest of reactions, loads and forces of the
+    /// free strain, or a thousandth of the forces of the elements, or of the largest of these met before.
     pub tolerance: f64,
     /// Newton iterations after which a solve has failed.
     pub max_iterations: usize,
@@ -285,6 +285,11 @@ impl Scene {
             self.actions.iter().map(|action| &action.history).chain(self.supports.iter().map(|held| &held.history));
         let points = histories.flat_map(|history| history.0.iter().map(|[at, _]| *at));
         points.filter(|at| *at > load_factor).reduce(f64::min)
+    }
+
+    /// Whether a load turns with the shell, so that its work may depend on the way.
+    pub fn loads_follow(&self) -> bool {
+        self.actions.iter().any(|action| action.kind.follows())
     }
 
     /// The turn of the ends, where that drives the run.
