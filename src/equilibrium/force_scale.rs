@@ -72,10 +72,7 @@ impl ForceScale {
             false => f64::INFINITY,
         };
         Self {
-            acting: reactions
-                .max(loads)
-                .max(assembled.free_strain_forces)
-                .max(OF_ELEMENTS * assembled.element_forces),
+            acting: reactions.max(loads).max(assembled.free_strain_forces).max(OF_ELEMENTS * assembled.element_forces),
             met,
             rounding,
             floor: rounding.min(OF_KNOWN * known),
