@@ -174,6 +174,30 @@ impl GivenLaw {
         })
     }
 
+    /// Refuses what contradicts itself, as far as it is given.
+    fn checked(self, table: &Table<'_, '_>) -> Checked<Self> {
+        let expansions = [
+            ("thermal_expansion_1_per_k", self.thermal_expansion_1_per_k),
+            ("thermal_expansion_2_per_k", self.thermal_expansion_2_per_k),
+        ];
+        if let [(given, Some(_)), (other, None)] | [(other, None), (given, Some(_))] = expansions {
+            return Err(table.wrong(
+                table.place_of(given).as_ref(),
+                format!("`{given}` is given and `{other}` is not"),
+                format!("write both; `{other} = 0.0` does not expand that way"),
+            ));
+        }
+        let ratio = self.youngs_modulus_1_mpa.zip(self.youngs_modulus_2_mpa).map(|(along, across)| along / across);
+        if let Some((nu, ratio)) = self.poissons_ratio_12.zip(ratio).filter(|(nu, ratio)| nu * nu >= *ratio) {
+            return Err(table.wrong(
+                table.place_of("poissons_ratio_12").as_ref(),
+                format!("nu12 = {nu} is too large for E1/E2 = {ratio}: the layer would have no stiffness"),
+                "nu12 squared must be below E1/E2",
+            ));
+        }
+        Ok(self)
+    }
+
     /// What is missing comes from `default`.
     fn or(self, default: Self) -> Self {
         Self {
@@ -189,12 +213,12 @@ impl GivenLaw {
 
 /// Law of the layer of one table; what is missing comes from `default`.
 fn law(table: &Table<'_, '_>, default: GivenLaw) -> Checked<OrthotropicLaw> {
-    let given = GivenLaw::read(table)?.or(default);
+    let given = GivenLaw::read(table)?.or(default).checked(table)?;
     let modulus = |name: &'static str, value: Option<f64>| {
         let remedy = "an orthotropic layer has youngs_modulus_1_mpa, youngs_modulus_2_mpa, poissons_ratio_12, shear_modulus_12_mpa";
         value.ok_or_else(|| table.missing(name, remedy))
     };
-    let law = OrthotropicLaw {
+    Ok(OrthotropicLaw {
         youngs_modulus_1_mpa: modulus("youngs_modulus_1_mpa", given.youngs_modulus_1_mpa)?,
         youngs_modulus_2_mpa: modulus("youngs_modulus_2_mpa", given.youngs_modulus_2_mpa)?,
         poissons_ratio_12: given
@@ -203,31 +227,7 @@ fn law(table: &Table<'_, '_>, default: GivenLaw) -> Checked<OrthotropicLaw> {
         shear_modulus_12_mpa: modulus("shear_modulus_12_mpa", given.shear_modulus_12_mpa)?,
         thermal_expansion_1_per_k: given.thermal_expansion_1_per_k,
         thermal_expansion_2_per_k: given.thermal_expansion_2_per_k,
-    };
-    if law.thermal_expansion_1_per_k.is_some() != law.thermal_expansion_2_per_k.is_some() {
-        let (given, other) = match law.thermal_expansion_1_per_k {
-            Some(_) => ("thermal_expansion_1_per_k", "thermal_expansion_2_per_k"),
-            None => ("thermal_expansion_2_per_k", "thermal_expansion_1_per_k"),
-        };
-        return Err(table.wrong(
-            table.place_of(given).as_ref(),
-            format!("`{given}` is given and `{other}` is not"),
-            format!("write both; `{other} = 0.0` does not expand that way"),
-        ));
-    }
-    if law.poissons_ratio_12.powi(2) >= law.youngs_modulus_1_mpa / law.youngs_modulus_2_mpa {
-        let problem = format!(
-            "nu12 = {} is too large for E1/E2 = {}: the layer would have no stiffness",
-            law.poissons_ratio_12,
-            law.youngs_modulus_1_mpa / law.youngs_modulus_2_mpa
-        );
-        return Err(table.wrong(
-            table.place_of("poissons_ratio_12").as_ref(),
-            problem,
-            "nu12 squared must be below E1/E2",
-        ));
-    }
-    Ok(law)
+    })
 }
 
 /// A material of one of [`MATERIALS`].
@@ -245,7 +245,7 @@ pub(super) fn material(table: Table<'_, '_>, plies: Vec<Table<'_, '_>>) -> Check
         return no_plies(plies).map(|()| material);
     }
     let offset_mm = table.number_or("offset_mm", ANY, 0.0)?;
-    let default = GivenLaw::read(&table)?;
+    let default = GivenLaw::read(&table)?.checked(&table)?;
     let density_kg_m3 = table.maybe_number("density_kg_m3", DENSITY)?;
     if plies.is_empty() {
         return Err(table.wrong(
