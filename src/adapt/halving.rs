@@ -35,7 +35,7 @@ pub struct Halving {
 }
 
 impl Halving {
-    /// Of an equilibrium; `None` where the halved mesh has no factor or is not stable there, does not fit in memory, or has more than a fifth of
+    /// Of an equilibrium; `None` where the halved mesh has no factor, does not fit in memory, or has more than a fifth of
     /// [`MOST_CONTROL_POINTS`].
     pub fn of(scene: &Scene, state: &State) -> Option<Self> {
         let mesh = &state.mesh;
@@ -52,7 +52,7 @@ impl Halving {
         let integrated = work.energy(&displacement, state.parameter);
         let at = Standing { displacement: &displacement, ..Standing::of(state) };
         let held = work.energy(&vec![[0.0; 3]; displacement.len()], state.parameter);
-        let released = work.linear_release(at).ok()??;
+        let released = work.linear_release(at).ok()?;
         let energy = state.strain_energy_n_mm / scene.symmetry.copies() as f64;
         Some(Self { energy, integrated, released, held })
     }
