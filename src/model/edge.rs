@@ -1,7 +1,7 @@
 //! Edges of a mesh as supports see them: two rows of control points, normals, centroid.
 
 use crate::model::ModelError;
-use crate::scene::{Edge, ParametricDirection};
+use crate::scene::Edge;
 use crate::shell::{cross, dot, gauss_legendre, norm, scaled, sub};
 use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 
@@ -48,7 +48,7 @@ pub fn rows_of(mesh: &Mesh, edge: Edge) -> [Vec<usize>; 2] {
 /// Direction (0 or 1) that is constant along an edge, and whether the edge is at its end.
 pub fn side(edge: Edge) -> (usize, bool) {
     let (direction, at_end) = edge.side();
-    (if direction == ParametricDirection::U { 0 } else { 1 }, at_end)
+    (direction.index(), at_end)
 }
 
 /// The point of an edge at a parameter along it.

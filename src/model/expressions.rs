@@ -3,7 +3,7 @@
 use crate::model::ModelError;
 use crate::model::edge::edge_rows;
 use crate::model::place::parameters_of;
-use crate::scene::{ParametricDirection, Place, Scene};
+use crate::scene::{Place, Scene};
 use crate::spline::{Mesh, basis_derivatives, basis_derivatives_len, evaluate_surface, find_span};
 
 /// A weighted sum of control points.
@@ -22,7 +22,7 @@ pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Resu
             vec![nonzero(functions[0].iter().enumerate().map(|(a, value)| (control(a), *value)).collect())]
         }
         Place::Line(direction, fraction) => {
-            let way = if direction == ParametricDirection::U { 0 } else { 1 };
+            let way = direction.index();
             let terms = line_terms(mesh, way, parameters_of(&scene.geometry, [fraction; 2])[way]);
             terms.iter().map(|[values, _]| shares(values)).collect()
         }

@@ -21,7 +21,7 @@ use crate::model::ModelError;
 use crate::model::direction::{Site, direction_at};
 use crate::model::place::parameters_of;
 use crate::model::quadrature::PointCounts;
-use crate::scene::{Action, ActionKind, Edge, ForceVector, History, LoadedArea, ParametricDirection, Place, Scene};
+use crate::scene::{Action, ActionKind, Edge, ForceVector, History, LoadedArea, Place, Scene};
 use crate::shell::{add, cross, dot, gauss_legendre, norm, scaled};
 use crate::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};
 
@@ -111,7 +111,7 @@ impl Loads {
                 let points = match on {
                     Place::Edge(edge) => edge_points(mesh, *edge),
                     Place::Line(direction, fraction) => {
-                        let way = way_of(*direction);
+                        let way = direction.index();
                         line_points(mesh, way, parameters_of(&scene.geometry, [*fraction; 2])[way])
                     }
                     Place::Point(_) | Place::Whole => {
@@ -136,7 +136,7 @@ impl Loads {
             ActionKind::EdgeMoment { on, moment_n } => {
                 let mut points = edge_points(mesh, *on);
                 points.iter_mut().for_each(|point| point.weight *= moment_n);
-                let running = 1 - way_of(on.side().0);
+                let running = 1 - on.side().0.index();
                 self.following.push(Following { history, kind: Kind::Moment(running), points });
             }
             ActionKind::Pressure { pressure_mpa, follower } => {
@@ -357,13 +357,9 @@ fn dead_forces(mesh: &Mesh, points: &[LoadPoint], force: impl Fn(&LoadPoint) -> 
     sums.into_iter().enumerate().filter(|(_, force)| *force != [0.0; 3]).collect()
 }
 
-fn way_of(direction: ParametricDirection) -> usize {
-    if direction == ParametricDirection::U { 0 } else { 1 }
-}
-
 fn edge_points(mesh: &Mesh, edge: Edge) -> Vec<LoadPoint> {
     let (direction, at_end) = edge.side();
-    let mut points = line_points(mesh, way_of(direction), if at_end { 1.0 } else { 0.0 });
+    let mut points = line_points(mesh, direction.index(), if at_end { 1.0 } else { 0.0 });
     points.iter_mut().for_each(|point| point.site.edge = Some(edge));
     points
 }

@@ -11,9 +11,7 @@ use crate::model::place::parameters_of;
 use crate::model::supports::supports_of;
 use crate::model::symmetric_line::Line;
 use crate::model::symmetry_plane::{ANGLE, NoPlane, square_to, symmetry_plane, unit};
-use crate::scene::{
-    ActionKind, Edge, ForceVector, Hold, Material, ParametricDirection, Place, Scene, Support, SurfaceDirection,
-};
+use crate::scene::{ActionKind, Edge, ForceVector, Hold, Material, Place, Scene, Support, SurfaceDirection};
 use crate::shell::{cross, dot, norm, shell_stiffness, sub, thermal_strain};
 use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 use crate::units::{place, significant};
@@ -51,7 +49,7 @@ impl Mirror {
                     (Some(edge), way, if at_end { 1.0 } else { 0.0 })
                 }
                 Place::Line(direction, fraction) => {
-                    let way = if direction == ParametricDirection::U { 0 } else { 1 };
+                    let way = direction.index();
                     (None, way, parameters_of(&scene.geometry, [fraction; 2])[way])
                 }
                 Place::Point(_) | Place::Whole => return Err(ModelError::NotAnEdge { support: support.name.clone() }),
@@ -70,6 +68,14 @@ impl Mirror {
     pub(super) fn point(&self, mesh: &Mesh, parameter: f64) -> SurfacePoint {
         let at = if self.way == 0 { [self.parameter, parameter] } else { [parameter, self.parameter] };
         mid_surface_point(mesh, &[], at)
+    }
+
+    /// Its points at the ends and in the middle of each span.
+    fn samples(&self, mesh: &Mesh) -> Vec<SurfacePoint> {
+        let running = 1 - self.way;
+        let spans = Spans::of(&mesh.knots[running], mesh.degree[running]).bounds;
+        let parameters = spans.into_iter().flat_map(|[from, to]| [from, 0.5 * (from + to), to]);
+        parameters.map(|parameter| self.point(mesh, parameter)).collect()
     }
 
     /// Whether a parameter across it is its own.
@@ -115,20 +121,16 @@ fn check_material(material: &Material, mesh: &Mesh, mirror: &Mirror) -> Result<(
     if matches!(material, Material::Isotropic { .. }) {
         return Ok(());
     }
-    let running = 1 - mirror.way;
-    for [from, to] in Spans::of(&mesh.knots[running], mesh.degree[running]).bounds {
-        for parameter in [from, 0.5 * (from + to), to] {
-            let point = mirror.point(mesh, parameter);
-            let tangents = [point.derivatives[0], point.derivatives[1]];
-            let terms = shear_coupling(material, tangents, unit(point.derivatives[running]));
-            if !terms.is_empty() {
-                return Err(ModelError::MaterialNotMirrored {
-                    support: mirror.support.clone(),
-                    at: place(point.position),
-                    terms: terms.join(", "),
-                    tolerance: ANGLE,
-                });
-            }
+    for point in mirror.samples(mesh) {
+        let tangents = [point.derivatives[0], point.derivatives[1]];
+        let terms = shear_coupling(material, tangents, unit(point.derivatives[1 - mirror.way]));
+        if !terms.is_empty() {
+            return Err(ModelError::MaterialNotMirrored {
+                support: mirror.support.clone(),
+                at: place(point.position),
+                terms: terms.join(", "),
+                tolerance: ANGLE,
+            });
         }
     }
     Ok(())
@@ -136,7 +138,7 @@ fn check_material(material: &Material, mesh: &Mesh, mirror: &Mirror) -> Result<(
 
 /// Refuses free strains with shear in axes along and across the plane, which a mirror image turns round.
 fn check_natural_states(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
-    let running = 1 - mirror.way;
+    let points = mirror.samples(mesh);
     for action in &scene.actions {
         let strains = match action.kind {
             ActionKind::Temperature { .. } => {
@@ -145,22 +147,18 @@ fn check_natural_states(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(
             ActionKind::NaturalCurvature { change_per_mm: [k11, k22, k12] } => vec![[k11, k22, 2.0 * k12]],
             _ => continue,
         };
-        for [from, to] in Spans::of(&mesh.knots[running], mesh.degree[running]).bounds {
-            for parameter in [from, 0.5 * (from + to), to] {
-                let point = mirror.point(mesh, parameter);
-                let (e1, along) = (unit(point.derivatives[0]), unit(point.derivatives[running]));
-                let normal = unit(cross(point.derivatives[0], point.derivatives[1]));
-                let (cos, sin) = (dot(along, e1), dot(along, cross(normal, e1)));
-                let shear = |[s11, s22, s12]: [f64; 3]| 2.0 * cos * sin * (s22 - s11) + (cos * cos - sin * sin) * s12;
-                let size = |strain: [f64; 3]| strain.iter().map(|s| s.abs()).fold(0.0, f64::max);
-                if let Some(strain) = strains.iter().find(|strain| shear(**strain).abs() > 2.0 * ANGLE * size(**strain))
-                {
-                    return Err(ModelError::LoadNotMirrored {
-                        action: action.name.clone(),
-                        support: mirror.support.clone(),
-                        how: format!("with a free strain of {} in shear along it", significant(shear(*strain), 4)),
-                    });
-                }
+        for point in &points {
+            let (e1, along) = (unit(point.derivatives[0]), unit(point.derivatives[1 - mirror.way]));
+            let normal = unit(cross(point.derivatives[0], point.derivatives[1]));
+            let (cos, sin) = (dot(along, e1), dot(along, cross(normal, e1)));
+            let shear = |[s11, s22, s12]: [f64; 3]| 2.0 * cos * sin * (s22 - s11) + (cos * cos - sin * sin) * s12;
+            let size = |strain: [f64; 3]| strain.iter().map(|s| s.abs()).fold(0.0, f64::max);
+            if let Some(strain) = strains.iter().find(|strain| shear(**strain).abs() > 2.0 * ANGLE * size(**strain)) {
+                return Err(ModelError::LoadNotMirrored {
+                    action: action.name.clone(),
+                    support: mirror.support.clone(),
+                    how: format!("with a free strain of {} in shear along it", significant(shear(*strain), 4)),
+                });
             }
         }
     }
@@ -205,7 +203,7 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
     let is_on = |on: &Place| match on {
         Place::Edge(edge) => Some(*edge) == mirror.edge,
         Place::Line(direction, fraction) => {
-            let way = if *direction == ParametricDirection::U { 0 } else { 1 };
+            let way = direction.index();
             way == mirror.way && mirror.is_at(parameters_of(&scene.geometry, [*fraction; 2])[way])
         }
         Place::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.way]),

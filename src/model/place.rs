@@ -3,7 +3,7 @@
 //! A rational quadratic segment of sweep s reaches the angle s/2 + 2 atan((2t − 1) tan(s/4)) at its parameter t: with
 //! the weights (1, cos(s/2), 1), the half-angle tangent about its middle is linear in t.
 
-use crate::scene::{Geometry, ParametricDirection, Place, Scene};
+use crate::scene::{Geometry, Place, Scene};
 use crate::spline::{Mesh, Spans, segment_count};
 
 /// Parameters of a point at fractions of the length or the angle in u and v.
@@ -41,7 +41,7 @@ pub(super) fn sample_parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
 /// Direction (0 or 1) of a line or an edge, and the first control index whose function stands beyond it.
 pub fn line_index(scene: &Scene, mesh: &Mesh, on: Place) -> Option<(usize, usize)> {
     let Place::Line(direction, fraction) = on else { return None };
-    let way = if direction == ParametricDirection::U { 0 } else { 1 };
+    let way = direction.index();
     let parameter = parameters_of(&scene.geometry, [fraction; 2])[way];
     let degree = mesh.degree[way];
     let greville = |k: usize| mesh.knots[way][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;

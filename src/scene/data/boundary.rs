@@ -12,6 +12,16 @@ pub enum ParametricDirection {
     V,
 }
 
+impl ParametricDirection {
+    /// Its place in pairs of numbers each way: 0 for u, 1 for v.
+    pub fn index(self) -> usize {
+        match self {
+            ParametricDirection::U => 0,
+            ParametricDirection::V => 1,
+        }
+    }
+}
+
 /// An edge of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
