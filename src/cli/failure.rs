@@ -45,10 +45,8 @@ pub(super) enum Failure {
     WrongLog { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
     #[error("{} has no load step {step}; {}", log.display(), known_steps(*known))]
     NoSuchStep { log: PathBuf, step: u64, known: Option<(u64, u64)> },
-    #[error("the run came to its end, but {} was removed while it was written: nothing of it is left", log.display())]
-    LogGone { log: PathBuf },
-    #[error("the run stopped; {} keeps every stage before", log.display())]
-    Stopped { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
+    #[error("the run stopped{}", if *keeps { format!("; {} keeps every stage before", log.display()) } else { String::new() })]
+    Stopped { log: PathBuf, keeps: bool, source: Box<dyn std::error::Error + Send + Sync> },
     #[error("interrupted; go on with: foldline resume {}", log.display())]
     Interrupted { log: PathBuf },
     #[error(transparent)]

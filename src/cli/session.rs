@@ -89,12 +89,10 @@ pub(super) fn drive(
     let ending = run.to_end(options.until_deg, &|| raised.load(Ordering::Relaxed), &mut sink);
     let (writer, records) = sink.finish();
     let log = || options.log.clone();
+    let keeps = writer.is_still_there();
     let closed = if matches!(ending, Ok(Ending::Finished)) { writer.finish() } else { writer.close() };
-    let ending = ending.map_err(|source| Failure::Stopped { log: log(), source: Box::new(source) })?;
+    let ending = ending.map_err(|source| Failure::Stopped { log: log(), keeps, source: Box::new(source) })?;
     closed.map_err(|source| Failure::WrongLog { log: log(), source: Box::new(source) })?;
-    if !options.log.exists() {
-        return Err(Failure::LogGone { log: log() });
-    }
     match ending {
         Ending::Interrupted => Err(Failure::Interrupted { log: log() }),
         Ending::Finished | Ending::Until => Ok(records),

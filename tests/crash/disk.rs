@@ -84,8 +84,9 @@ fn a_full_disk_and_a_read_only_one() {
     let stages = log.entries().len();
     assert!(stages > 3 && stages < whole.stages, "{stages} stages");
     assert_eq!(log.completeness(), Completeness::Unfinished);
-    let holds = format!("no space left to write disk/run.mcap; it holds {stages} stages, all good. Make space, then");
-    said.says(&[&holds, "because: No space left on device"]);
+    let holds = format!("; it holds {stages} stages, all good. Make space, then");
+    let because = "because: No space left on device";
+    said.says(&["no space left to write disk/run.mcap (", "bytes more, where there is room for", &holds, because]);
     let before = place.read("disk/run.mcap");
 
     // Still full.

@@ -1,0 +1,154 @@
+//! The log and its keepers: whether it is still the file that was written, and who may write it.
+
+use std::process::Stdio;
+use std::time::Duration;
+
+use foldline::journal::{Completeness, Log};
+
+use crate::program::{Place, Said, Straight, assert_ends_with};
+use crate::shim::with_faults;
+use crate::signals::Under;
+
+/// What the system calls the absence of locks.
+const ENOLCK: &str = "37";
+const EOPNOTSUPP: &str = "95";
+
+/// A run of the small scene that stands still after a few stages.
+fn standing_still(place: &Place) -> Under {
+    let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), 5);
+    run.send("STOP");
+    std::thread::sleep(Duration::from_millis(50));
+    run
+}
+
+/// Whatever happens to the log of a run, the run stops at the next commit, says what it was, and harms nothing.
+#[test]
+fn a_log_in_other_hands_stops_the_run() {
+    let whole = Straight::small();
+    let place = Place::new();
+    let log = place.file("run.mcap");
+
+    let run = standing_still(&place);
+    let kept = place.read("run.mcap");
+    std::fs::remove_file(&log).unwrap();
+    run.send("CONT");
+    let (said, reported) = run.end();
+    said.ends(1).says(&["the run stopped\n", "run.mcap was removed while it was written, and its", "stages with it"]);
+    assert!(reported < 10, "{reported} stages, and not to the end");
+    assert_eq!(place.logs(), Vec::<String>::new());
+
+    let run = standing_still(&place);
+    std::fs::rename(&log, place.file("moved.mcap")).unwrap();
+    run.send("CONT");
+    run.end().0.ends(1).says(&["run.mcap was moved elsewhere while it was written; there it holds"]);
+    place.foldline("resume moved.mcap").ends(0);
+    assert_ends_with(&place.log("moved.mcap"), whole.chain, "under its new name");
+
+    let run = standing_still(&place);
+    std::fs::rename(place.file("moved.mcap"), &log).unwrap();
+    let other = place.read("run.mcap");
+    run.send("CONT");
+    run.end().0.ends(1).says(&["run.mcap is another file than the one that was written"]);
+    assert_eq!(place.read("run.mcap"), other);
+    std::fs::remove_file(&log).unwrap();
+
+    for left in [0, kept.len() as u64 / 2] {
+        let run = standing_still(&place);
+        std::fs::OpenOptions::new().write(true).open(&log).unwrap().set_len(left).unwrap();
+        run.send("CONT");
+        run.end().0.ends(1).says(&[&format!("run.mcap has {left} bytes where"), "has cut it"]);
+        assert_eq!(std::fs::metadata(&log).unwrap().len(), left, "nothing is added behind the cut");
+        std::fs::remove_file(&log).unwrap();
+    }
+}
+
+/// A rival that writes behind the last commit is not written into, nor cut off.
+#[test]
+fn what_a_rival_appends_stays() {
+    let place = Place::new();
+    let run = standing_still(&place);
+    let mut grown = place.read("run.mcap");
+    grown.extend_from_slice(b"what a rival appends");
+    std::fs::OpenOptions::new()
+        .append(true)
+        .open(place.file("run.mcap"))
+        .map(|mut file| {
+            std::io::Write::write_all(&mut file, b"what a rival appends").unwrap();
+        })
+        .unwrap();
+    run.send("CONT");
+    run.end().0.ends(1).says(&["something else writes to it"]);
+    assert_eq!(place.read("run.mcap"), grown);
+}
+
+/// Trouble in reading the lease passes; it is not taken for a rival.
+#[test]
+fn a_lease_that_cannot_be_read_for_a_while_stops_nobody() {
+    let whole = Straight::small();
+    // EIO, EMFILE, ESTALE
+    for errno in [5, 24, 116] {
+        let place = Place::new();
+        let faults = format!("{errno} 4 8");
+        let command = place.command("run small.toml -o run.mcap --quiet");
+        let Some(mut command) = with_faults(command, &[("FAIL_LEASE", &faults)]) else { return };
+        Said::new("run with a lease that cannot be read for a while", command.output().unwrap()).ends(0);
+        assert_ends_with(&place.log("run.mcap"), whole.chain, "the lease could be read again");
+        assert_eq!(place.logs(), ["run.mcap"]);
+    }
+}
+
+/// Three start at once where there are no locks: one goes on, and nothing is left that keeps the next one out.
+#[test]
+fn without_locks_one_of_three_goes_on() {
+    let whole = Straight::small();
+    for round in 0..50 {
+        let place = Place::new();
+        let command = "run small.toml -o run.mcap --until 1 --quiet --threads 1";
+        if round % 3 == 1 {
+            // Left by a process that was killed.
+            let mut dead = std::process::Command::new("true").spawn().unwrap();
+            dead.wait().unwrap();
+            let text = |path: &str| std::fs::read_to_string(path).unwrap().trim().to_owned();
+            let space = std::fs::read_link("/proc/self/ns/pid").unwrap();
+            let process = format!("{} {} {} 7", text("/proc/sys/kernel/random/boot_id"), space.display(), dead.id());
+            place.write("run.mcap.lease", format!("a token\nprocess {} (here)\n{process}\n", dead.id()));
+        }
+        let errno = if round % 2 == 0 { ENOLCK } else { EOPNOTSUPP };
+        let mut rivals = Vec::new();
+        for _ in 0..3 {
+            let Some(mut rival) = with_faults(place.command(command), &[("FAIL_FLOCK", errno)]) else { return };
+            rivals.push(rival.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
+        }
+        let said = rivals.into_iter().map(|rival| Said::new(command, rival.wait_with_output().unwrap()));
+        let (went_on, refused): (Vec<_>, Vec<_>) = said.partition(|said| said.code == Some(0));
+        assert_eq!(went_on.len(), 1, "round {round}: {went_on:?} {refused:?}");
+        for said in refused {
+            let busy = said.err.contains("run.mcap is being written by process");
+            assert!(busy || said.err.contains("run.mcap exists"), "round {round}: {said:?}");
+        }
+        assert_eq!(place.logs(), ["run.mcap"], "round {round}");
+        assert_eq!(place.log("run.mcap").completeness(), Completeness::Unfinished, "round {round}");
+        if round % 10 == 0 {
+            place.foldline("resume run.mcap --quiet").ends(0);
+            assert_ends_with(&place.log("run.mcap"), whole.chain, "resumed");
+        }
+    }
+}
+
+/// Several take a log up that holds nothing: none takes it from another.
+#[test]
+fn an_empty_log_is_begun_anew_by_one() {
+    let whole = Straight::small();
+    for round in 0..10 {
+        let place = Place::new();
+        place.write("run.mcap", "");
+        let command = "run small.toml -o run.mcap --resume --quiet --threads 1";
+        let start = || place.command(command).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let rivals = [start(), start(), start()];
+        let said = rivals.map(|rival| Said::new(command, rival.wait_with_output().unwrap()));
+        assert!(said.iter().any(|said| said.code == Some(0)), "round {round}: {said:?}");
+        assert!(said.iter().all(|said| !said.err.contains("the run stopped")), "round {round}: {said:?}");
+        assert_ends_with(&Log::read(&place.file("run.mcap")).unwrap(), whole.chain, "the one");
+        assert_eq!(place.logs(), ["run.mcap"], "round {round}");
+    }
+}
