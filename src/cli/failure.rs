@@ -30,6 +30,8 @@ pub(super) enum Failure {
     NotText { path: PathBuf, reason: String },
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: io::Error },
+    #[error("{} exists and is not overwritten: remove it, or choose another place for what is written", path.display())]
+    InTheWay { path: PathBuf },
     #[error("cannot write to standard output")]
     Print { source: io::Error },
     /// Everything that is wrong with a scene, rendered with its lines.
@@ -108,6 +110,7 @@ impl Failure {
         match self {
             Failure::Read { .. }
             | Failure::NotText { .. }
+            | Failure::InTheWay { .. }
             | Failure::WrongScene { .. }
             | Failure::UntilBeyondScene { .. }
             | Failure::NoSuchStep { .. }

@@ -1,9 +1,10 @@
 //! Standard output that may be closed, and files that are whole or not there.
 
 use std::io::{self, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::failure::Failure;
+use crate::whole_file::write_new;
 
 /// Writes to standard output. A reader that has closed its end (`| head`) has what it wanted: that is no failure.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
@@ -35,19 +36,27 @@ pub(super) fn say(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// Writes a file under a temporary name and renames it, so that no half of it is ever seen.
-pub(super) fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
-    let failed = |source| Failure::Write { path: path.to_path_buf(), source };
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).map_err(failed)?;
-    let mut file = tempfile::Builder::new().permissions(shared()).tempfile_in(folder).map_err(failed)?;
-    file.write_all(text.as_bytes()).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
+/// Writes files, each whole or not at all, and none over another: whether anything is in the way is asked before the first
+/// is written.
+pub(super) fn write_files(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+    refuse_what_is_there(files.iter().map(|(path, _)| path))?;
+    for (path, content) in files {
+        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+            let failed = |source| Failure::Write { path: folder.to_path_buf(), source };
+            std::fs::create_dir_all(folder).map_err(failed)?;
+        }
+        write_new(path, content).map_err(|source| match source.kind() {
+            ErrorKind::AlreadyExists => Failure::InTheWay { path: path.clone() },
+            _ => Failure::Write { path: path.clone(), source },
+        })?;
+    }
     Ok(())
 }
 
-/// Permissions of an ordinary new file, rather than those of a secret one.
-fn shared() -> std::fs::Permissions {
-    use std::os::unix::fs::PermissionsExt;
-    std::fs::Permissions::from_mode(0o644)
+/// Refuses to write where anything is: nothing is written over, whatever it is.
+pub(super) fn refuse_what_is_there<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> Result<(), Failure> {
+    match paths.into_iter().find(|path| path.symlink_metadata().is_ok()) {
+        Some(path) => Err(Failure::InTheWay { path: path.clone() }),
+        None => Ok(()),
+    }
 }

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::log_file::{ReadLog, read_log, scene_at};
-use super::output::{file_name, print};
+use super::output::{file_name, print, refuse_what_is_there};
 use super::scene_file::stage_named;
 use super::session::use_threads;
 use super::trace;
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     /// Lay a setting over the scene, such as solver.max_iterations=200; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Write every Newton iterate to FILE.mcap and FILE.csv
+    /// Write every Newton iterate to FILE.mcap and FILE.csv, neither of which may be there
     #[arg(long, value_name = "FILE", value_parser = file_name)]
     trace: Option<PathBuf>,
     /// Threads; the result is the same on any number of them [default: one for each core]
@@ -45,6 +45,9 @@ impl Arguments {
     /// Replays; the worst verdict is the exit code.
     pub(super) fn run(self) -> Result<u8, Failure> {
         use_threads(self.threads.map(usize::from));
+        if let Some(file) = &self.trace {
+            refuse_what_is_there(&trace::files(file))?;
+        }
         let read = read_log(&self.log)?;
         let mut stages: Option<Stages> = None;
         let mut rows: Vec<TraceRow> = Vec::new();

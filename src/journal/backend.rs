@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
 use super::still_ours::{Estranged, still_ours};
-use crate::whole_file::WholeFile;
-pub(super) use crate::whole_file::{beside, sync_folder_of};
+pub(super) use crate::whole_file::beside;
+use crate::whole_file::{WholeFile, sync_folder_of};
 
 /// Takes the bytes of a log, whole commits at a time.
 pub trait Backend: Send {

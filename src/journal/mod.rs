@@ -88,6 +88,6 @@ pub use reader::ReadError;
 pub use recovery::{RecoverError, RecoverOutcome, Resume, ResumeError, Resumed, recover};
 pub use soundness::{Flaw, check_mesh, check_state};
 pub use still_ours::Estranged;
-pub use trace::{ITERATE_TOPIC, TraceRow, write_trace};
+pub use trace::{ITERATE_TOPIC, TraceRow, trace_file};
 pub use verify::{Finding, Level, verify, verify_log};
 pub use writer::{JournalWriter, ViewerTopics, WriteError};

@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use mcap::records::Record as McapRecord;
 
-use super::backend::{Backend, FileBackend, beside, sync_folder_of};
+use super::backend::{Backend, FileBackend, beside};
 use super::damage::Completeness;
 use super::encoder::{EncodeError, Encoder, library};
 use super::frame;
@@ -26,7 +26,7 @@ use super::manifest::Manifest;
 use super::reader::ReadError;
 use super::writer::JournalWriter;
 use crate::scene::SyncPolicy;
-use crate::whole_file::WholeFile;
+use crate::whole_file::{WholeFile, write_new};
 
 /// Bytes that are collected before they go to the new file.
 const BATCH_BYTES: usize = 1 << 20;
@@ -248,7 +248,7 @@ fn keep_whole(path: &Path) -> Result<PathBuf, ResumeError> {
             Err(_) => {
                 let log = path.display().to_string();
                 let failed = |source| ResumeError::Copy { log, path: kept.display().to_string(), source };
-                return fs::copy(path, &kept).map(|_| kept.clone()).map_err(failed);
+                return fs::read(path).and_then(|log| write_new(&kept, &log)).map(|()| kept.clone()).map_err(failed);
             }
             Ok(()) => return Ok(kept),
         }
@@ -263,12 +263,9 @@ fn keep_dropped(path: &Path, log: &Log) -> Result<Option<PathBuf>, ResumeError> 
     }
     for number in 1_u32.. {
         let beside = beside(path, &format!(".dropped-{number}"));
-        let written = match fs::OpenOptions::new().write(true).create_new(true).open(&beside) {
+        let written = match write_new(&beside, log.tail()) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            Err(error) => Err(error),
-            Ok(mut file) => {
-                file.write_all(log.tail()).and_then(|()| file.sync_all()).and_then(|()| sync_folder_of(&beside))
-            }
+            written => written,
         };
         return match written {
             Ok(()) => Ok(Some(beside)),
