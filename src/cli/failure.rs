@@ -19,7 +19,8 @@ Exit codes:
    0  done
    1  failed; what was logged before stands
    2  wrong arguments, a wrong scene, or no such file; nothing was started
-  75  interrupted; `foldline resume LOG` goes on where it stopped";
+  75  interrupted by SIGINT, SIGTERM, SIGHUP, SIGUSR1 or SIGXCPU, at the end of a stage; `foldline resume LOG` goes on
+      where it stopped";
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug, thiserror::Error)]
@@ -57,6 +58,8 @@ pub(super) enum Failure {
     Samples(#[from] SamplesError),
     #[error("no help on `{topic}`; there is help on {}{}", known.join(", "), did_you_mean(topic, known))]
     NoSuchTopic { topic: String, known: Vec<String> },
+    #[error("not one thread can be made")]
+    Threads { source: Box<dyn std::error::Error + Send + Sync> },
     #[error("cannot watch for signals")]
     Signals { source: io::Error },
     #[error("{} holds no scene", log.display())]

@@ -68,6 +68,11 @@ enum Command {
 impl Command {
     /// The exit code of a command that did what it was asked to.
     fn run(self) -> Result<u8, Failure> {
+        session::outlive_file_limits()?;
+        // Commands that compute without being told on how many threads.
+        if matches!(self, Command::Plot(_) | Command::Bisect(_) | Command::Stability(_) | Command::Converge(_)) {
+            session::use_threads(None)?;
+        }
         match self {
             Command::Run(arguments) => arguments.prepare()?.run().map(|()| 0),
             Command::Resume(arguments) => arguments.run().map(|()| 0),

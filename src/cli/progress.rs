@@ -188,7 +188,10 @@ fn live_bar(driven_by: Parameter, target_deg: f64, start_deg: f64) -> ProgressBa
         .with_prefix(live_prefix(driven_by, start_deg, target_deg))
         .with_position(thousandths(start_deg));
     bar.reset_eta();
-    bar.enable_steady_tick(Duration::from_millis(200));
+    // It takes a thread, and does not bear that there is none.
+    if std::thread::Builder::new().spawn(|| {}).is_ok() {
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
     bar
 }
 

@@ -44,7 +44,7 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Replays; the worst verdict is the exit code.
     pub(super) fn run(self) -> Result<u8, Failure> {
-        use_threads(self.threads.map(usize::from));
+        use_threads(self.threads.map(usize::from))?;
         if let Some(file) = &self.trace {
             refuse_what_is_there(&trace::files(file))?;
         }

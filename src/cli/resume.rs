@@ -51,7 +51,7 @@ impl Arguments {
         };
         let last = old.claim.log().manifests().last();
         let (file, text) = last.map_or_else(Default::default, |m| (m.scene_file.clone(), m.scene_text.clone()));
-        let manifest = Manifest::here(Path::new(&file), &text, options.use_threads());
+        let manifest = Manifest::here(Path::new(&file), &text, options.use_threads()?);
         go_on(old, scene, manifest, &options)
     }
 }

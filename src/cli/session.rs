@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use signal_hook::consts::{SIGINT, SIGTERM, SIGXFSZ};
+use rayon::ThreadPoolBuilder;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXCPU, SIGXFSZ};
 use signal_hook::flag;
 
 use super::failure::{Failure, INTERRUPTED};
@@ -46,29 +47,61 @@ impl RunOptions {
     }
 
     /// Sets up the threads; returns how many there are.
-    pub(super) fn use_threads(&self) -> usize {
+    pub(super) fn use_threads(&self) -> Result<usize, Failure> {
         use_threads(self.threads)
     }
 }
 
-/// Sets up so many threads, or one for each core; returns how many there are.
-pub(super) fn use_threads(threads: Option<usize>) -> usize {
-    // Fails only where the pool stands already, which is then the one to use.
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build_global();
-    rayon::current_num_threads()
+/// Sets up so many threads, or one for each core; returns how many there are. Where they cannot be made, everything is
+/// done on the one that there is, with the same results.
+pub(super) fn use_threads(threads: Option<usize>) -> Result<usize, Failure> {
+    let wanted = threads.unwrap_or(0);
+    // A pool for the whole process cannot be asked for twice, so another is tried before.
+    let alone = wanted == 1 || {
+        let tried = ThreadPoolBuilder::new().num_threads(wanted).build();
+        if let Err(error) = &tried {
+            say(&format!(
+                "warning: threads cannot be made ({error}): everything is done on one, with the same results"
+            ));
+        }
+        tried.is_err()
+    };
+    let pool = match alone {
+        true => ThreadPoolBuilder::new().num_threads(1).use_current_thread(),
+        false => ThreadPoolBuilder::new().num_threads(wanted),
+    };
+    pool.build_global().map_err(|source| Failure::Threads { source: Box::new(source) })?;
+    Ok(rayon::current_num_threads())
 }
 
-/// Raised by the first SIGINT or SIGTERM; the second ends the process at once.
+/// Makes a limit on the size of files an error that names the file, instead of the end of the process.
+pub(super) fn outlive_file_limits() -> Result<(), Failure> {
+    let failed = |source| Failure::Signals { source };
+    flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map(|_| ()).map_err(failed)
+}
+
+/// Raised by each signal that asks for an end; a second SIGINT or SIGTERM ends the process at once.
 pub(super) fn watch_signals() -> Result<Arc<AtomicBool>, Failure> {
+    let failed = |source| Failure::Signals { source };
     let raised = Arc::new(AtomicBool::new(false));
-    // A file size limit is then an error that names the log, instead of the end of the process.
-    flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map_err(|source| Failure::Signals { source })?;
     for signal in [SIGINT, SIGTERM] {
-        flag::register_conditional_shutdown(signal, i32::from(INTERRUPTED), raised.clone())
-            .and_then(|_| flag::register(signal, raised.clone()))
-            .map_err(|source| Failure::Signals { source })?;
+        flag::register_conditional_shutdown(signal, i32::from(INTERRUPTED), raised.clone()).map_err(failed)?;
+    }
+    // The others may come again for the same cause: from the shell after the terminal, or with each second of time.
+    for signal in [SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU] {
+        if signal != SIGHUP || !is_ignored(signal) {
+            flag::register(signal, raised.clone()).map_err(failed)?;
+        }
     }
     Ok(raised)
+}
+
+/// Whether this process was started with a signal ignored, as `nohup` does; known on Linux, where /proc tells it.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    mask >> (signal - 1) & 1 == 1
 }
 
 /// Runs to the end that the options name, with every stage logged and shown. Gives back the stages of this session.

@@ -17,8 +17,8 @@ use super::manifest::host;
 use super::still_ours::patiently;
 use crate::whole_file::{WholeFile, beside};
 
-/// A lease is far shorter; whatever is there instead is not read whole.
-const LONGEST: u64 = 4096;
+/// A lease is far shorter, though it takes a block of this size on a disk; whatever is there instead is not read whole.
+pub(super) const LONGEST: u64 = 4096;
 
 /// How often a lease that is not there is looked for again: a rival may have it in hand ([`Lease::claim`]).
 const LOOKS: u32 = 4;

@@ -14,7 +14,8 @@ use rustix::fs::OFlags;
 use rustix::io::Errno;
 
 use super::backend::{beside, is_at};
-use super::lease::{Lease, holder};
+use super::lease::{LONGEST, Lease, holder};
+use crate::whole_file::{room_for, shortage};
 
 /// Why a log cannot be written, or no longer.
 #[derive(Debug, thiserror::Error)]
@@ -76,6 +77,17 @@ pub enum LockError {
         #[source]
         source: io::Error,
     },
+    /// The disk has no room for the lock or the lease.
+    #[error("no space left for {path}{}, which keeps two runs from writing one log. Make space, then try again", shortage(LONGEST, *.room))]
+    NoRoom {
+        /// The file.
+        path: String,
+        /// Bytes that the disk has room for, where that is known.
+        room: Option<u64>,
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
     /// The lock or the lease cannot be made.
     #[error("cannot make {path}, which keeps two runs from writing one log")]
     Io {
@@ -105,7 +117,12 @@ impl LogLock {
     pub fn take(log: &Path) -> Result<Self, LockError> {
         let (lock_path, lease_path) = (beside(log, ".lock"), beside(log, ".lease"));
         let name = || log.display().to_string();
-        let failed = |path: &Path, source| LockError::Io { path: path.display().to_string(), source };
+        let failed = |path: &Path, source: io::Error| match source.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                LockError::NoRoom { path: path.display().to_string(), room: room_for(path), source }
+            }
+            _ => LockError::Io { path: path.display().to_string(), source },
+        };
         let (lock, is_locked) = loop {
             let lock = open_lock(&lock_path).map_err(|source| failed(&lock_path, source))?;
             let is_locked = match lock.try_lock() {

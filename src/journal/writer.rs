@@ -17,7 +17,7 @@ use super::still_ours::Estranged;
 use crate::pipeline::{Commit, Record, Sink, SinkError};
 use crate::scene::SyncPolicy;
 use crate::state::{Hash, State};
-use crate::whole_file::room_for;
+use crate::whole_file::{room_for, shortage};
 
 /// How often [`SyncPolicy::EachSecond`] forces the log to disk at most.
 const SYNC_INTERVAL: Duration = Duration::from_secs(1);
@@ -152,14 +152,6 @@ pub enum WriteError {
         /// Stages that are in the log.
         commits: u64,
     },
-}
-
-/// How much is missing, where that can be known: a quota or a limit on the size of files says nothing.
-fn shortage(wanted: u64, room: Option<u64>) -> String {
-    match room {
-        Some(room) if room < wanted => format!(" ({wanted} bytes more, where there is room for {room})"),
-        _ => String::new(),
-    }
 }
 
 impl From<WriteError> for SinkError {

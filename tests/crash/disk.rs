@@ -46,6 +46,29 @@ fn no_room_for_the_log() {
     }
 }
 
+/// A limit on the size of files is an error that names the file, in every command that writes one, and nothing of the
+/// file is left.
+#[test]
+fn no_room_for_other_files() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", &whole.bytes);
+    let commands = [
+        ("recover run.mcap -o copy.mcap", "cannot write copy.mcap"),
+        ("plot run.mcap -o pictures", "cannot write pictures/"),
+        ("replay run.mcap --step 9 --trace trace", "cannot write trace."),
+    ];
+    for (arguments, names) in commands {
+        let mut command = Command::new("sh");
+        command.args(["-c", "ulimit -f 2; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_foldline")]);
+        command.args(arguments.split_whitespace()).current_dir(place.path());
+        Said::new(arguments, command.output().unwrap()).ends(1).says(&[names, "File too large"]);
+    }
+    std::fs::remove_dir(place.file("pictures")).expect("nothing is left in it");
+    assert_eq!(place.logs(), ["run.mcap"]);
+    assert_eq!(place.read("run.mcap"), whole.bytes);
+}
+
 /// A file system that a test makes and unmounts.
 struct Mounted<'a>(&'a Path);
 
@@ -102,6 +125,27 @@ fn a_full_disk_and_a_read_only_one() {
     assert!(mount(&["-o", "remount,size=10m,rw"], &folder));
     place.foldline("resume disk/run.mcap").ends(0);
     assert_ends_with(&place.log("disk/run.mcap"), whole.chain, "with room again");
+}
+
+/// A disk that is full before the run begins: no log is named that is not there, and what is missing is said.
+#[test]
+fn a_disk_that_is_full_at_the_start() {
+    let place = Place::new();
+    let folder = place.file("disk");
+    let Some(_mounted) = is_root().then(|| Mounted::new(&folder, "size=64k")).flatten() else {
+        println!("not shown here: mounting is not allowed");
+        return;
+    };
+    // Room for nothing, for the lease, and for the lease and half of the manifest.
+    for free in [0, 4 << 10] {
+        place.write("disk/filler", vec![1; (64 << 10) - free]);
+        let said = place.foldline("run small.toml -o disk/run.mcap").ends(2);
+        let said =
+            said.says(&["no space left", "where there is room for", "Make space, then", "No space left on device"]);
+        assert!(!said.err.contains("foldline resume"), "{}", said.err);
+        std::fs::remove_file(place.file("disk/filler")).unwrap();
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0, "nothing is left, {free} bytes free");
+    }
 }
 
 /// A folder that this user may not write to.

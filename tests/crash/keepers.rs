@@ -152,3 +152,111 @@ fn an_empty_log_is_begun_anew_by_one() {
         assert_eq!(place.logs(), ["run.mcap"], "round {round}");
     }
 }
+
+/// Where no thread can be made one does everything, and the chain is the same; some threads are no help without the rest.
+#[test]
+fn without_threads_one_does_everything() {
+    let whole = Straight::small();
+    for made in ["0", "1"] {
+        let place = Place::new();
+        let run = |arguments: &str| {
+            let command = with_faults(place.command(arguments), &[("FAIL_THREADS", made)])?;
+            Some(Said::new(arguments, { command }.output().unwrap()))
+        };
+        let Some(said) = run("run small.toml -o run.mcap --threads 4 --until 6") else { return };
+        said.ends(0).says(&["warning: threads cannot be made", "everything is done on one"]);
+        assert!(run("resume run.mcap --threads 1").unwrap().ends(0).err.lines().all(|line| !line.contains("threads")));
+        assert_ends_with(&place.log("run.mcap"), whole.chain, "on one thread");
+        run("replay run.mcap --step 9").unwrap().ends(0);
+        run("stability run.mcap --step 3").unwrap().ends(0);
+        run("plot run.mcap").unwrap().ends(0);
+    }
+}
+
+/// The same with the system's own limit, as another user.
+#[test]
+fn a_limit_on_processes_is_no_panic() {
+    let whole = Straight::small();
+    let place = Place::new();
+    std::fs::set_permissions(place.path(), std::os::unix::fs::PermissionsExt::from_mode(0o777)).unwrap();
+    let mut command = std::process::Command::new("setpriv");
+    command.args(["--reuid=54321", "--regid=54321", "--clear-groups", "sh", "-c", "ulimit -u 1; exec \"$0\" \"$@\""]);
+    command.arg(env!("CARGO_BIN_EXE_foldline")).args("run small.toml -o run.mcap --threads 4".split(' '));
+    let Ok(output) = command.current_dir(place.path()).output() else { return };
+    let said = Said::new("run with one process", output);
+    if said.err.contains("ermission") || said.err.contains("setpriv") {
+        println!("not shown here: {}", said.err);
+        return;
+    }
+    said.ends(0).says(&["everything is done on one"]);
+    assert_ends_with(&place.log("run.mcap"), whole.chain, "on one thread");
+}
+
+/// A run that is resumed by root stays its owner's.
+#[test]
+fn the_owner_stays() {
+    use std::os::unix::fs::MetadataExt;
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", whole.cut_after(25));
+    if std::os::unix::fs::chown(place.file("run.mcap"), Some(54321), Some(54321)).is_err() {
+        println!("not shown here: only root may give files away");
+        return;
+    }
+    place.foldline("resume run.mcap --quiet").ends(0);
+    let metadata = std::fs::metadata(place.file("run.mcap")).unwrap();
+    assert_eq!((metadata.uid(), metadata.gid()), (54321, 54321));
+    assert_ends_with(&place.log("run.mcap"), whole.chain, "another's");
+}
+
+/// Killed at any instant, `recover` leaves a whole copy or none, and a second try works.
+#[test]
+fn a_recovery_that_is_killed_leaves_all_or_nothing() {
+    let place = Place::new();
+    // Long enough to be met in the middle.
+    let run = crate::synthetic::run(40, 60);
+    place.write("run.mcap", crate::support::finished_log(&run));
+    let began = std::time::Instant::now();
+    place.foldline("recover run.mcap -o copy.mcap").ends(0);
+    let took = began.elapsed();
+    let whole = place.read("copy.mcap");
+    let mut copies = 0;
+    for kill in 0..100_u32 {
+        let _ = std::fs::remove_file(place.file("copy.mcap"));
+        let mut child = place.command("recover run.mcap -o copy.mcap").stdout(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(took * kill / 90);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let there = place.file("copy.mcap").exists();
+        copies += usize::from(there);
+        if there {
+            assert_eq!(place.read("copy.mcap"), whole, "kill {kill}");
+            std::fs::remove_file(place.file("copy.mcap")).unwrap();
+        }
+        assert_eq!(place.logs(), ["run.mcap"], "kill {kill}: nothing is left");
+        if kill % 10 == 0 {
+            place.foldline("recover run.mcap -o copy.mcap").ends(0);
+            assert_eq!(place.read("copy.mcap"), whole, "kill {kill}: a second try");
+        }
+    }
+    assert!((1..100).contains(&copies), "{copies} of 100 kills came after the end");
+}
+
+/// A trace is written over nothing, logs above all, nor are pictures.
+#[test]
+fn nothing_is_written_over() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", &whole.bytes);
+    for name in ["run", "run.mcap"] {
+        let said = place.foldline(&format!("replay run.mcap --step 3 --trace {name}")).ends(2);
+        said.says(&["run.mcap exists and is not overwritten"]);
+    }
+    place.write("trace.csv", "somebody's");
+    place.foldline("replay run.mcap --step 3 --trace trace").ends(2).says(&["trace.csv exists"]);
+    assert_eq!((place.read("run.mcap"), place.read("trace.csv")), (whole.bytes.clone(), b"somebody's".to_vec()));
+    assert_eq!(place.logs(), ["run.mcap", "trace.csv"]);
+    place.foldline("plot run.mcap").ends(0);
+    place.foldline("plot run.mcap --step 3").ends(2).says(&["run/", "exists and is not overwritten"]);
+    place.foldline("plot run.mcap --step 3 -o others").ends(0);
+}
