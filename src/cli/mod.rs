@@ -12,6 +12,7 @@ mod inspect;
 mod json_line;
 mod load_step;
 mod log_file;
+mod new_probes;
 mod output;
 mod plot;
 mod progress;
@@ -105,7 +106,11 @@ pub fn main() -> ExitCode {
     match arguments.command.run() {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
-            output::say(&failure.in_full());
+            match &failure {
+                // Its lines are rendered for a terminal where there is one, and what stands in them is made printable there.
+                Failure::WrongScene { .. } => output::say_rendered(&failure.in_full()),
+                _ => output::say(&failure.in_full()),
+            }
             ExitCode::from(failure.exit_code())
         }
     }

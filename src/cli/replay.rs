@@ -10,7 +10,7 @@ use super::output::{file_name, print, refuse_what_is_there};
 use super::scene_file::stage_named;
 use super::session::use_threads;
 use super::trace;
-use crate::history::{ReplayError, Replayed, Verdict, replay_stage, verdict};
+use crate::history::{Comparison, ReplayError, Replayed, Verdict, replay_stage, verdict};
 use crate::journal::TraceRow;
 use crate::pipeline::Stages;
 use crate::scene::{Scene, Stage};
@@ -142,13 +142,29 @@ fn line(verdict: &Verdict, replayed: &Replayed, ordinal: u64) -> String {
     let report = &replayed.report;
     let what = match verdict {
         Verdict::BitIdentical => "bit-identical".to_string(),
-        Verdict::WithinTolerance(worst) => {
-            format!("within tolerance: {} agrees to {:.1} bits{}", worst.field, worst.agreeing_bits, place(worst.place))
-        }
+        Verdict::WithinTolerance(worst) => format!(
+            "within tolerance: {} agrees to {}{}{}",
+            worst.field,
+            bits(worst.agreeing_bits),
+            place(worst.place),
+            further(&replayed.comparison)
+        ),
         Verdict::Different(what) => format!("different: {what}"),
     };
     let iterations = if report.iterations > 0 { format!(", {} iterations", report.iterations) } else { String::new() };
     format!("{ordinal:>5}  step {} {}{iterations}: {what}\n", report.step, report.stage)
+}
+
+/// What differs beside the worst field, by less.
+fn further(comparison: &Comparison) -> String {
+    let Comparison::Numbers(differences) = comparison else { return String::new() };
+    let further: Vec<String> =
+        differences.iter().skip(1).map(|it| format!("{} to {}", it.field, bits(it.agreeing_bits))).collect();
+    if further.is_empty() { String::new() } else { format!("; {}", further.join(", ")) }
+}
+
+fn bits(agreeing: f64) -> String {
+    if agreeing.is_finite() { format!("{agreeing:.1} bits") } else { "all bits but the sign of zero".to_string() }
 }
 
 /// Where on the surface.

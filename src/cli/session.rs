@@ -35,11 +35,14 @@ impl RunOptions {
         matches!(self.manner, Manner::Live | Manner::Lines)
     }
 
+    /// Prints what a person reads and a program does not.
+    pub(super) fn show(&self, text: &str) -> Result<(), Failure> {
+        if self.manner == Manner::Json { Ok(()) } else { print(text) }
+    }
+
     /// The last words of a run.
     pub(super) fn sum_up(&self, summary: &Summary) -> Result<(), Failure> {
-        if self.manner != Manner::Json {
-            print(&summary.to_string())?;
-        }
+        self.show(&summary.to_string())?;
         if self.is_shown() {
             say(&format!("every stage: foldline inspect {}", self.log.display()));
         }

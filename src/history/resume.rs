@@ -9,8 +9,14 @@ use crate::state::State;
 /// The key of the rotation at which a run stops.
 const TARGETS: [&str; 2] = ["load.rotation_deg", "load.factor"];
 
+/// Keys of what a log holds beside its states.
+const STARTS_HERE: [&str; 2] = ["probes", "output.mesh_history"];
+
 /// Targets that differ by less than this, relatively, are one.
 const TARGET_ROUNDING: f64 = 1e-12;
+
+/// Characters of a scene's value that are shown at most.
+const LONGEST_SHOWN: usize = 60;
 
 /// What a run goes on from.
 #[derive(Clone, Debug)]
@@ -95,6 +101,10 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     for difference in &differences {
         let what = shown(difference);
         changes.push(match difference.reach {
+            // What is written beside the states is as it was up to here.
+            Reach::Free if STARTS_HERE.contains(&difference.path.as_str()) => {
+                format!("{what}: every stage stands, and the {keep} in the log keep what they were written with")
+            }
             Reach::Free if keep == log.entries().len() || !TARGETS.contains(&difference.path.as_str()) => {
                 format!("{what}: every stage stands")
             }
@@ -105,9 +115,16 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     Ok(Ok(ResumePlan { keep, changes }))
 }
 
-/// A value of a scene as it stands in its file.
+/// A value of a scene as it stands in its file, in one line: of a long list only how it begins and how much there is of it.
 pub fn shown_value(value: &Option<serde_json::Value>) -> String {
-    value.as_ref().map_or_else(|| "not set".to_string(), ToString::to_string)
+    let Some(value) = value else { return "not set".to_string() };
+    let text = value.to_string();
+    if text.chars().count() <= LONGEST_SHOWN {
+        return text;
+    }
+    let head: String = text.chars().take(LONGEST_SHOWN).collect();
+    let more = text.chars().count() - LONGEST_SHOWN;
+    format!("{head} … {more} characters more")
 }
 
 /// Number of stages before the first solve that the new target would not try: the old one cut it short, or the new one

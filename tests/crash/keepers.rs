@@ -260,3 +260,19 @@ fn nothing_is_written_over() {
     place.foldline("plot run.mcap --step 3").ends(2).says(&["run/", "exists and is not overwritten"]);
     place.foldline("plot run.mcap --step 3 -o others").ends(0);
 }
+
+/// A kill may meet the last write, which ends the log and adds the summary for viewers: the next resume mends it.
+#[test]
+fn a_summary_that_was_cut_is_made_anew() {
+    let whole = Straight::small();
+    let place = Place::new();
+    let last = whole.log().entries().last().unwrap().bytes.end as usize;
+    for cut in (last..whole.bytes.len()).step_by((whole.bytes.len() - last) / 12) {
+        place.write("run.mcap", &whole.bytes[..cut]);
+        place.foldline("resume run.mcap --quiet").ends(0);
+        let log = place.log("run.mcap");
+        assert_ends_with(&log, whole.chain, &format!("cut at {cut} of {}", whole.bytes.len()));
+        assert!(log.has_summary());
+        assert_eq!(place.logs(), ["run.mcap"]);
+    }
+}
