@@ -19,8 +19,8 @@ Exit codes:
    0  done
    1  failed; what was logged before stands
    2  wrong arguments, a wrong scene, or no such file; nothing was started
-  75  interrupted by SIGINT, SIGTERM, SIGHUP, SIGUSR1 or SIGXCPU, at the end of a stage; `foldline resume LOG` goes on
-      where it stopped";
+  75  interrupted by SIGINT, SIGTERM, SIGHUP, SIGUSR1 or SIGXCPU, after the stage in hand;
+      `foldline resume LOG` goes on where it stopped";
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug, thiserror::Error)]

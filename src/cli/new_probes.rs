@@ -2,7 +2,7 @@
 
 use crate::pipeline::Record;
 use crate::scene::Scene;
-use crate::units::rounded;
+use crate::units::reading;
 
 /// Names of the probes that are new or measure something else.
 pub(super) fn names(was: &Scene, is: &Scene) -> Vec<String> {
@@ -13,9 +13,9 @@ pub(super) fn names(was: &Scene, is: &Scene) -> Vec<String> {
 pub(super) fn table(names: &[String], records: &[Record]) -> String {
     let mut text = String::from("new probes on the equilibria of the log, which itself keeps the ones that it has\n");
     for Record { report, .. } in records.iter().filter(|record| !record.report.probes.is_empty()) {
-        let new = report.probes.iter().filter(|reading| names.contains(&reading.name));
+        let new = report.probes.iter().filter(|probe| names.contains(&probe.name));
         let readings: Vec<String> =
-            new.map(|reading| format!("{} {} {}", reading.name, rounded(reading.value), reading.unit)).collect();
+            new.map(|probe| format!("{} {} {}", probe.name, reading(probe.value, 6), probe.unit)).collect();
         let at = report.driven_by.shown(report.parameter);
         text.push_str(&format!("{:>5}  {at}: {}\n", report.step, readings.join(", ")));
     }

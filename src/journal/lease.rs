@@ -9,7 +9,7 @@ use std::hash::{BuildHasher, RandomState};
 use std::io::{self, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rustix::fs::OFlags;
 
@@ -20,10 +20,10 @@ use crate::whole_file::{WholeFile, beside};
 /// A lease is far shorter, though it takes a block of this size on a disk; whatever is there instead is not read whole.
 pub(super) const LONGEST: u64 = 4096;
 
-/// How often a lease that is not there is looked for again: a rival may have it in hand ([`Lease::claim`]).
-const LOOKS: u32 = 4;
+/// A rival that takes longer to clear a lease away was killed over it.
+const LONGEST_CLEARING: Duration = Duration::from_secs(5);
 
-/// Between two looks.
+/// Between two looks whether it is through.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 
 /// A lease that this process wrote.
@@ -61,7 +61,7 @@ impl Lease {
                 Err(_) => {}
             }
             match patiently(|| holder(path))? {
-                Some(holder) if holder.is_gone() => lease.clear(&holder)?,
+                Some(holder) if holder.is_gone() => Self::clear(path, &holder)?,
                 Some(holder) => return Ok(Err(holder)),
                 None => {}
             }
@@ -78,18 +78,26 @@ impl Lease {
         Ok((Self { path: path.to_owned(), token }, whole))
     }
 
-    /// Takes the lease of a process that is gone out of the way. A rival may have done so already, and its own may be
-    /// there now: it is put back, unless a third has come in meanwhile, and then the third has it.
-    fn clear(&self, gone: &Holder) -> io::Result<()> {
-        let aside = beside(&self.path, &format!(".{}", self.token));
-        match fs::rename(&self.path, &aside) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-            renamed => renamed?,
+    /// Takes the lease of a process that is gone out of the way. One process at a time does so, and looks again before: what a
+    /// rival may have put there meanwhile stays.
+    fn clear(path: &Path, gone: &Holder) -> io::Result<()> {
+        let clearing = beside(path, ".clearing");
+        let began = Instant::now();
+        while let Err(error) = WholeFile::beside(path)?.give_name(&clearing) {
+            if error.kind() != io::ErrorKind::AlreadyExists {
+                return Err(error);
+            }
+            if began.elapsed() > LONGEST_CLEARING {
+                let _ = fs::remove_file(&clearing);
+            }
+            std::thread::sleep(BETWEEN_LOOKS);
         }
-        if holder(&aside)?.is_none_or(|holder| holder.token != gone.token) {
-            let _ = fs::hard_link(&aside, &self.path);
-        }
-        fs::remove_file(&aside)
+        let cleared = match holder(path)? {
+            Some(holder) if holder.token == gone.token => fs::remove_file(path),
+            _ => Ok(()),
+        };
+        let _ = fs::remove_file(&clearing);
+        cleared
     }
 
     /// Where it is.
@@ -97,16 +105,11 @@ impl Lease {
         &self.path
     }
 
-    /// Who has the lease now, if it is another than this process; nobody where it is not there.
+    /// Who has the lease now, if it is another than this process; nobody where it is not there. What cannot be read is tried
+    /// again for a while.
     pub(super) fn rival(&self) -> io::Result<Result<(), Option<Holder>>> {
-        for _ in 0..LOOKS {
-            match patiently(|| holder(&self.path))? {
-                Some(holder) if holder.token == self.token => return Ok(Ok(())),
-                Some(holder) => return Ok(Err(Some(holder))),
-                None => std::thread::sleep(BETWEEN_LOOKS),
-            }
-        }
-        Ok(Err(None))
+        let holder = patiently(|| holder(&self.path))?;
+        Ok(if holder.as_ref().is_some_and(|holder| holder.token == self.token) { Ok(()) } else { Err(holder) })
     }
 
     /// Whether it is there and this process's, at one look.

@@ -144,6 +144,9 @@ impl LogLock {
             true => Lease::put(&lease_path).map(Ok),
             false => Lease::claim(&lease_path),
         };
+        if lease.is_err() && is_locked {
+            let _ = fs::remove_file(&lock_path);
+        }
         let lease = match lease.map_err(|source| failed(&lease_path, source))? {
             Ok(lease) => lease,
             Err(holder) if holder.is_known_here() => {
@@ -174,8 +177,11 @@ impl LogLock {
 
 impl Drop for LogLock {
     fn drop(&mut self) {
-        if self.lease.is_ours() && is_at(&self.lock, &self.lock_path) {
-            let _ = fs::remove_file(self.lease.path());
+        if !self.lease.is_ours() {
+            return;
+        }
+        let _ = fs::remove_file(self.lease.path());
+        if is_at(&self.lock, &self.lock_path) {
             let _ = fs::remove_file(&self.lock_path);
         }
     }

@@ -196,14 +196,14 @@ fn a_folder_that_vanishes() {
     let run = started();
     std::fs::rename(place.file("logs"), place.file("moved")).unwrap();
     run.send("CONT");
-    run.end().0.ends(1).says(&[
-        "logs/run.mcap.lease is gone",
-        "its folder was moved or removed",
-        "foldline resume logs/run.mcap",
-    ]);
+    let said = run.end().0.ends(1);
+    assert!(
+        ["its folder was moved or removed", "run.mcap was moved"].iter().any(|it| said.err.contains(it)),
+        "{said:?}"
+    );
     assert!(!place.file("logs").exists());
     let log = place.log("moved/run.mcap");
-    assert!((8..12).contains(&log.entries().len()));
+    assert!((8..whole.stages).contains(&log.entries().len()));
     place.foldline("verify moved/run.mcap").ends(0);
     std::fs::rename(place.file("moved"), place.file("logs")).unwrap();
     place.foldline("resume logs/run.mcap").ends(0);
@@ -213,7 +213,12 @@ fn a_folder_that_vanishes() {
     let run = started();
     std::fs::remove_dir_all(place.file("logs")).unwrap();
     run.send("CONT");
-    run.end().0.ends(1).says(&["logs/run.mcap.lease is gone"]);
+    // Whichever it looks at first.
+    let said = run.end().0.ends(1);
+    assert!(
+        ["logs/run.mcap.lease is gone", "logs/run.mcap was removed"].iter().any(|it| said.err.contains(it)),
+        "{said:?}"
+    );
     assert_eq!(place.logs(), Vec::<String>::new());
     place.foldline("resume logs/run.mcap").ends(2).says(&["cannot read logs/run.mcap"]);
     place.foldline("run small.toml -o logs/run.mcap").ends(2).says(&["there is no folder logs for logs/run.mcap"]);

@@ -77,7 +77,7 @@ fn what_each_log_gives() {
             assert!(said.err.contains(damage), "{name} {manner}: {}", said.err);
         }
         if said.err.contains("damaged") {
-            assert!(said.err.contains("what was dropped is kept in run.mcap.dropped-1"), "{name}: {}", said.err);
+            assert!(said.err.contains("run.mcap.dropped-1"), "{name}: {}", said.err);
         }
         assert_ends_with(&place.log("run.mcap"), whole.chain, name);
     }
