@@ -60,7 +60,7 @@ impl Lease {
                 Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
                 Err(_) => {}
             }
-            match patiently(|| holder(path))? {
+            match holder(path)? {
                 Some(holder) if holder.is_gone() => Self::clear(path, &holder)?,
                 Some(holder) => return Ok(Err(holder)),
                 None => {}
@@ -92,9 +92,9 @@ impl Lease {
             }
             std::thread::sleep(BETWEEN_LOOKS);
         }
-        let cleared = match holder(path)? {
-            Some(holder) if holder.token == gone.token => fs::remove_file(path),
-            _ => Ok(()),
+        let cleared = match holder(path) {
+            Ok(Some(holder)) if holder.token == gone.token => fs::remove_file(path),
+            looked => looked.map(|_| ()),
         };
         let _ = fs::remove_file(&clearing);
         cleared
