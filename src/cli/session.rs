@@ -1,10 +1,12 @@
 //! A run under way: threads, signals, the log, and what is shown; shared by the commands that compute.
 
+use std::io;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use rayon::ThreadPoolBuilder;
+use rayon::{ThreadBuilder, ThreadPoolBuilder};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXCPU, SIGXFSZ};
 use signal_hook::flag;
 
@@ -58,23 +60,39 @@ impl RunOptions {
 /// Sets up so many threads, or one for each core; returns how many there are. Where they cannot be made, everything is
 /// done on the one that there is, with the same results.
 pub(super) fn use_threads(threads: Option<usize>) -> Result<usize, Failure> {
-    let wanted = threads.unwrap_or(0);
-    // A pool for the whole process cannot be asked for twice, so another is tried before.
-    let alone = wanted == 1 || {
-        let tried = ThreadPoolBuilder::new().num_threads(wanted).build();
-        if let Err(error) = &tried {
-            say(&format!(
-                "warning: threads cannot be made ({error}): everything is done on one, with the same results"
-            ));
-        }
-        tried.is_err()
-    };
-    let pool = match alone {
-        true => ThreadPoolBuilder::new().num_threads(1).use_current_thread(),
-        false => ThreadPoolBuilder::new().num_threads(wanted),
-    };
-    pool.build_global().map_err(|source| Failure::Threads { source: Box::new(source) })?;
+    let wanted = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    let failed = |source| Failure::Threads { source: Box::new(source) };
+    let waiting = if wanted > 1 { waiting_threads(wanted).map(Some) } else { Ok(None) };
+    if let Err(error) = &waiting {
+        say(&format!("warning: threads cannot be made ({error}): everything is done on one, with the same results"));
+    }
+    let pool = ThreadPoolBuilder::new();
+    match waiting.ok().flatten() {
+        // What one of them is given to do it takes, so that this cannot fail half-way.
+        Some(hand) => pool
+            .num_threads(wanted)
+            .spawn_handler(|work| hand.send(work).map_err(|_| io::ErrorKind::BrokenPipe.into()))
+            .build_global(),
+        None => pool.num_threads(1).use_current_thread().build_global(),
+    }
+    .map_err(failed)?;
     Ok(rayon::current_num_threads())
+}
+
+/// So many threads, each waiting for the work of one of a pool; they end where they are given none.
+fn waiting_threads(count: usize) -> io::Result<Sender<ThreadBuilder>> {
+    let (hand, take) = channel::<ThreadBuilder>();
+    let take = Arc::new(Mutex::new(take));
+    for _ in 0..count {
+        let take = take.clone();
+        std::thread::Builder::new().spawn(move || {
+            let work = take.lock().unwrap_or_else(PoisonError::into_inner).recv();
+            if let Ok(work) = work {
+                work.run();
+            }
+        })?;
+    }
+    Ok(hand)
 }
 
 /// Makes a limit on the size of files an error that names the file, instead of the end of the process.
