@@ -15,3 +15,4 @@ pub mod state;
 pub mod study;
 mod units;
 pub mod view;
+mod whole_file;

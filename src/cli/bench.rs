@@ -47,7 +47,7 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Times and prints.
     pub(super) fn run(self) -> Result<(), Failure> {
-        use_threads(self.threads.map(usize::from));
+        use_threads(self.threads.map(usize::from))?;
         let mut scenes: Vec<(String, Scene)> = Vec::new();
         for path in &self.scenes {
             let name = path.display().to_string();

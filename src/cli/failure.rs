@@ -19,7 +19,8 @@ Exit codes:
    0  done
    1  failed; what was logged before stands
    2  wrong arguments, a wrong scene, or no such file; nothing was started
-  75  interrupted; `foldline resume LOG` goes on where it stopped";
+  75  interrupted by SIGINT, SIGTERM, SIGHUP, SIGUSR1 or SIGXCPU, after the stage in hand;
+      `foldline resume LOG` goes on where it stopped";
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +31,8 @@ pub(super) enum Failure {
     NotText { path: PathBuf, reason: String },
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: io::Error },
+    #[error("{} exists and is not overwritten: remove it, or choose another place for what is written", path.display())]
+    InTheWay { path: PathBuf },
     #[error("cannot write to standard output")]
     Print { source: io::Error },
     /// Everything that is wrong with a scene, rendered with its lines.
@@ -45,10 +48,8 @@ pub(super) enum Failure {
     WrongLog { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
     #[error("{} has no load step {step}; {}", log.display(), known_steps(*known))]
     NoSuchStep { log: PathBuf, step: u64, known: Option<(u64, u64)> },
-    #[error("the run came to its end, but {} was removed while it was written: nothing of it is left", log.display())]
-    LogGone { log: PathBuf },
-    #[error("the run stopped; {} keeps every stage before", log.display())]
-    Stopped { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
+    #[error("the run stopped{}", if *keeps { format!("; {} keeps every stage before", log.display()) } else { String::new() })]
+    Stopped { log: PathBuf, keeps: bool, source: Box<dyn std::error::Error + Send + Sync> },
     #[error("interrupted; go on with: foldline resume {}", log.display())]
     Interrupted { log: PathBuf },
     #[error(transparent)]
@@ -57,6 +58,8 @@ pub(super) enum Failure {
     Samples(#[from] SamplesError),
     #[error("no help on `{topic}`; there is help on {}{}", known.join(", "), did_you_mean(topic, known))]
     NoSuchTopic { topic: String, known: Vec<String> },
+    #[error("not one thread can be made")]
+    Threads { source: Box<dyn std::error::Error + Send + Sync> },
     #[error("cannot watch for signals")]
     Signals { source: io::Error },
     #[error("{} holds no scene", log.display())]
@@ -110,6 +113,7 @@ impl Failure {
         match self {
             Failure::Read { .. }
             | Failure::NotText { .. }
+            | Failure::InTheWay { .. }
             | Failure::WrongScene { .. }
             | Failure::UntilBeyondScene { .. }
             | Failure::NoSuchStep { .. }

@@ -12,6 +12,7 @@ mod inspect;
 mod json_line;
 mod load_step;
 mod log_file;
+mod new_probes;
 mod output;
 mod plot;
 mod progress;
@@ -68,6 +69,11 @@ enum Command {
 impl Command {
     /// The exit code of a command that did what it was asked to.
     fn run(self) -> Result<u8, Failure> {
+        session::outlive_file_limits()?;
+        // Commands that compute without being told on how many threads.
+        if matches!(self, Command::Plot(_) | Command::Bisect(_) | Command::Stability(_) | Command::Converge(_)) {
+            session::use_threads(None)?;
+        }
         match self {
             Command::Run(arguments) => arguments.prepare()?.run().map(|()| 0),
             Command::Resume(arguments) => arguments.run().map(|()| 0),
@@ -100,7 +106,11 @@ pub fn main() -> ExitCode {
     match arguments.command.run() {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
-            output::say(&failure.in_full());
+            match &failure {
+                // Its lines are rendered for a terminal where there is one, and what stands in them is made printable there.
+                Failure::WrongScene { .. } => output::say_rendered(&failure.in_full()),
+                _ => output::say(&failure.in_full()),
+            }
             ExitCode::from(failure.exit_code())
         }
     }

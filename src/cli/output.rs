@@ -1,14 +1,16 @@
-//! Standard output that may be closed, and files that are whole or not there.
+//! Standard output that may be closed, text that no terminal obeys, and files that are whole or not there.
 
+use std::borrow::Cow;
 use std::io::{self, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::failure::Failure;
+use crate::whole_file::write_new;
 
 /// Writes to standard output. A reader that has closed its end (`| head`) has what it wanted: that is no failure.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {
         Err(source) if source.kind() != ErrorKind::BrokenPipe => Err(Failure::Print { source }),
         _ => Ok(()),
     }
@@ -27,27 +29,81 @@ pub(super) fn file_name(text: &str) -> Result<PathBuf, String> {
 
 /// Writes a line of JSON to standard output.
 pub(super) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    print(&(serde_json::to_string(value).unwrap_or_default() + "\n"))
+    print(&(escaped(serde_json::to_string(value).unwrap_or_default()) + "\n"))
 }
 
 /// Says something beside the output; nobody has to listen.
 pub(super) fn say(text: &str) {
+    say_rendered(&printable(text));
+}
+
+/// The same for text that was made for a terminal, colours and all.
+pub(super) fn say_rendered(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// Writes a file under a temporary name and renames it, so that no half of it is ever seen.
-pub(super) fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
-    let failed = |source| Failure::Write { path: path.to_path_buf(), source };
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).map_err(failed)?;
-    let mut file = tempfile::Builder::new().permissions(shared()).tempfile_in(folder).map_err(failed)?;
-    file.write_all(text.as_bytes()).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
+/// Text without what a terminal obeys: names in logs and scenes, and of hosts, may hold anything. Such characters are
+/// shown by their pictures.
+pub(super) fn printable(text: &str) -> Cow<'_, str> {
+    if !text.chars().any(is_obeyed) {
+        return text.into();
+    }
+    let picture = |c| match c {
+        _ if !is_obeyed(c) => c,
+        '\u{7f}' => '␡',
+        '\0'..' ' => char::from_u32('␀' as u32 + c as u32).unwrap_or(char::REPLACEMENT_CHARACTER),
+        _ => char::REPLACEMENT_CHARACTER,
+    };
+    text.chars().map(picture).collect::<String>().into()
+}
+
+fn is_obeyed(c: char) -> bool {
+    c.is_control() && !matches!(c, '\n' | '\t')
+}
+
+/// JSON with the control characters escaped that JSON lets stand.
+pub(super) fn escaped(json: String) -> String {
+    if !json.chars().any(is_obeyed) {
+        return json;
+    }
+    let escape = |c| if is_obeyed(c) { format!("\\u{:04x}", u32::from(c)) } else { String::from(c) };
+    json.chars().map(escape).collect()
+}
+
+/// Writes files, each whole or not at all, and none over another: whether anything is in the way is asked before the first
+/// is written.
+pub(super) fn write_files(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+    refuse_what_is_there(files.iter().map(|(path, _)| path))?;
+    for (path, content) in files {
+        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+            let failed = |source| Failure::Write { path: folder.to_path_buf(), source };
+            std::fs::create_dir_all(folder).map_err(failed)?;
+        }
+        write_new(path, content).map_err(|source| match source.kind() {
+            ErrorKind::AlreadyExists => Failure::InTheWay { path: path.clone() },
+            _ => Failure::Write { path: path.clone(), source },
+        })?;
+    }
     Ok(())
 }
 
-/// Permissions of an ordinary new file, rather than those of a secret one.
-fn shared() -> std::fs::Permissions {
-    use std::os::unix::fs::PermissionsExt;
-    std::fs::Permissions::from_mode(0o644)
+/// Refuses to write where anything is: nothing is written over, whatever it is.
+pub(super) fn refuse_what_is_there<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> Result<(), Failure> {
+    match paths.into_iter().find(|path| path.symlink_metadata().is_ok()) {
+        Some(path) => Err(Failure::InTheWay { path: path.clone() }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_terminal_obeys_nothing() {
+        assert_eq!(printable("a line\n\tof µm"), "a line\n\tof µm");
+        assert_eq!(printable("\u{1b}[31mred\u{9b}0m\u{7f}\r"), "␛[31mred\u{fffd}0m␡␍");
+        let json = serde_json::to_string("\u{1b}[31m\u{9b}\u{7f}").unwrap();
+        assert_eq!(escaped(json), r#""\u001b[31m\u009b\u007f""#);
+    }
 }

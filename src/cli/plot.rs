@@ -1,12 +1,12 @@
 //! `foldline plot`: pictures from a log.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
-use super::output::{file_name, print, write_file};
+use super::output::{file_name, print, write_files};
 use crate::pipeline::{Parameter, Report};
 use crate::spline::Mesh;
 use crate::study::TapeSpring;
@@ -66,11 +66,9 @@ impl Arguments {
         };
         let surface = [("mesh.svg", mesh_picture(&samples, &picture)), ("mesh.vtu", vtu(&samples))];
         let files = curve.into_iter().chain(surface);
-        let write = |(file, text): (&str, String)| {
-            let path = Path::join(&folder, file);
-            write_file(&path, &text).map(|()| format!("{}\n", path.display()))
-        };
-        print(&files.map(write).collect::<Result<String, Failure>>()?)
+        let files: Vec<_> = files.map(|(file, text)| (folder.join(file), text.into_bytes())).collect();
+        write_files(&files)?;
+        print(&files.iter().map(|(path, _)| format!("{}\n", path.display())).collect::<String>())
     }
 }
 

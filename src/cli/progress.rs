@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::json_line::json_line;
 use super::load_step::Gatherer;
+use super::output::{escaped, printable};
 use crate::pipeline::{Outcome, Parameter, Record, Report, Sink, SinkError};
 use crate::scene::Scene;
 use crate::state::State;
@@ -94,7 +95,7 @@ impl<'a, S: Sink> Shown<'a, S> {
         match &mut self.display {
             Display::Live { bar, gatherer, .. } => {
                 if let Some(step) = gatherer.finish().filter(|step| step.is_eventful()) {
-                    bar.println(step.line());
+                    bar.println(printable(&step.line()));
                 }
                 bar.finish_and_clear();
             }
@@ -114,9 +115,9 @@ impl<'a, S: Sink> Shown<'a, S> {
             Display::Quiet => {}
             Display::Live { bar, target_deg, gatherer } => {
                 for step in gatherer.take(record).into_iter().filter(|step| step.is_eventful()) {
-                    bar.println(step.line());
+                    bar.println(printable(&step.line()));
                 }
-                warnings.iter().for_each(|line| bar.println(line));
+                warnings.iter().for_each(|line| bar.println(printable(line)));
                 bar.set_position(thousandths(record.report.parameter));
                 bar.set_prefix(live_prefix(record.report.driven_by, record.report.parameter, *target_deg));
                 bar.set_message(live_message(&record.report));
@@ -129,7 +130,7 @@ impl<'a, S: Sink> Shown<'a, S> {
             }
             Display::Json(out) => {
                 let Some(open) = out else { return Ok(()) };
-                match writeln!(open, "{}", json_line(record)).and_then(|()| open.flush()) {
+                match writeln!(open, "{}", escaped(json_line(record))).and_then(|()| open.flush()) {
                     Ok(()) => {}
                     // The reader has seen enough. The log is what the run is for, so it goes on.
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => *out = None,
@@ -172,7 +173,7 @@ impl<S: Sink> Sink for Shown<'_, S> {
 
 /// Progress is worth nothing if nobody reads it: a closed stream does not stop a run.
 fn write_or_forget(out: &mut dyn Write, line: &str) {
-    let _ = writeln!(out, "{line}");
+    let _ = writeln!(out, "{}", printable(line));
 }
 
 /// Rotation as a position of the bar.
@@ -188,7 +189,10 @@ fn live_bar(driven_by: Parameter, target_deg: f64, start_deg: f64) -> ProgressBa
         .with_prefix(live_prefix(driven_by, start_deg, target_deg))
         .with_position(thousandths(start_deg));
     bar.reset_eta();
-    bar.enable_steady_tick(Duration::from_millis(200));
+    // It takes a thread, and does not bear that there is none.
+    if std::thread::Builder::new().spawn(|| {}).is_ok() {
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
     bar
 }
 

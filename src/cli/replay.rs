@@ -6,11 +6,11 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::log_file::{ReadLog, read_log, scene_at};
-use super::output::{file_name, print};
+use super::output::{file_name, print, refuse_what_is_there};
 use super::scene_file::stage_named;
 use super::session::use_threads;
 use super::trace;
-use crate::history::{ReplayError, Replayed, Verdict, replay_stage, verdict};
+use crate::history::{Comparison, ReplayError, Replayed, Verdict, replay_stage, verdict};
 use crate::journal::TraceRow;
 use crate::pipeline::Stages;
 use crate::scene::{Scene, Stage};
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     /// Lay a setting over the scene, such as solver.max_iterations=200; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Write every Newton iterate to FILE.mcap and FILE.csv
+    /// Write every Newton iterate to FILE.mcap and FILE.csv, neither of which may be there
     #[arg(long, value_name = "FILE", value_parser = file_name)]
     trace: Option<PathBuf>,
     /// Threads; the result is the same on any number of them [default: one for each core]
@@ -44,7 +44,10 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Replays; the worst verdict is the exit code.
     pub(super) fn run(self) -> Result<u8, Failure> {
-        use_threads(self.threads.map(usize::from));
+        use_threads(self.threads.map(usize::from))?;
+        if let Some(file) = &self.trace {
+            refuse_what_is_there(&trace::files(file))?;
+        }
         let read = read_log(&self.log)?;
         let mut stages: Option<Stages> = None;
         let mut rows: Vec<TraceRow> = Vec::new();
@@ -139,13 +142,29 @@ fn line(verdict: &Verdict, replayed: &Replayed, ordinal: u64) -> String {
     let report = &replayed.report;
     let what = match verdict {
         Verdict::BitIdentical => "bit-identical".to_string(),
-        Verdict::WithinTolerance(worst) => {
-            format!("within tolerance: {} agrees to {:.1} bits{}", worst.field, worst.agreeing_bits, place(worst.place))
-        }
+        Verdict::WithinTolerance(worst) => format!(
+            "within tolerance: {} agrees to {}{}{}",
+            worst.field,
+            bits(worst.agreeing_bits),
+            place(worst.place),
+            further(&replayed.comparison)
+        ),
         Verdict::Different(what) => format!("different: {what}"),
     };
     let iterations = if report.iterations > 0 { format!(", {} iterations", report.iterations) } else { String::new() };
     format!("{ordinal:>5}  step {} {}{iterations}: {what}\n", report.step, report.stage)
+}
+
+/// What differs beside the worst field, by less.
+fn further(comparison: &Comparison) -> String {
+    let Comparison::Numbers(differences) = comparison else { return String::new() };
+    let further: Vec<String> =
+        differences.iter().skip(1).map(|it| format!("{} to {}", it.field, bits(it.agreeing_bits))).collect();
+    if further.is_empty() { String::new() } else { format!("; {}", further.join(", ")) }
+}
+
+fn bits(agreeing: f64) -> String {
+    if agreeing.is_finite() { format!("{agreeing:.1} bits") } else { "all bits but the sign of zero".to_string() }
 }
 
 /// Where on the surface.

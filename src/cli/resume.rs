@@ -6,10 +6,11 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{ReadLog, scene_of};
+use super::new_probes;
 use super::output::say;
 use super::progress::Manner;
 use super::session::{RunOptions, drive, watch_signals};
-use crate::history::{basis, plan, restored_scene};
+use crate::history::{basis, plan, read_probes, restored_scene};
 use crate::journal::{Completeness, Log, Manifest, ReadError, Resume, ResumeError};
 use crate::pipeline::{Parameter, Record, Run, Stages};
 use crate::scene::Scene;
@@ -51,7 +52,7 @@ impl Arguments {
         };
         let last = old.claim.log().manifests().last();
         let (file, text) = last.map_or_else(Default::default, |m| (m.scene_file.clone(), m.scene_text.clone()));
-        let manifest = Manifest::here(Path::new(&file), &text, options.use_threads());
+        let manifest = Manifest::here(Path::new(&file), &text, options.use_threads()?);
         go_on(old, scene, manifest, &options)
     }
 }
@@ -100,13 +101,21 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
         was => was?,
     };
     let plan = plan(log, &was, &scene).map_err(|source| unusable(Box::new(source)))??;
-    let mut findings = found(log, plan.keep);
-    findings.extend(restored);
-    findings.extend(plan.changes);
-    findings.extend(other_machine(log, &manifest));
-    let stages = Stages::new(scene.clone());
+    // What is lost or changed is said however quiet the run is.
+    let lost = ReadLog::warnings_of(log).into_iter().chain(restored).chain(plan.changes);
+    let mut findings: Vec<String> = other_machine(log, &manifest).into_iter().collect();
+    if options.is_shown() {
+        say(&found(log, plan.keep));
+    }
+    lost.for_each(|line| say(&line));
+    let mut stages = Stages::new(scene.clone());
     let basis = basis(log, plan.keep, &stages).map_err(|source| unusable(Box::new(source)))?;
-    let before: Vec<Record> = log.entries()[..plan.keep].iter().map(|entry| entry.record.clone()).collect();
+    let mut before: Vec<Record> = log.entries()[..plan.keep].iter().map(|entry| entry.record.clone()).collect();
+    let new_probes = new_probes::names(&was, &scene);
+    if !new_probes.is_empty() {
+        read_probes(log, &mut stages, &mut before).map_err(|source| unusable(Box::new(source)))?;
+        options.show(&new_probes::table(&new_probes, &before))?;
+    }
     let run = Run::new(stages, basis.state, basis.commit);
     let reached = run.state().parameter;
     let shown = Parameter::of(&scene).shown(reached);
@@ -120,12 +129,13 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
         findings.iter().for_each(|line| say(line));
     }
     let finished = log.completeness() == Completeness::Finished && plan.keep == log.entries().len();
-    if next.is_none() && finished {
+    // One that lost its summary is closed anew.
+    if next.is_none() && finished && log.has_summary() {
         return options.sum_up(&Summary::new(&scene, &before));
     }
     let resumed =
         old.claim.start_after(plan.keep, &manifest, scene.output.sync).map_err(|source| unusable(Box::new(source)))?;
-    if let (true, Some(dropped)) = (options.is_shown(), &resumed.dropped) {
+    if let Some(dropped) = &resumed.dropped {
         say(&format!("what was dropped is kept in {}", dropped.display()));
     }
     let records = drive(run, &scene, resumed.writer, options, &raised)?;
@@ -133,15 +143,12 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
 }
 
 /// What a log holds and what of it is used.
-fn found(log: &Log, keep: usize) -> Vec<String> {
-    let all = log.entries().len();
-    let mut lines = vec![match (all, keep) {
-        (0, _) => "the log holds no stage".to_string(),
-        _ if keep == all => format!("the log holds {all} stages, all good"),
-        _ => format!("the log holds {all} good stages; the first {keep} stand"),
-    }];
-    lines.extend(ReadLog::warnings_of(log));
-    lines
+fn found(log: &Log, keep: usize) -> String {
+    match log.entries().len() {
+        0 => "the log holds no stage".to_string(),
+        all if keep == all => format!("the log holds {all} stages, all good"),
+        all => format!("the log holds {all} good stages; the first {keep} stand"),
+    }
 }
 
 /// Another machine may round differently: it is allowed, said, and recorded in the log.

@@ -72,21 +72,20 @@ impl Job {
     /// Runs, and sums up.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Job { file, scene: SceneFile { scene, text }, options, resume } = self;
-        if resume && options.log.exists() {
+        let manifest = Manifest::here(&file, &text, options.use_threads()?);
+        let is_there = resume && options.log.exists();
+        if is_there {
             if let Some(old) = OldLog::open_unless_empty(&options.log)? {
-                let manifest = Manifest::here(&file, &text, options.use_threads());
                 return resume::go_on(old, scene, manifest, &options);
             }
             say(&format!("{} holds nothing: begun anew", options.log.display()));
-            std::fs::remove_file(&options.log)
-                .map_err(|source| Failure::Write { path: options.log.clone(), source })?;
         }
         let stages = Stages::new(scene.clone());
         let start = stages.start()?;
         let raised = watch_signals()?;
-        let manifest = Manifest::here(&file, &text, options.use_threads());
         make_default_folder(&options.log)?;
-        let writer = JournalWriter::create(&options.log, &manifest, scene.output.sync)
+        let begin = if is_there { JournalWriter::create_anew } else { JournalWriter::create };
+        let writer = begin(&options.log, &manifest, scene.output.sync)
             .map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         if options.is_shown() {
             let to = options.until_deg.unwrap_or(scene.load.target());

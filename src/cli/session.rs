@@ -1,10 +1,13 @@
 //! A run under way: threads, signals, the log, and what is shown; shared by the commands that compute.
 
+use std::io;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use signal_hook::consts::{SIGINT, SIGTERM, SIGXFSZ};
+use rayon::{ThreadBuilder, ThreadPoolBuilder};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXCPU, SIGXFSZ};
 use signal_hook::flag;
 
 use super::failure::{Failure, INTERRUPTED};
@@ -34,11 +37,14 @@ impl RunOptions {
         matches!(self.manner, Manner::Live | Manner::Lines)
     }
 
+    /// Prints what a person reads and a program does not.
+    pub(super) fn show(&self, text: &str) -> Result<(), Failure> {
+        if self.manner == Manner::Json { Ok(()) } else { print(text) }
+    }
+
     /// The last words of a run.
     pub(super) fn sum_up(&self, summary: &Summary) -> Result<(), Failure> {
-        if self.manner != Manner::Json {
-            print(&summary.to_string())?;
-        }
+        self.show(&summary.to_string())?;
         if self.is_shown() {
             say(&format!("every stage: foldline inspect {}", self.log.display()));
         }
@@ -46,29 +52,77 @@ impl RunOptions {
     }
 
     /// Sets up the threads; returns how many there are.
-    pub(super) fn use_threads(&self) -> usize {
+    pub(super) fn use_threads(&self) -> Result<usize, Failure> {
         use_threads(self.threads)
     }
 }
 
-/// Sets up so many threads, or one for each core; returns how many there are.
-pub(super) fn use_threads(threads: Option<usize>) -> usize {
-    // Fails only where the pool stands already, which is then the one to use.
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build_global();
-    rayon::current_num_threads()
+/// Sets up so many threads, or one for each core; returns how many there are. Where they cannot be made, everything is
+/// done on the one that there is, with the same results.
+pub(super) fn use_threads(threads: Option<usize>) -> Result<usize, Failure> {
+    let wanted = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    let failed = |source| Failure::Threads { source: Box::new(source) };
+    let waiting = if wanted > 1 { waiting_threads(wanted).map(Some) } else { Ok(None) };
+    if let Err(error) = &waiting {
+        say(&format!("warning: threads cannot be made ({error}): everything is done on one, with the same results"));
+    }
+    let pool = ThreadPoolBuilder::new();
+    match waiting.ok().flatten() {
+        // What one of them is given to do it takes, so that this cannot fail half-way.
+        Some(hand) => pool
+            .num_threads(wanted)
+            .spawn_handler(|work| hand.send(work).map_err(|_| io::ErrorKind::BrokenPipe.into()))
+            .build_global(),
+        None => pool.num_threads(1).use_current_thread().build_global(),
+    }
+    .map_err(failed)?;
+    Ok(rayon::current_num_threads())
 }
 
-/// Raised by the first SIGINT or SIGTERM; the second ends the process at once.
+/// So many threads, each waiting for the work of one of a pool; they end where they are given none.
+fn waiting_threads(count: usize) -> io::Result<Sender<ThreadBuilder>> {
+    let (hand, take) = channel::<ThreadBuilder>();
+    let take = Arc::new(Mutex::new(take));
+    for _ in 0..count {
+        let take = take.clone();
+        std::thread::Builder::new().spawn(move || {
+            let work = take.lock().unwrap_or_else(PoisonError::into_inner).recv();
+            if let Ok(work) = work {
+                work.run();
+            }
+        })?;
+    }
+    Ok(hand)
+}
+
+/// Makes a limit on the size of files an error that names the file, instead of the end of the process.
+pub(super) fn outlive_file_limits() -> Result<(), Failure> {
+    let failed = |source| Failure::Signals { source };
+    flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map(|_| ()).map_err(failed)
+}
+
+/// Raised by each signal that asks for an end; a second SIGINT or SIGTERM ends the process at once.
 pub(super) fn watch_signals() -> Result<Arc<AtomicBool>, Failure> {
+    let failed = |source| Failure::Signals { source };
     let raised = Arc::new(AtomicBool::new(false));
-    // A file size limit is then an error that names the log, instead of the end of the process.
-    flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map_err(|source| Failure::Signals { source })?;
     for signal in [SIGINT, SIGTERM] {
-        flag::register_conditional_shutdown(signal, i32::from(INTERRUPTED), raised.clone())
-            .and_then(|_| flag::register(signal, raised.clone()))
-            .map_err(|source| Failure::Signals { source })?;
+        flag::register_conditional_shutdown(signal, i32::from(INTERRUPTED), raised.clone()).map_err(failed)?;
+    }
+    // The others may come again for the same cause: from the shell after the terminal, or with each second of time.
+    for signal in [SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU] {
+        if signal != SIGHUP || !is_ignored(signal) {
+            flag::register(signal, raised.clone()).map_err(failed)?;
+        }
     }
     Ok(raised)
+}
+
+/// Whether this process was started with a signal ignored, as `nohup` does; known on Linux, where /proc tells it.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    mask >> (signal - 1) & 1 == 1
 }
 
 /// Runs to the end that the options name, with every stage logged and shown. Gives back the stages of this session.
@@ -89,12 +143,10 @@ pub(super) fn drive(
     let ending = run.to_end(options.until_deg, &|| raised.load(Ordering::Relaxed), &mut sink);
     let (writer, records) = sink.finish();
     let log = || options.log.clone();
+    let keeps = writer.is_still_there();
     let closed = if matches!(ending, Ok(Ending::Finished)) { writer.finish() } else { writer.close() };
-    let ending = ending.map_err(|source| Failure::Stopped { log: log(), source: Box::new(source) })?;
+    let ending = ending.map_err(|source| Failure::Stopped { log: log(), keeps, source: Box::new(source) })?;
     closed.map_err(|source| Failure::WrongLog { log: log(), source: Box::new(source) })?;
-    if !options.log.exists() {
-        return Err(Failure::LogGone { log: log() });
-    }
     match ending {
         Ending::Interrupted => Err(Failure::Interrupted { log: log() }),
         Ending::Finished | Ending::Until => Ok(records),

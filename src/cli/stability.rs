@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{ReadLog, read_log, scene_at};
-use super::output::{file_name, print, write_file};
+use super::output::{file_name, print, refuse_what_is_there, write_files};
 use super::plot::cells_per_element;
 use crate::history::{StabilityReport, stability_at};
 use crate::pipeline::{Outcome, Record};
@@ -35,6 +35,9 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Finds the modes and prints them.
     pub(super) fn run(self) -> Result<(), Failure> {
+        if let Some(folder) = &self.output {
+            refuse_what_is_there(&pictures(folder))?;
+        }
         let read = read_log(&self.log)?;
         let records = read.records();
         let ends = ends_of_steps(&records);
@@ -127,10 +130,13 @@ fn draw(folder: &Path, scene: &Scene, record: &Record, report: &StabilityReport)
         subtitle: format!("at {at}, eigenvalue {:.3e} N/mm; not to scale", report.mode.eigenvalue),
         ..Picture::default()
     };
-    for (file, text) in [("mode.svg", mesh_picture(&samples, &picture)), ("mode.vtu", vtu(&samples))] {
-        let path = folder.join(file);
-        write_file(&path, &text)?;
-        print(&format!("{}\n", path.display()))?;
-    }
-    Ok(())
+    let texts = [mesh_picture(&samples, &picture), vtu(&samples)];
+    let files: Vec<_> = pictures(folder).into_iter().zip(texts.map(String::into_bytes)).collect();
+    write_files(&files)?;
+    print(&files.iter().map(|(path, _)| format!("{}\n", path.display())).collect::<String>())
+}
+
+/// The files of a mode.
+fn pictures(folder: &Path) -> [PathBuf; 2] {
+    ["mode.svg", "mode.vtu"].map(|file| folder.join(file))
 }

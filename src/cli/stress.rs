@@ -64,7 +64,7 @@ impl Arguments {
         let files = list_folder(&self.scenes)?;
         let names = self.chosen(files.keys())?;
         let scenes = read_scenes(&files, &names)?;
-        use_threads(self.threads.map(usize::from));
+        use_threads(self.threads.map(usize::from))?;
         let table = StressTable::new(names.iter().map(|name| stem(name)));
         if !self.json {
             print(&table.head())?;

@@ -68,7 +68,7 @@ struct Case {
 impl Arguments {
     /// Runs the reference and then every case; a row as soon as it is known.
     pub(super) fn run(self) -> Result<(), Failure> {
-        use_threads(self.threads.map(usize::from));
+        use_threads(self.threads.map(usize::from))?;
         let cases = self.cases()?;
         let name = self.against.display().to_string();
         let reference = checked(&read_scene(&self.against)?.text, &name, &self.set)?;

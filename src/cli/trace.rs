@@ -1,11 +1,11 @@
 //! Iterates of replayed stages, for `replay --trace`: one MCAP and one CSV beside it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
-use super::output::write_file;
+use super::output::write_files;
 use crate::equilibrium::Iterate;
-use crate::journal::{TraceRow, write_trace};
+use crate::journal::{TraceRow, trace_file};
 use crate::pipeline::Commit;
 use crate::spline::Mesh;
 
@@ -30,12 +30,18 @@ pub(super) fn row(commit: &Commit, mesh: &Mesh, iterate: &Iterate) -> TraceRow {
     }
 }
 
-/// Writes FILE with the ending .mcap and .csv. Returns what was written.
+/// FILE with the endings .mcap and .csv.
+pub(super) fn files(file: &Path) -> [PathBuf; 2] {
+    ["mcap", "csv"].map(|ending| file.with_extension(ending))
+}
+
+/// Writes both files. Returns what was written.
 pub(super) fn write(file: &Path, rows: &[TraceRow]) -> Result<String, Failure> {
-    let (mcap, csv) = (file.with_extension("mcap"), file.with_extension("csv"));
-    write_trace(&mcap, rows).map_err(|source| Failure::WrongLog { log: mcap.clone(), source: Box::new(source) })?;
-    write_file(&csv, &table(rows))?;
-    Ok(format!("{} iterates: {}, {}\n", rows.len(), mcap.display(), csv.display()))
+    let [mcap, csv] = files(file);
+    let trace = trace_file(rows).map_err(|source| Failure::WrongLog { log: mcap.clone(), source: Box::new(source) })?;
+    let written = format!("{} iterates: {}, {}\n", rows.len(), mcap.display(), csv.display());
+    write_files(&[(mcap, trace), (csv, table(rows).into_bytes())])?;
+    Ok(written)
 }
 
 fn table(rows: &[TraceRow]) -> String {

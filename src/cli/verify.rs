@@ -16,7 +16,7 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// Lists all findings.
+    /// Lists all findings, and says whether the log is good.
     pub(super) fn run(self) -> Result<u8, Failure> {
         let unreadable = |source| Failure::Read { path: self.log.clone(), source };
         std::fs::metadata(&self.log).map_err(unreadable)?;
@@ -29,7 +29,13 @@ impl Arguments {
             };
             format!("{level:<8} {}: {}\n", finding.place, finding.text)
         });
-        print(&lines.collect::<String>())?;
-        Ok(u8::from(findings.iter().any(|finding| finding.level == Level::Error)))
+        let wrong = findings.iter().filter(|finding| finding.level > Level::Info).count();
+        let verdict = match wrong {
+            0 => "good".to_owned(),
+            1 => "1 thing is wrong".to_owned(),
+            _ => format!("{wrong} things are wrong"),
+        };
+        print(&(lines.collect::<String>() + &format!("{}: {verdict}\n", self.log.display())))?;
+        Ok(u8::from(wrong > 0))
     }
 }

@@ -1,7 +1,9 @@
-//! Two states side by side: which field differs most, by how much, and where on the surface.
+//! Two states side by side, in bits: which fields differ, by how much, and where on the surface.
+//!
+//! Structs are taken apart by name, so that a field that is forgotten here does not compile.
 
 use crate::spline::Mesh;
-use crate::state::{Rejection, State};
+use crate::state::{CriticalAhead, PathMemory, Previous, Refinement, Rejection, State, StepControl};
 
 /// Two values of a field that are not the same.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +14,8 @@ pub struct Difference {
     pub place: Option<([usize; 2], [f64; 3])>,
     /// The two values there; for vectors the component that differs most.
     pub values: [f64; 2],
-    /// Bits that agree, relative to the largest magnitude in the field: −log₂(|a − b| / max).
+    /// Bits that agree, relative to what the field is held against, mostly its own largest magnitude: −log₂(|a − b| / scale).
+    /// Infinite for zeros of different sign.
     pub agreeing_bits: f64,
 }
 
@@ -29,113 +32,218 @@ pub enum Comparison {
 
 /// Compares two states field by field.
 pub fn compare(a: &State, b: &State) -> Comparison {
-    if a.hash() == b.hash() {
+    let mut found = Found { mesh: &a.mesh, kinds: Vec::new(), numbers: Vec::new() };
+    found.states(a, b);
+    let Found { kinds, mut numbers, .. } = found;
+    if !kinds.is_empty() {
+        return Comparison::Structure(kinds.join("; "));
+    }
+    if numbers.is_empty() {
         return Comparison::Identical;
     }
-    if let Some(what) = structure(a, b) {
-        return Comparison::Structure(what);
-    }
-    let mut differences: Vec<Difference> = [
-        ("rotation_deg", a.parameter, b.parameter),
-        ("moment_n_mm", a.moment_n_mm, b.moment_n_mm),
-        ("strain_energy_n_mm", a.strain_energy_n_mm, b.strain_energy_n_mm),
-        ("largest_force_n", a.largest_force_n, b.largest_force_n),
-    ]
-    .into_iter()
-    .filter_map(|(field, x, y)| number(field, x, y))
-    .collect();
-    differences.extend(displacement(a, b));
-    differences.extend(control_points(&a.mesh, &b.mesh));
-    if let (Some(p), Some(q)) = (&a.previous, &b.previous) {
-        differences.extend(worst("displacement before", &a.mesh, &p.displacement, &q.displacement));
-        differences.extend(number("rotation before", p.parameter, q.parameter));
-    }
-    if let (Some(p), Some(q)) = (&a.refinement, &b.refinement) {
-        differences.extend(number("energy that refining changed", p.changed_n_mm, q.changed_n_mm));
-        differences.extend(number("energy of the last ripple", p.ripple_n_mm, q.ripple_n_mm));
-    }
-    if let (Some(p), Some(q)) = (&a.path, &b.path) {
-        differences.extend(worst("direction of the path", &a.mesh, &p.heading, &q.heading));
-        differences.extend(number("length of the path", p.travelled_mm, q.travelled_mm));
-        differences.extend(number("length of the next step", p.next_mm, q.next_mm));
-    }
-    differences.sort_by(|x, y| x.agreeing_bits.total_cmp(&y.agreeing_bits));
-    if differences.is_empty() {
-        return Comparison::Structure("knots or step control differ".to_string());
-    }
-    Comparison::Numbers(differences)
+    numbers.sort_by(|x, y| x.agreeing_bits.total_cmp(&y.agreeing_bits));
+    Comparison::Numbers(numbers)
 }
 
-/// Why two states cannot be compared number by number.
-fn structure(a: &State, b: &State) -> Option<String> {
-    let elements = |state: &State| state.mesh.element_counts();
-    if a.stage == b.stage && a.control.rejection != b.control.rejection {
-        let what = |state: &State| match state.control.rejection {
-            None => format!("a solve that reached {}°", state.parameter),
-            Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
-            Some(Rejection::Jump) => "a solve that was turned down as unstable on the way".to_string(),
-            Some(Rejection::CriticalPoint) => "a solve that was turned down for a critical point".to_string(),
-            Some(Rejection::SharpTurn) => "a solve that was turned down for a sharp turn".to_string(),
-        };
-        return Some(format!("{} against {}", what(a), what(b)));
-    }
-    if a.stage != b.stage || a.step != b.step {
-        let name = |state: &State| state.stage.map_or("start", |stage| stage.name());
-        return Some(format!("step {} {} against step {} {}", a.step, name(a), b.step, name(b)));
-    }
-    if a.mesh.degree != b.mesh.degree || a.mesh.control_counts() != b.mesh.control_counts() {
-        let ([a1, a2], [b1, b2]) = (elements(a), elements(b));
-        return Some(format!("a mesh of {a1} × {a2} elements against {b1} × {b2}"));
-    }
-    if a.marked != b.marked {
-        let counts = |state: &State| [state.marked[0].len(), state.marked[1].len()];
-        return Some(format!("{:?} knot spans marked against {:?}", counts(a), counts(b)));
-    }
-    if a.negative_pivots != b.negative_pivots {
-        return Some(format!("{} negative pivots against {}", a.negative_pivots, b.negative_pivots));
-    }
-    if a.path.is_some() != b.path.is_some() {
-        let what = |state: &State| if state.path.is_some() { "by arc length" } else { "by load" };
-        return Some(format!("a step {} against one {}", what(a), what(b)));
-    }
-    if a.previous.is_some() != b.previous.is_some() {
-        return Some("only one of them remembers the equilibrium before".to_string());
-    }
-    let growth = |state: &State| state.refinement.map(|last| (last.growth, last.expected_n_mm.is_some()));
-    if growth(a) != growth(b) {
-        return Some("they were refined otherwise before".to_string());
-    }
-    if a.control != b.control {
-        let what = |state: &State| {
-            let size = match state.control.halvings {
-                0 => "the scene's increment".to_string(),
-                halvings @ 1.. => format!("an increment halved {halvings} times"),
-                grown => format!("an increment doubled {} times", grown.unsigned_abs()),
-            };
-            let jump = state.control.jump_seen_at_deg.map(|at| format!(", a jump seen at {at}"));
-            size + &jump.unwrap_or_default()
-        };
-        return Some(format!("{} for the next step against {}", what(a), what(b)));
-    }
-    None
+struct Found<'m> {
+    /// The mesh that tells where a control point is.
+    mesh: &'m Mesh,
+    /// What makes numbers of the two states no counterparts, in words.
+    kinds: Vec<String>,
+    numbers: Vec<Difference>,
 }
 
-fn number(field: &'static str, a: f64, b: f64) -> Option<Difference> {
-    (a.to_bits() != b.to_bits()).then(|| Difference {
-        field,
-        place: None,
-        values: [a, b],
-        agreeing_bits: agreeing_bits(a, b, a.abs().max(b.abs())),
-    })
+impl Found<'_> {
+    fn states(&mut self, a: &State, b: &State) {
+        let State {
+            mesh,
+            displacement,
+            marked,
+            refined,
+            step,
+            stage,
+            parameter,
+            turns,
+            moment_n_mm,
+            strain_energy_n_mm,
+            negative_pivots,
+            control,
+            path,
+            previous,
+            largest_force_n,
+            refinement,
+        } = a;
+        if *stage == b.stage && control.rejection != b.control.rejection {
+            return self.kinds.push(format!("{} against {}", outcome(a), outcome(b)));
+        }
+        if (*step, *stage) != (b.step, b.stage) {
+            let name = |state: &State| state.stage.map_or("start", |stage| stage.name());
+            return self.kinds.push(format!("step {step} {} against step {} {}", name(a), b.step, name(b)));
+        }
+        self.meshes(["knots", "control points"], mesh, &b.mesh);
+        if !self.kinds.is_empty() {
+            return;
+        }
+        let counts = |marked: &[Vec<f64>; 2]| marked.each_ref().map(Vec::len);
+        if counts(marked) == counts(&b.marked) {
+            marked.iter().zip(&b.marked).for_each(|(x, y)| self.list("marked knots", x, y));
+        } else {
+            self.kinds.push(format!("{:?} knot spans marked against {:?}", counts(marked), counts(&b.marked)));
+        }
+        if *negative_pivots != b.negative_pivots {
+            self.kinds.push(format!("{negative_pivots} negative pivots against {}", b.negative_pivots));
+        }
+        if let Some((x, y)) = self.both("a finer mesh waiting", refined, &b.refined) {
+            self.meshes(["knots of the finer mesh", "control points of the finer mesh"], x, y);
+        }
+        self.number("rotation_deg", *parameter, b.parameter);
+        self.number("moment_n_mm", *moment_n_mm, b.moment_n_mm);
+        self.number("strain_energy_n_mm", *strain_energy_n_mm, b.strain_energy_n_mm);
+        self.number("largest_force_n", *largest_force_n, b.largest_force_n);
+        self.vectors("displacement", displacement, &b.displacement);
+        self.list("turns", turns.as_flattened(), b.turns.as_flattened());
+        if let Some((Previous { displacement, parameter }, y)) =
+            self.both("memory of the equilibrium before", previous, &b.previous)
+        {
+            self.vectors("displacement before", displacement, &y.displacement);
+            self.number("rotation before", *parameter, y.parameter);
+        }
+        if let Some((x, y)) = self.both("a step by arc length", path, &b.path) {
+            self.paths(x, y, *parameter);
+        }
+        if let Some((x, y)) = self.both("memory of a refinement", refinement, &b.refinement) {
+            self.refinements(x, y, *strain_energy_n_mm);
+        }
+        self.controls(control, &b.control);
+    }
+
+    fn meshes(&mut self, [knots_name, points_name]: [&'static str; 2], a: &Mesh, b: &Mesh) {
+        let Mesh { degree, knots, control_points } = a;
+        if *degree != b.degree || a.control_counts() != b.control_counts() {
+            let ([a1, a2], [b1, b2]) = (a.element_counts(), b.element_counts());
+            let degrees = if *degree == b.degree { String::new() } else { format!(" of degree {:?}", b.degree) };
+            return self.kinds.push(format!("a mesh of {a1} × {a2} elements against {b1} × {b2}{degrees}"));
+        }
+        knots.iter().zip(&b.knots).for_each(|(x, y)| self.list(knots_name, x, y));
+        self.vectors(points_name, control_points, &b.control_points);
+    }
+
+    fn paths(&mut self, a: &PathMemory, b: &PathMemory, parameter: f64) {
+        let PathMemory { heading, parameter_rate, first_mm, next_mm, travelled_mm, critical_ahead, at_bifurcation } = a;
+        self.vectors("direction of the path", heading, &b.heading);
+        // A rate goes through 0 at a limit point: it is held against the mean rate as well.
+        let mean_rate = if *travelled_mm > 0.0 { parameter / travelled_mm } else { 0.0 };
+        self.beside("rate of the parameter", *parameter_rate, b.parameter_rate, mean_rate);
+        self.number("length of the first step", *first_mm, b.first_mm);
+        self.number("length of the next step", *next_mm, b.next_mm);
+        self.number("length of the path", *travelled_mm, b.travelled_mm);
+        if let Some((CriticalAhead { within_mm, rate_beyond }, y)) =
+            self.both("a critical point ahead", critical_ahead, &b.critical_ahead)
+        {
+            self.beside("length to the critical point", *within_mm, y.within_mm, *first_mm);
+            self.beside("rate beyond the critical point", *rate_beyond, y.rate_beyond, mean_rate);
+        }
+        if *at_bifurcation != b.at_bifurcation {
+            self.kinds.push("only one of them has just passed a bifurcation".to_string());
+        }
+    }
+
+    /// What refining changed is a difference of energies, and rounds as these do.
+    fn refinements(&mut self, a: &Refinement, b: &Refinement, energy: f64) {
+        let Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm } = a;
+        self.number("growth on refining", *growth, b.growth);
+        self.beside("energy that refining changed", *changed_n_mm, b.changed_n_mm, energy);
+        self.beside("energy of the last ripple", *ripple_n_mm, b.ripple_n_mm, energy);
+        if let Some((x, y)) = self.both("memory of the refinement before", expected_n_mm, &b.expected_n_mm) {
+            // Of the whole mesh, and so larger by what the part was smaller.
+            let scale = if *growth > 0.0 { energy / growth.min(1.0) } else { energy };
+            self.beside("energy that refining was to change", *x, *y, scale);
+        }
+    }
+
+    fn controls(&mut self, a: &StepControl, b: &StepControl) {
+        let StepControl { halvings, jump_seen_at_deg, rejection: _ } = a;
+        let size = |halvings: i32| match halvings {
+            0 => "the scene's increment".to_string(),
+            halvings @ 1.. => format!("an increment halved {halvings} times"),
+            grown => format!("an increment doubled {} times", grown.unsigned_abs()),
+        };
+        if *halvings != b.halvings {
+            self.kinds.push(format!("{} for the next step against {}", size(*halvings), size(b.halvings)));
+        }
+        if let Some((x, y)) = self.both("a jump seen ahead", jump_seen_at_deg, &b.jump_seen_at_deg) {
+            self.number("jump seen at", *x, *y);
+        }
+    }
+
+    /// Both where both are there; where only one is, that is a difference of kind.
+    fn both<'s, T>(&mut self, what: &str, a: &'s Option<T>, b: &'s Option<T>) -> Option<(&'s T, &'s T)> {
+        if a.is_some() != b.is_some() {
+            let which = if a.is_some() { "first" } else { "second" };
+            self.kinds.push(format!("{what} in the {which} only"));
+        }
+        a.as_ref().zip(b.as_ref())
+    }
+
+    /// A number that is held against its own magnitude.
+    fn number(&mut self, field: &'static str, a: f64, b: f64) {
+        self.beside(field, a, b, 0.0);
+    }
+
+    /// A number that is held against its own magnitude or another, whichever is larger.
+    fn beside(&mut self, field: &'static str, a: f64, b: f64, scale: f64) {
+        if a.to_bits() != b.to_bits() {
+            let agreeing_bits = agreeing_bits(a, b, a.abs().max(b.abs()).max(scale.abs()));
+            self.numbers.push(Difference { field, place: None, values: [a, b], agreeing_bits });
+        }
+    }
+
+    /// Numbers that are held against the largest of them.
+    fn list(&mut self, field: &'static str, a: &[f64], b: &[f64]) {
+        if a.len() != b.len() {
+            return self.kinds.push(format!("{} {field} against {}", a.len(), b.len()));
+        }
+        let [a, b] = [a, b].map(|list| list.iter().map(|value| [*value]).collect::<Vec<_>>());
+        if let Some((_, values, agreeing_bits)) = worst(&a, &b) {
+            self.numbers.push(Difference { field, place: None, values, agreeing_bits });
+        }
+    }
+
+    /// Vectors on the control points of the mesh.
+    fn vectors<const N: usize>(&mut self, field: &'static str, a: &[[f64; N]], b: &[[f64; N]]) {
+        if a.len() != b.len() {
+            return self.kinds.push(format!("{} control points in {field} against {}", a.len(), b.len()));
+        }
+        let Some((index, values, agreeing_bits)) = worst(a, b) else { return };
+        // A finer mesh has more of them.
+        let place = self.mesh.control_points.get(index).filter(|_| a.len() == self.mesh.control_points.len());
+        let n2 = self.mesh.control_counts()[1];
+        let place = place.map(|[x, y, z, w]| ([index / n2, index % n2], [x / w, y / w, z / w]));
+        self.numbers.push(Difference { field, place, values, agreeing_bits });
+    }
+}
+
+/// What a stage came to, in words.
+fn outcome(state: &State) -> String {
+    match state.control.rejection {
+        None => format!("a solve that reached {}°", state.parameter),
+        Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
+        Some(Rejection::Jump) => "a solve that was turned down as unstable on the way".to_string(),
+        Some(Rejection::CriticalPoint) => "a solve that was turned down for a critical point".to_string(),
+        Some(Rejection::SharpTurn) => "a solve that was turned down for a sharp turn".to_string(),
+    }
 }
 
 fn agreeing_bits(a: f64, b: f64, scale: f64) -> f64 {
+    if a == b {
+        return f64::INFINITY;
+    }
     let share = (a - b).abs() / scale;
     if share.is_nan() { 0.0 } else { -share.log2() }
 }
 
-/// The component of a vector field on control points that differs most.
-fn worst<const N: usize>(field: &'static str, mesh: &Mesh, a: &[[f64; N]], b: &[[f64; N]]) -> Option<Difference> {
+/// Index and values of the component that differs most, and its agreeing bits.
+fn worst<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> Option<(usize, [f64; 2], f64)> {
     let scale = a.iter().chain(b).flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let mut found: Option<(usize, [f64; 2])> = None;
     for (i, (x, y)) in a.iter().zip(b).enumerate() {
@@ -146,21 +254,129 @@ fn worst<const N: usize>(field: &'static str, mesh: &Mesh, a: &[[f64; N]], b: &[
             }
         }
     }
-    let (index, values) = found?;
-    let n2 = mesh.control_counts()[1];
-    let [x, y, z, w] = mesh.control_points[index];
-    Some(Difference {
-        field,
-        place: Some(([index / n2, index % n2], [x / w, y / w, z / w])),
-        values,
-        agreeing_bits: agreeing_bits(values[0], values[1], scale),
-    })
+    found.map(|(index, values)| (index, values, agreeing_bits(values[0], values[1], scale)))
 }
 
-fn displacement(a: &State, b: &State) -> Option<Difference> {
-    worst("displacement", &a.mesh, &a.displacement, &b.displacement)
-}
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
 
-fn control_points(a: &Mesh, b: &Mesh) -> Option<Difference> {
-    worst("control points", a, &a.control_points, &b.control_points)
+    use super::*;
+    use crate::scene::Stage;
+
+    fn state() -> State {
+        let knots = vec![0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0];
+        let control_points = (0..16).map(|i| [f64::from(i) + 1.0, 2.0, 3.0, 1.0]).collect();
+        let mesh = Arc::new(Mesh { degree: [2, 2], knots: [knots.clone(), knots], control_points });
+        State {
+            displacement: vec![[1.0, 2.0, 3.0]; 16],
+            marked: [vec![0.25], vec![]],
+            refined: Some(mesh.clone()),
+            step: 3,
+            stage: Some(Stage::Solve),
+            parameter: 8.0,
+            turns: vec![[0.1, 0.2, 0.3]],
+            moment_n_mm: 100.0,
+            strain_energy_n_mm: 50.0,
+            negative_pivots: 0,
+            control: StepControl { halvings: 1, jump_seen_at_deg: Some(9.0), rejection: None },
+            path: Some(PathMemory {
+                heading: vec![[0.5, 0.25, 0.125]; 16],
+                parameter_rate: 0.5,
+                first_mm: 1.0,
+                next_mm: 2.0,
+                travelled_mm: 16.0,
+                critical_ahead: Some(CriticalAhead { within_mm: 0.5, rate_beyond: -0.25 }),
+                at_bifurcation: false,
+            }),
+            previous: Some(Previous { displacement: vec![[0.5, 1.0, 1.5]; 16], parameter: 7.0 }),
+            largest_force_n: 5.0,
+            refinement: Some(Refinement {
+                changed_n_mm: 0.5,
+                growth: 0.5,
+                expected_n_mm: Some(0.25),
+                ripple_n_mm: 0.125,
+            }),
+            mesh,
+        }
+    }
+
+    /// The last bit of every number of a state, each alone, is a difference of that field, and one of rounding.
+    #[test]
+    fn the_last_bit_of_every_number_is_told() {
+        type Change = fn(&mut State, fn(&mut f64));
+        let changes: [(&str, Change); 22] = [
+            ("knots", |s, f| f(&mut Arc::make_mut(&mut s.mesh).knots[1][3])),
+            ("control points", |s, f| f(&mut Arc::make_mut(&mut s.mesh).control_points[7][2])),
+            ("knots of the finer mesh", |s, f| f(&mut Arc::make_mut(s.refined.as_mut().unwrap()).knots[0][3])),
+            ("control points of the finer mesh", |s, f| {
+                f(&mut Arc::make_mut(s.refined.as_mut().unwrap()).control_points[3][1])
+            }),
+            ("displacement", |s, f| f(&mut s.displacement[5][2])),
+            ("marked knots", |s, f| f(&mut s.marked[0][0])),
+            ("rotation_deg", |s, f| f(&mut s.parameter)),
+            ("turns", |s, f| f(&mut s.turns[0][2])),
+            ("moment_n_mm", |s, f| f(&mut s.moment_n_mm)),
+            ("strain_energy_n_mm", |s, f| f(&mut s.strain_energy_n_mm)),
+            ("largest_force_n", |s, f| f(&mut s.largest_force_n)),
+            ("jump seen at", |s, f| f(s.control.jump_seen_at_deg.as_mut().unwrap())),
+            ("direction of the path", |s, f| f(&mut s.path.as_mut().unwrap().heading[2][0])),
+            ("rate of the parameter", |s, f| f(&mut s.path.as_mut().unwrap().parameter_rate)),
+            ("length of the first step", |s, f| f(&mut s.path.as_mut().unwrap().first_mm)),
+            ("length of the next step", |s, f| f(&mut s.path.as_mut().unwrap().next_mm)),
+            ("length of the path", |s, f| f(&mut s.path.as_mut().unwrap().travelled_mm)),
+            ("length to the critical point", |s, f| {
+                f(&mut s.path.as_mut().unwrap().critical_ahead.as_mut().unwrap().within_mm)
+            }),
+            ("rate beyond the critical point", |s, f| {
+                f(&mut s.path.as_mut().unwrap().critical_ahead.as_mut().unwrap().rate_beyond)
+            }),
+            ("displacement before", |s, f| f(&mut s.previous.as_mut().unwrap().displacement[9][1])),
+            ("rotation before", |s, f| f(&mut s.previous.as_mut().unwrap().parameter)),
+            ("energy that refining was to change", |s, f| {
+                f(s.refinement.as_mut().unwrap().expected_n_mm.as_mut().unwrap())
+            }),
+        ];
+        let a = state();
+        assert_eq!(compare(&a, &a), Comparison::Identical);
+        for (field, change) in changes {
+            let mut b = a.clone();
+            change(&mut b, |value| *value = value.next_up());
+            assert_ne!(a.hash(), b.hash(), "{field}");
+            let Comparison::Numbers(found) = compare(&a, &b) else { panic!("{field}: {:?}", compare(&a, &b)) };
+            assert_eq!(found.iter().map(|it| it.field).collect::<Vec<_>>(), [field]);
+            assert!((45.0..f64::INFINITY).contains(&found[0].agreeing_bits), "{field}: {found:?}");
+            change(&mut b, |value| *value *= 1.5);
+            let Comparison::Numbers(found) = compare(&a, &b) else { panic!("{field}: {:?}", compare(&a, &b)) };
+            assert!(found[0].agreeing_bits < 12.0, "{field}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_of_another_kind_is_told_in_words() {
+        type Change = fn(&mut State);
+        let changes: [(&str, Change); 11] = [
+            ("[1, 0] knot spans marked against [1, 1]", |s| s.marked[1].push(0.75)),
+            ("a finer mesh waiting in the first only", |s| s.refined = None),
+            ("step 3 solve against step 4 solve", |s| s.step = 4),
+            ("0 negative pivots against 1", |s| s.negative_pivots = 1),
+            ("an increment halved 1 times for the next step against the scene's increment", |s| s.control.halvings = 0),
+            ("a jump seen ahead in the first only", |s| s.control.jump_seen_at_deg = None),
+            ("a solve that reached 8° against a solve that found no equilibrium", |s| {
+                s.control.rejection = Some(Rejection::NoEquilibrium)
+            }),
+            ("a step by arc length in the first only", |s| s.path = None),
+            ("a critical point ahead in the first only", |s| s.path.as_mut().unwrap().critical_ahead = None),
+            ("only one of them has just passed a bifurcation", |s| s.path.as_mut().unwrap().at_bifurcation = true),
+            ("memory of a refinement in the first only", |s| s.refinement = None),
+        ];
+        let a = state();
+        for (words, change) in changes {
+            let mut b = a.clone();
+            change(&mut b);
+            let Comparison::Structure(what) = compare(&a, &b) else { panic!("{words}: {:?}", compare(&a, &b)) };
+            assert!(what.contains(words), "{words}: {what}");
+            assert_ne!(a.hash(), b.hash(), "{words}");
+        }
+    }
 }

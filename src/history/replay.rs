@@ -73,8 +73,10 @@ pub fn verdict(comparison: &Comparison) -> Verdict {
             Some(worst) if worst.agreeing_bits >= TOLERATED_BITS => Verdict::WithinTolerance(worst.clone()),
             Some(worst) => {
                 let [a, b] = worst.values;
+                let more = differences.iter().skip(1).take_while(|it| it.agreeing_bits < TOLERATED_BITS);
+                let more: String = more.map(|it| format!(", {}: {:.1}", it.field, it.agreeing_bits)).collect();
                 Verdict::Different(format!(
-                    "{}: {a} in the log, {b} now ({:.1} bits agree)",
+                    "{}: {a} in the log, {b} now ({:.1} bits agree{more})",
                     worst.field, worst.agreeing_bits
                 ))
             }

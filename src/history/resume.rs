@@ -9,8 +9,14 @@ use crate::state::State;
 /// The key of the rotation at which a run stops.
 const TARGETS: [&str; 2] = ["load.rotation_deg", "load.factor"];
 
+/// Keys of what a log holds beside its states.
+const STARTS_HERE: [&str; 2] = ["probes", "output.mesh_history"];
+
 /// Targets that differ by less than this, relatively, are one.
 const TARGET_ROUNDING: f64 = 1e-12;
+
+/// Characters of a scene's value that are shown at most.
+const LONGEST_SHOWN: usize = 60;
 
 /// What a run goes on from.
 #[derive(Clone, Debug)]
@@ -52,16 +58,12 @@ pub struct ResumePlan {
     pub changes: Vec<String>,
 }
 
-/// A change of the scene that no state of the log survives.
+/// Changes of the scene that no state of the log survives.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{} changed ({from} in the log, {to} now): nothing can be kept; write to another log with -o", path)]
+#[error("{}: nothing can be kept; write to another log with -o", changes.join("\n  "))]
 pub struct NothingStands {
-    /// Key of the scene file.
-    pub path: String,
-    /// Value in the log.
-    pub from: String,
-    /// Value now.
-    pub to: String,
+    /// A line for each: key of the scene file, value in the log, and value now.
+    pub changes: Vec<String>,
 }
 
 /// What stands of a log written for `old` when it goes on with `new`.
@@ -77,9 +79,13 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     let shown = |difference: &Difference| {
         format!("{} changed ({} → {})", difference.path, shown_value(&difference.a), shown_value(&difference.b))
     };
-    if let Some(first) = differences.iter().find(|difference| difference.reach == Reach::Everything) {
-        let (from, to) = (shown_value(&first.a), shown_value(&first.b));
-        return Ok(Err(NothingStands { path: first.path.to_string(), from, to }));
+    let fatal = differences.iter().filter(|difference| difference.reach == Reach::Everything).map(|difference| {
+        let (from, to) = (shown_value(&difference.a), shown_value(&difference.b));
+        format!("{} changed ({from} in the log, {to} now)", difference.path)
+    });
+    let fatal: Vec<String> = fatal.collect();
+    if !fatal.is_empty() {
+        return Ok(Err(NothingStands { changes: fatal }));
     }
     let mut keep = log.entries().len();
     let mut changes = Vec::new();
@@ -95,6 +101,10 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     for difference in &differences {
         let what = shown(difference);
         changes.push(match difference.reach {
+            // What is written beside the states is as it was up to here.
+            Reach::Free if STARTS_HERE.contains(&difference.path.as_str()) => {
+                format!("{what}: every stage stands, and the {keep} in the log keep what they were written with")
+            }
             Reach::Free if keep == log.entries().len() || !TARGETS.contains(&difference.path.as_str()) => {
                 format!("{what}: every stage stands")
             }
@@ -105,9 +115,16 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     Ok(Ok(ResumePlan { keep, changes }))
 }
 
-/// A value of a scene as it stands in its file.
+/// A value of a scene as it stands in its file, in one line: of a long list only how it begins and how much there is of it.
 pub fn shown_value(value: &Option<serde_json::Value>) -> String {
-    value.as_ref().map_or_else(|| "not set".to_string(), ToString::to_string)
+    let Some(value) = value else { return "not set".to_string() };
+    let text = value.to_string();
+    if text.chars().count() <= LONGEST_SHOWN {
+        return text;
+    }
+    let head: String = text.chars().take(LONGEST_SHOWN).collect();
+    let more = text.chars().count() - LONGEST_SHOWN;
+    format!("{head} … {more} characters more")
 }
 
 /// Number of stages before the first solve that the new target would not try: the old one cut it short, or the new one
@@ -154,4 +171,19 @@ pub fn restored_scene(log: &Log, scene: &Scene) -> Option<Scene> {
     let mut restored = scene.clone();
     restored.load.set_target(attempts.fold(f64::MIN, |most, attempt| most.max(attempt.abs())));
     (last.scene_hash == scene.hash()).then_some(restored)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_a_line() {
+        assert_eq!(shown_value(&None), "not set");
+        assert_eq!(shown_value(&Some(serde_json::json!([4, 8]))), "[4,8]");
+        let net = serde_json::json!(vec![[0.25, 1.5, 2.0]; 1000]);
+        let shown = shown_value(&Some(net));
+        assert!(shown.starts_with("[[0.25,1.5,2.0],[0.25") && shown.ends_with(" characters more"), "{shown}");
+        assert!(shown.len() < 100, "{shown}");
+    }
 }

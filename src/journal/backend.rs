@@ -1,12 +1,27 @@
 //! Where the bytes of a log go: a file, or what a test puts in its place.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{self, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
+use super::still_ours::{Estranged, still_ours};
+pub(super) use crate::whole_file::beside;
+use crate::whole_file::{WholeFile, sync_folder_of};
+
 /// Takes the bytes of a log, whole commits at a time.
 pub trait Backend: Send {
+    /// Looks whether what was appended, `length` bytes with `commits` stages, is still where it went. Asked before
+    /// every append; a place that nobody else can reach need not look.
+    ///
+    /// # Errors
+    /// Where it is not: nothing must be appended then.
+    fn check(&self, length: u64, commits: u64) -> Result<(), Estranged> {
+        let _ = (length, commits);
+        Ok(())
+    }
+
     /// Adds bytes at the end. Once this returns they outlive the process, though not a power cut.
     ///
     /// # Errors
@@ -31,75 +46,98 @@ pub trait Backend: Send {
 pub struct FileBackend {
     file: File,
     path: PathBuf,
-    /// The name that the file comes to with its first bytes.
-    publish_as: Option<PathBuf>,
-    /// The log that this file takes the place of, before the first byte is added to what was copied.
-    replaces: Option<Replacement>,
+    coming: Coming,
     folder_synced: bool,
 }
 
-/// A file on its way to taking another's place.
+/// How a file comes to its name.
 #[derive(Debug)]
-struct Replacement {
-    target: PathBuf,
-    /// Forces the copy to disk while the run already goes on; a 40 MB log takes 70 ms and more for that.
-    synced: Option<JoinHandle<io::Result<()>>>,
+enum Coming {
+    /// It has its name.
+    Named,
+    /// With its first bytes, so that no log is ever there without its manifest.
+    New(WholeFile),
+    /// It is being copied from the log whose place it takes.
+    Copy(WholeFile),
+    /// It takes the place of a log before the first byte is added to what was copied.
+    Replacing {
+        copy: WholeFile,
+        original: File,
+        original_len: u64,
+        /// Forces the copy to disk while the run already goes on; a 40 MB log takes 70 ms and more for that.
+        synced: Option<JoinHandle<io::Result<()>>>,
+    },
 }
 
 impl FileBackend {
-    /// A new, empty file.
+    /// A new, empty file, which has this name only from its first bytes on. A file of that name that comes to be meanwhile
+    /// is not overwritten.
     ///
     /// # Errors
-    /// Where there is one already ([`io::ErrorKind::AlreadyExists`]), or none can be made.
+    /// Where none can be made in that folder.
     pub fn create_new(path: &Path) -> io::Result<Self> {
-        let file = OpenOptions::new().append(true).create_new(true).open(path)?;
-        Ok(Self { file, path: path.to_owned(), publish_as: None, replaces: None, folder_synced: false })
+        let whole = WholeFile::beside(path)?;
+        let file = whole.file().try_clone()?;
+        Ok(Self { file, path: path.to_owned(), coming: Coming::New(whole), folder_synced: false })
     }
 
-    /// The same, but the file has this name only from its first bytes on, so that no log is ever there without its
-    /// manifest. A file of that name that comes to be meanwhile is not overwritten.
-    pub(super) fn publish_as(mut self, target: &Path) -> Self {
-        self.publish_as = Some(target.to_owned());
-        self
-    }
-
-    fn publish(&mut self) -> io::Result<()> {
-        let Some(target) = self.publish_as.take() else { return Ok(()) };
-        match std::fs::hard_link(&self.path, &target) {
-            Ok(()) => std::fs::remove_file(&self.path)?,
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return Err(error),
-            // A file system without links; the lock keeps others away.
-            Err(_) => std::fs::rename(&self.path, &target)?,
-        }
-        self.path = target;
-        Ok(())
-    }
-
-    /// Lets this file, once all of it is on disk, take the place of `target`, which lies in the same folder. Until
-    /// then `target` stays as it is; that moment comes at the latest before the next byte is added.
+    /// A new, empty file in the folder of a log, for a copy of it that takes its place with [`Self::replace`].
     ///
     /// # Errors
-    /// Where the file cannot be opened a second time.
-    pub(super) fn replace(&mut self, target: &Path) -> io::Result<()> {
-        let copy = self.file.try_clone()?;
-        let synced = Some(std::thread::spawn(move || copy.sync_all()));
-        self.replaces = Some(Replacement { target: target.to_owned(), synced });
+    /// Where none can be made there.
+    pub(super) fn copy_of(log: &Path) -> io::Result<Self> {
+        let copy = WholeFile::beside(log)?;
+        let file = copy.file().try_clone()?;
+        Ok(Self { file, path: log.to_owned(), coming: Coming::Copy(copy), folder_synced: false })
+    }
+
+    /// Lets this copy, once all of it is on disk, take the place of the log, of whose `original_len` bytes it was made. Until then
+    /// the log stays as it is; that moment comes at the latest before the next byte is added. The copy belongs to whom
+    /// the log belongs to.
+    ///
+    /// # Errors
+    /// Where the log or the copy cannot be opened a second time.
+    pub(super) fn replace(&mut self, original_len: u64) -> io::Result<()> {
+        let original = File::open(&self.path)?;
+        let metadata = original.metadata()?;
+        // Where only root could, the one who resumes has it from here on, as with any file that is written anew.
+        let _ = std::os::unix::fs::fchown(&self.file, Some(metadata.uid()), Some(metadata.gid()));
+        let _ = self.file.set_permissions(metadata.permissions());
+        let file = self.file.try_clone()?;
+        let synced = std::thread::Builder::new().spawn(move || file.sync_all());
+        // Where no thread can be made, now.
+        let synced = match synced {
+            Ok(thread) => Some(thread),
+            Err(_) => self.file.sync_all().map(|()| None)?,
+        };
+        self.coming = match std::mem::replace(&mut self.coming, Coming::Named) {
+            Coming::New(copy) | Coming::Copy(copy) => Coming::Replacing { copy, original, original_len, synced },
+            other => other,
+        };
         Ok(())
     }
 
     fn settle(&mut self) -> io::Result<()> {
-        let Some(replacement) = &mut self.replaces else { return Ok(()) };
-        if let Some(synced) = replacement.synced.take() {
-            synced.join().unwrap_or_else(|_| Err(io::Error::other("the thread that synced the log died")))?;
+        if !matches!(self.coming, Coming::Replacing { .. }) {
+            return Ok(());
         }
-        // Where locks do not work, a rival may have put a copy of its own under this name.
-        if !is_at(&self.file, &self.path) {
-            return Err(io::Error::other(format!("{} is another's now", self.path.display())));
+        if let Coming::Replacing { copy, synced, .. } = std::mem::replace(&mut self.coming, Coming::Named) {
+            if let Some(synced) = synced {
+                synced.join().unwrap_or_else(|_| Err(io::Error::other("the thread that synced the log died")))?;
+            }
+            copy.replace(&self.path)?;
         }
-        std::fs::rename(&self.path, &replacement.target)?;
-        self.path = replacement.target.clone();
-        self.replaces = None;
         self.sync_folder()
+    }
+
+    fn publish(&mut self) -> io::Result<()> {
+        if !matches!(self.coming, Coming::New(_)) {
+            return Ok(());
+        }
+        match std::mem::replace(&mut self.coming, Coming::Named) {
+            Coming::New(whole) => whole.give_name(&self.path),
+            _ => Ok(()),
+        }
     }
 
     /// Makes the file's name durable.
@@ -113,6 +151,17 @@ impl FileBackend {
 }
 
 impl Backend for FileBackend {
+    fn check(&self, length: u64, commits: u64) -> Result<(), Estranged> {
+        match &self.coming {
+            Coming::Named => still_ours(&self.file, &self.path, length, commits),
+            Coming::Replacing { original, original_len, .. } => {
+                still_ours(original, &self.path, *original_len, commits)
+            }
+            // Nobody else can reach a file without a name.
+            Coming::New(_) | Coming::Copy(_) => Ok(()),
+        }
+    }
+
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.settle()?;
         self.file.write_all(bytes)?;
@@ -132,48 +181,15 @@ impl Backend for FileBackend {
 
 impl Drop for FileBackend {
     fn drop(&mut self) {
-        if let Some(mut replacement) = self.replaces.take() {
-            // Nothing was added: the log that was to be replaced has all that this copy has.
-            if let Some(synced) = replacement.synced.take() {
-                let _ = synced.join();
-            }
-            if is_at(&self.file, &self.path) {
-                let _ = std::fs::remove_file(&self.path);
-            }
+        // Nothing was added: the log that was to be replaced has all that the copy has.
+        if let Coming::Replacing { synced: Some(synced), .. } = std::mem::replace(&mut self.coming, Coming::Named) {
+            let _ = synced.join();
         }
     }
 }
 
-/// Makes the names in a file's folder durable.
-pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
-    // Only Unix lets a folder be opened and synced.
-    #[cfg(unix)]
-    {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        File::open(folder)?.sync_all()?;
-    }
-    let _ = path;
-    Ok(())
-}
-
-/// Whether the open file is still the one that the path names; where that cannot be told, it is taken to be.
+/// Whether the open file is still the one that the path names; where that cannot be told, it is not.
 pub(super) fn is_at(file: &File, path: &Path) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        let (Ok(open), Ok(named)) = (file.metadata(), std::fs::metadata(path)) else { return false };
-        (open.dev(), open.ino()) == (named.dev(), named.ino())
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = (file, path);
-        true
-    }
-}
-
-/// The path with a suffix behind the whole file name.
-pub(super) fn beside(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(suffix);
-    PathBuf::from(name)
+    let (Ok(open), Ok(named)) = (file.metadata(), std::fs::symlink_metadata(path)) else { return false };
+    (open.dev(), open.ino()) == (named.dev(), named.ino())
 }

@@ -1,17 +1,21 @@
 //! One writer at a time, in two layers.
 //!
 //! The operating system's lock on `LOG.lock` goes with the process, however it ends: a stale lock cannot be. Where a
-//! file system does not honour such locks, the lease in `LOG.lease` stands in: whoever comes writes a random token,
-//! and a writer looks before every commit whether the token is still its own. The one that has lost it stops. It could
-//! not do harm even between the look and the write: whoever takes a log over copies it to a new file, and the loser
-//! only ever writes to the old one.
+//! file system has no such locks, the lease in `LOG.lease` stands in: of several who claim it one gets it, and keeps it
+//! while its process lives. Where locks seem to work and another machine does not see them, whoever comes takes the
+//! lease over: a writer looks before every commit whether it is still its own, and stops where it is not.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::hash::{BuildHasher, RandomState};
 use std::io;
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
+use rustix::fs::OFlags;
+use rustix::io::Errno;
+
 use super::backend::{beside, is_at};
+use super::lease::{LONGEST, Lease, holder};
+use crate::whole_file::{room_for, shortage};
 
 /// Why a log cannot be written, or no longer.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +27,19 @@ pub enum LockError {
         log: String,
         /// Who has the lease.
         holder: String,
+    },
+    /// Another process may write this log; whether it still runs cannot be told from here.
+    #[error(
+        "{log} is leased to {holder}, and nothing here can tell whether that still runs: wait for it or stop it, or, if it is gone, \
+         delete {lease}. Nothing was changed"
+    )]
+    Leased {
+        /// The log.
+        log: String,
+        /// Who has the lease.
+        holder: String,
+        /// The lease.
+        lease: String,
     },
     /// Another process has taken the log over.
     #[error(
@@ -46,6 +63,31 @@ pub enum LockError {
         /// The lease.
         lease: String,
     },
+    /// The lease cannot be read any more.
+    #[error(
+        "{lease} cannot be read any more, which says whether this run may still write {log}: this run stops. When it can be read \
+         again, `foldline resume {log}`"
+    )]
+    Unreadable {
+        /// The log.
+        log: String,
+        /// The lease.
+        lease: String,
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
+    /// The disk has no room for the lock or the lease.
+    #[error("no space left for {path}{}, which keeps two runs from writing one log. Make space, then try again", shortage(LONGEST, *.room))]
+    NoRoom {
+        /// The file.
+        path: String,
+        /// Bytes that the disk has room for, where that is known.
+        room: Option<u64>,
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
     /// The lock or the lease cannot be made.
     #[error("cannot make {path}, which keeps two runs from writing one log")]
     Io {
@@ -61,8 +103,7 @@ pub enum LockError {
 #[derive(Debug)]
 pub struct LogLock {
     log: PathBuf,
-    lease: PathBuf,
-    token: String,
+    lease: Lease,
     lock_path: PathBuf,
     /// Holds the lock as long as it is open.
     lock: File,
@@ -74,65 +115,86 @@ impl LogLock {
     /// # Errors
     /// Where another process has it, or the files beside the log cannot be made.
     pub fn take(log: &Path) -> Result<Self, LockError> {
-        let (lock_path, lease) = (beside(log, ".lock"), beside(log, ".lease"));
-        let failed = |path: &Path, source| LockError::Io { path: path.display().to_string(), source };
-        let lock = loop {
-            let lock = OpenOptions::new().write(true).create(true).truncate(false).open(&lock_path);
-            let lock = lock.map_err(|source| failed(&lock_path, source))?;
-            match lock.try_lock() {
-                Ok(()) => {}
-                Err(TryLockError::WouldBlock) => {
-                    return Err(LockError::Busy { log: log.display().to_string(), holder: holder(&lease) });
-                }
-                // A file system without locks: the lease alone has to do.
-                Err(TryLockError::Error(source)) if source.kind() == io::ErrorKind::Unsupported => {}
-                Err(TryLockError::Error(source)) => return Err(failed(&lock_path, source)),
+        let (lock_path, lease_path) = (beside(log, ".lock"), beside(log, ".lease"));
+        let name = || log.display().to_string();
+        let failed = |path: &Path, source: io::Error| match source.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                LockError::NoRoom { path: path.display().to_string(), room: room_for(path), source }
             }
+            _ => LockError::Io { path: path.display().to_string(), source },
+        };
+        let (lock, is_locked) = loop {
+            let lock = open_lock(&lock_path).map_err(|source| failed(&lock_path, source))?;
+            let is_locked = match lock.try_lock() {
+                Ok(()) => true,
+                Err(TryLockError::WouldBlock) => {
+                    let holder = holder(&lease_path).ok().flatten();
+                    let holder = holder.map_or_else(|| "another process".to_owned(), |holder| holder.words);
+                    return Err(LockError::Busy { log: name(), holder });
+                }
+                Err(TryLockError::Error(source)) if has_no_locks(&source) => false,
+                Err(TryLockError::Error(source)) => return Err(failed(&lock_path, source)),
+            };
+            // The one before may have removed it between the opening and the locking.
             if is_at(&lock, &lock_path) {
-                break lock;
+                break (lock, is_locked);
             }
         };
-        let random = || RandomState::new().hash_one(std::process::id());
-        let token = format!("{:016x}{:016x}", random(), random());
-        let text = format!("{token}\nprocess {} ({})\n", std::process::id(), super::manifest::host());
-        fs::write(&lease, text).map_err(|source| failed(&lease, source))?;
-        Ok(Self { log: log.to_owned(), lease, token, lock_path, lock })
+        let lease = match is_locked {
+            true => Lease::put(&lease_path).map(Ok),
+            false => Lease::claim(&lease_path),
+        };
+        if lease.is_err() && is_locked {
+            let _ = fs::remove_file(&lock_path);
+        }
+        let lease = match lease.map_err(|source| failed(&lease_path, source))? {
+            Ok(lease) => lease,
+            Err(holder) if holder.is_known_here() => {
+                return Err(LockError::Busy { log: name(), holder: holder.words });
+            }
+            Err(holder) => {
+                let lease = lease_path.display().to_string();
+                return Err(LockError::Leased { log: name(), holder: holder.words, lease });
+            }
+        };
+        Ok(Self { log: log.to_owned(), lease, lock_path, lock })
     }
 
-    /// Looks whether the right is still held.
+    /// Looks whether the right is still held. A lease that cannot be read is tried again for a while.
     ///
     /// # Errors
     /// Where it is not.
     pub fn check(&self) -> Result<(), LockError> {
-        if self.holds() {
-            return Ok(());
+        let (log, lease) = (self.log.display().to_string(), self.lease.path().display().to_string());
+        match self.lease.rival() {
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(Some(rival))) => Err(LockError::Lost { log, holder: rival.words }),
+            Ok(Err(None)) => Err(LockError::Gone { log, lease }),
+            Err(source) => Err(LockError::Unreadable { log, lease, source }),
         }
-        let log = self.log.display().to_string();
-        if !self.lease.exists() {
-            return Err(LockError::Gone { log, lease: self.lease.display().to_string() });
-        }
-        Err(LockError::Lost { log, holder: holder(&self.lease) })
-    }
-
-    fn holds(&self) -> bool {
-        fs::read_to_string(&self.lease).is_ok_and(|text| text.lines().next() == Some(self.token.as_str()))
     }
 }
 
 impl Drop for LogLock {
     fn drop(&mut self) {
-        if self.holds() && is_at(&self.lock, &self.lock_path) {
-            let _ = fs::remove_file(&self.lease);
-            // Only where the next one can tell that the file it locked has gone.
-            if cfg!(unix) {
-                let _ = fs::remove_file(&self.lock_path);
-            }
+        if !self.lease.is_ours() {
+            return;
+        }
+        let _ = fs::remove_file(self.lease.path());
+        if is_at(&self.lock, &self.lock_path) {
+            let _ = fs::remove_file(&self.lock_path);
         }
     }
 }
 
-/// Who has the lease, in words.
-fn holder(lease: &Path) -> String {
-    let text = fs::read_to_string(lease).unwrap_or_default();
-    text.lines().nth(1).map_or_else(|| "another process".to_owned(), str::to_owned)
+/// Opens the file that is locked; not through a link of that name, and without waiting for a pipe.
+fn open_lock(path: &Path) -> io::Result<File> {
+    let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
+    OpenOptions::new().write(true).create(true).truncate(false).custom_flags(flags.cast_signed()).open(path)
+}
+
+/// Whether a file system, or the server behind it, has no locks, as network ones may.
+fn has_no_locks(error: &io::Error) -> bool {
+    let errno = Errno::from_io_error(error);
+    [Errno::NOTSUP, Errno::OPNOTSUPP, Errno::NOSYS, Errno::NOLCK].iter().any(|it| errno == Some(*it))
 }

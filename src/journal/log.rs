@@ -155,6 +155,11 @@ impl Log {
         self.bytes.len() as u64
     }
 
+    /// Whether MCAP's summary, which viewers look for, is there to its end: a kill may meet the write that adds it.
+    pub fn has_summary(&self) -> bool {
+        self.closed && self.bytes.ends_with(mcap::MAGIC)
+    }
+
     /// Bytes behind the good part that may be worth keeping; empty where they are only MCAP's summary.
     pub(super) fn tail(&self) -> &[u8] {
         if self.loss().is_some() { &self.bytes[self.good_end..] } else { &[] }

@@ -20,7 +20,7 @@
 //! | `encoder`, `backend`, `writer` | from a stage to bytes in a file |
 //! | `frame`, `chunk`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
 //! | `recovery` | going on with a log, copying what is good of one |
-//! | `lock` | one writer at a time |
+//! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
 //! | `verify` | all that can be checked, all of it |
 //!
 //! # Writing, stopping, going on
@@ -64,6 +64,7 @@ mod damage;
 mod encoder;
 pub mod format;
 mod frame;
+mod lease;
 mod lock;
 mod log;
 mod manifest;
@@ -71,6 +72,7 @@ pub mod message;
 mod reader;
 mod recovery;
 mod soundness;
+mod still_ours;
 mod trace;
 mod verify;
 mod writer;
@@ -85,6 +87,7 @@ pub use manifest::{Manifest, ManifestError};
 pub use reader::ReadError;
 pub use recovery::{RecoverError, RecoverOutcome, Resume, ResumeError, Resumed, recover};
 pub use soundness::{Flaw, check_mesh, check_state};
-pub use trace::{ITERATE_TOPIC, TraceRow, write_trace};
+pub use still_ours::Estranged;
+pub use trace::{ITERATE_TOPIC, TraceRow, trace_file};
 pub use verify::{Finding, Level, verify, verify_log};
 pub use writer::{JournalWriter, ViewerTopics, WriteError};

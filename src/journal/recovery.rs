@@ -2,8 +2,8 @@
 //!
 //! MCAP cannot append: its summary at the end of the file lists every chunk, and viewers read nothing else. So the good
 //! records of a log are put through a new writer, which then knows them all: same numbers, same times, same bytes. The
-//! copy grows beside the log as `LOG.new`, is forced to disk while the run already goes on, and takes the log's place
-//! before the first new commit is added. Until then, and if the process dies meanwhile, the log is as it was.
+//! copy grows without a name, is forced to disk while the run already goes on, and takes the log's place before the
+//! first new commit is added. Until then, and if the process dies meanwhile, the log is as it was.
 //!
 //! What a log loses when it is resumed is kept beside it as `LOG.dropped-N` wherever it might still be worth something:
 //! after damage always, after a cut only if whole commits lie behind it. The torn rest of the stage that was in flight
@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use mcap::records::Record as McapRecord;
 
-use super::backend::{Backend, FileBackend, beside, sync_folder_of};
+use super::backend::{Backend, FileBackend, beside};
 use super::damage::Completeness;
 use super::encoder::{EncodeError, Encoder, library};
 use super::frame;
@@ -26,6 +26,7 @@ use super::manifest::Manifest;
 use super::reader::ReadError;
 use super::writer::JournalWriter;
 use crate::scene::SyncPolicy;
+use crate::whole_file::{WholeFile, write_new};
 
 /// Bytes that are collected before they go to the new file.
 const BATCH_BYTES: usize = 1 << 20;
@@ -133,32 +134,20 @@ impl Resume {
         let begin = |source| ResumeError::Begin { log: name.clone(), source };
         let keep = keep.min(log.entries().len());
         let dropped = if keep < log.entries().len() { Some(keep_whole(&path)?) } else { keep_dropped(&path, &log)? };
-        let new = beside(&path, ".new");
-        let failed = |source| ResumeError::Copy { log: name.clone(), path: new.display().to_string(), source };
-        // Left by a process that died while it did this; the lock says that it is nobody's.
-        match fs::remove_file(&new) {
-            Err(source) if source.kind() != io::ErrorKind::NotFound => return Err(failed(source)),
-            _ => {}
-        }
-        let mut backend = FileBackend::create_new(&new).map_err(failed)?;
+        let failed = |source| ResumeError::Copy { log: name.clone(), path: format!("a copy of {name}"), source };
+        let mut backend = FileBackend::copy_of(&path).map_err(failed)?;
         let mut encoder = Encoder::new(&library()).map_err(|source| begin(source.into()))?;
         let manifest = Manifest { first_ordinal: keep as u64, ..manifest.clone() };
         let copied = copy(&log, Some(keep), &mut encoder, &mut backend).and_then(|length| {
             encoder.manifest(&manifest.to_record()).map_err(EncodeError::Mcap)?;
             let bytes = encoder.take();
             backend.append(&bytes)?;
-            if let Ok(metadata) = fs::metadata(&path) {
-                let _ = fs::set_permissions(&new, metadata.permissions());
-            }
-            backend.replace(&path)?;
+            backend.replace(log.file_len())?;
             Ok(length + bytes.len() as u64)
         });
-        let length = copied.map_err(|error| {
-            let _ = fs::remove_file(&new);
-            match error {
-                CopyError::Io(source) => failed(source),
-                CopyError::Encode(source) => begin(source),
-            }
+        let length = copied.map_err(|error| match error {
+            CopyError::Io(source) => failed(source),
+            CopyError::Encode(source) => begin(source),
         })?;
         let writer = JournalWriter {
             encoder,
@@ -259,7 +248,7 @@ fn keep_whole(path: &Path) -> Result<PathBuf, ResumeError> {
             Err(_) => {
                 let log = path.display().to_string();
                 let failed = |source| ResumeError::Copy { log, path: kept.display().to_string(), source };
-                return fs::copy(path, &kept).map(|_| kept.clone()).map_err(failed);
+                return fs::read(path).and_then(|log| write_new(&kept, &log)).map(|()| kept.clone()).map_err(failed);
             }
             Ok(()) => return Ok(kept),
         }
@@ -274,12 +263,9 @@ fn keep_dropped(path: &Path, log: &Log) -> Result<Option<PathBuf>, ResumeError> 
     }
     for number in 1_u32.. {
         let beside = beside(path, &format!(".dropped-{number}"));
-        let written = match fs::OpenOptions::new().write(true).create_new(true).open(&beside) {
+        let written = match write_new(&beside, log.tail()) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            Err(error) => Err(error),
-            Ok(mut file) => {
-                file.write_all(log.tail()).and_then(|()| file.sync_all()).and_then(|()| sync_folder_of(&beside))
-            }
+            written => written,
         };
         return match written {
             Ok(()) => Ok(Some(beside)),
@@ -330,9 +316,6 @@ pub enum RecoverError {
         /// The copy.
         new: String,
     },
-    /// Another process writes there.
-    #[error(transparent)]
-    Lock(#[from] LockError),
     /// The copy cannot be written.
     #[error("cannot write {new}; the log itself is as it was")]
     Write {
@@ -370,30 +353,33 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> 
     if let (0, Some(why)) = (commits, &loss) {
         return Ok(RecoverOutcome::Hopeless { why: why.clone() });
     }
-    let name = new.display().to_string();
-    let _lock = LogLock::take(new)?;
-    let mut backend = FileBackend::create_new(new).map_err(|source| match source.kind() {
-        io::ErrorKind::AlreadyExists => RecoverError::Exists { new: name.clone() },
-        _ => RecoverError::Write { new: name.clone(), source },
+    write_good(&log, finished, new).map_err(|error| {
+        let new = new.display().to_string();
+        match error {
+            CopyError::Io(source) if source.kind() == io::ErrorKind::AlreadyExists => RecoverError::Exists { new },
+            CopyError::Io(source) => RecoverError::Write { new, source },
+            CopyError::Encode(source) => RecoverError::Encode { new, source },
+        }
     })?;
-    let write = |backend: &mut FileBackend| {
-        let mut encoder = Encoder::new(&log.library).map_err(EncodeError::Mcap)?;
-        copy(&log, (!finished).then_some(log.entries().len()), &mut encoder, backend)?;
-        encoder.close().map_err(EncodeError::Mcap)?;
-        backend.append(&encoder.take())?;
-        Ok(backend.sync()?)
-    };
-    if let Err(error) = write(&mut backend) {
-        let _ = fs::remove_file(new);
-        return Err(match error {
-            CopyError::Io(source) => RecoverError::Write { new: name, source },
-            CopyError::Encode(source) => RecoverError::Encode { new: name, source },
-        });
-    }
     let later_commits = log.later_commits().len() as u64;
     let dropped = log.file_len() - log.good_end();
     Ok(match loss {
         Some(why) => RecoverOutcome::Lossy { commits, dropped, later_commits, why },
         None => RecoverOutcome::Lossless { commits },
     })
+}
+
+/// What is good of a log as a file of its own, which is whole or not there.
+fn write_good(log: &Log, finished: bool, new: &Path) -> Result<(), CopyError> {
+    // Asked again when it comes to its name; here it spares the work.
+    if new.symlink_metadata().is_ok() {
+        return Err(CopyError::Io(io::ErrorKind::AlreadyExists.into()));
+    }
+    let whole = WholeFile::beside(new)?;
+    let mut encoder = Encoder::new(&log.library).map_err(EncodeError::Mcap)?;
+    let keep = (!finished).then_some(log.entries().len());
+    again(log, keep, &mut encoder, |bytes| Ok::<(), CopyError>(whole.file().write_all(&bytes)?))?;
+    encoder.close().map_err(EncodeError::Mcap)?;
+    whole.file().write_all(&encoder.take())?;
+    Ok(whole.keep_as(new)?)
 }

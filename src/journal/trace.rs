@@ -1,9 +1,7 @@
 //! Newton iterates of replayed stages as an MCAP file that any reader can plot.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
+use std::io::Cursor;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -43,13 +41,14 @@ pub struct TraceRow {
     pub worst_point_mm: [f64; 3],
 }
 
-/// Writes iterates, in order, as an MCAP file; their time is their number in milliseconds.
+/// Iterates, in order, as an MCAP file; their time is their number in milliseconds.
 ///
 /// # Errors
-/// Where the file cannot be written.
-pub fn write_trace(path: &Path, rows: &[TraceRow]) -> Result<(), mcap::McapError> {
+/// Where MCAP refuses one.
+pub fn trace_file(rows: &[TraceRow]) -> Result<Vec<u8>, mcap::McapError> {
     let options = mcap::WriteOptions::new().profile("").compression(None);
-    let mut writer = options.create(BufWriter::new(File::create(path)?))?;
+    let mut file = Cursor::new(Vec::new());
+    let mut writer = options.create(&mut file)?;
     let schema = writer.add_schema("foldline.Iterate", "jsonschema", &schema_of::<TraceRow>("A Newton iterate"))?;
     let channel = writer.add_channel(schema, ITERATE_TOPIC, "json", &BTreeMap::new())?;
     for (number, row) in rows.iter().enumerate() {
@@ -64,5 +63,6 @@ pub fn write_trace(path: &Path, rows: &[TraceRow]) -> Result<(), mcap::McapError
         writer.write_to_known_channel(&header, &data)?;
     }
     writer.finish()?;
-    Ok(())
+    drop(writer);
+    Ok(file.into_inner())
 }

@@ -6,14 +6,18 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::backend::{Backend, FileBackend, beside};
+use super::backend::{Backend, FileBackend};
 use super::codec::{encode_mesh, encode_state};
 use super::encoder::{EncodeError, Encoder, Parts, ViewerMessage, library};
 use super::lock::{LockError, LogLock};
+use super::log::Log;
 use super::manifest::Manifest;
+use super::reader::ReadError;
+use super::still_ours::Estranged;
 use crate::pipeline::{Commit, Record, Sink, SinkError};
 use crate::scene::SyncPolicy;
 use crate::state::{Hash, State};
+use crate::whole_file::{room_for, shortage};
 
 /// How often [`SyncPolicy::EachSecond`] forces the log to disk at most.
 const SYNC_INTERVAL: Duration = Duration::from_secs(1);
@@ -53,17 +57,43 @@ pub enum WriteError {
     /// The right to write is another's.
     #[error(transparent)]
     Lock(#[from] LockError),
+    /// The disk is full before anything is written.
+    #[error("no space left to begin {log}{}, and it is not there. Make space, then start the run again", shortage(*.wanted, *.room))]
+    NoRoom {
+        /// The log.
+        log: String,
+        /// Bytes that it begins with.
+        wanted: u64,
+        /// Bytes that the disk has room for, where that is known.
+        room: Option<u64>,
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
+    /// The log is not the file any more that was written, or not as it was left.
+    #[error("{log} {estranged}. This run stops, and adds nothing to it")]
+    Estranged {
+        /// The log.
+        log: String,
+        /// What became of it.
+        estranged: Estranged,
+    },
     /// The disk is full.
     #[error(
-        "no space left to {action} {log}; it holds {commits} stages, all good. Make space, then `foldline resume {log}`"
+        "no space left to {action} {log}{}; it holds {commits} stages, all good. Make space, then `foldline resume {log}`",
+        shortage(*.wanted, *.room)
     )]
     DiskFull {
-        /// "write", "sync" or "begin".
+        /// "write" or "sync".
         action: &'static str,
         /// The log.
         log: String,
         /// Stages that are in the log.
         commits: u64,
+        /// Bytes that were to be added.
+        wanted: u64,
+        /// Bytes that the disk has room for, where that is known.
+        room: Option<u64>,
         /// What the system says.
         #[source]
         source: io::Error,
@@ -129,9 +159,14 @@ impl From<WriteError> for SinkError {
         let context = error.to_string();
         // The error itself is the context; what is below it is the cause.
         let source: Option<Box<dyn std::error::Error + Send + Sync>> = match error {
-            WriteError::DiskFull { source, .. } | WriteError::Io { source, .. } => Some(Box::new(source)),
+            WriteError::DiskFull { source, .. }
+            | WriteError::NoRoom { source, .. }
+            | WriteError::Io { source, .. }
+            | WriteError::Estranged { estranged: Estranged::Unknown { source }, .. }
+            | WriteError::Lock(LockError::Io { source, .. } | LockError::Unreadable { source, .. }) => {
+                Some(Box::new(source))
+            }
             WriteError::Encode { source, .. } => Some(Box::new(source)),
-            WriteError::Lock(LockError::Io { source, .. }) => Some(Box::new(source)),
             _ => None,
         };
         SinkError { context, source }
@@ -178,27 +213,40 @@ impl JournalWriter {
             return Err(WriteError::NoFolder { folder: folder.display().to_string(), log });
         }
         let lock = LogLock::take(path)?;
-        let new = beside(path, ".new");
-        // Left by a process that died while it did this; the lock says that it is nobody's.
-        let _ = std::fs::remove_file(&new);
-        let backend = FileBackend::create_new(&new).map_err(|source| WriteError::Io {
-            action: "begin",
-            log: log.clone(),
-            commits: 0,
-            source,
-        })?;
-        let begun = Self::on(Box::new(backend.publish_as(path)), &log, manifest, sync);
-        match begun {
+        Self::begin(path, lock, manifest, sync)
+    }
+
+    /// Begins a log where a file is that holds nothing, not even a header, as a power cut may leave it. Whether it does is
+    /// asked again under the lock.
+    ///
+    /// # Errors
+    /// As for [`Self::create`]; a file that holds more is left alone.
+    pub fn create_anew(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
+        let log = path.display().to_string();
+        let begin = |source| WriteError::Io { action: "begin", log: log.clone(), commits: 0, source };
+        // Through links, as it was found to hold nothing.
+        let path = path.canonicalize().map_err(begin)?;
+        let lock = LogLock::take(&path)?;
+        if !matches!(Log::read(&path), Err(ReadError::TooShort { .. })) {
+            return Err(WriteError::Exists { log });
+        }
+        std::fs::remove_file(&path).map_err(begin)?;
+        Self::begin(&path, lock, manifest, sync)
+    }
+
+    fn begin(path: &Path, lock: LogLock, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
+        let log = path.display().to_string();
+        let begin = |source| WriteError::Io { action: "begin", log: log.clone(), commits: 0, source };
+        let backend = FileBackend::create_new(path).map_err(begin)?;
+        match Self::on(Box::new(backend), &log, manifest, sync) {
             Ok(writer) => Ok(Self { lock: Some(lock), ..writer }),
-            Err(error) => {
-                let _ = std::fs::remove_file(&new);
-                Err(match error {
-                    WriteError::Io { source, .. } if source.kind() == io::ErrorKind::AlreadyExists => {
-                        WriteError::Exists { log }
-                    }
-                    error => error,
-                })
+            Err(WriteError::Io { source, .. }) if source.kind() == io::ErrorKind::AlreadyExists => {
+                Err(WriteError::Exists { log })
             }
+            Err(WriteError::DiskFull { wanted, room, source, .. }) => {
+                Err(WriteError::NoRoom { log, wanted, room, source })
+            }
+            Err(error) => Err(error),
         }
     }
 
@@ -250,6 +298,11 @@ impl JournalWriter {
         self.last.is_none()
     }
 
+    /// Whether the log is still the file that was written, as it was left.
+    pub fn is_still_there(&self) -> bool {
+        self.backend.check(self.length, self.commits()).is_ok()
+    }
+
     /// Keeps a stage: one commit, one write, and a sync where the policy asks for it.
     ///
     /// # Errors
@@ -287,7 +340,8 @@ impl JournalWriter {
         let ordinal = self.commits();
         self.encoder.close().map_err(|source| self.encode_error(ordinal, EncodeError::Mcap(source)))?;
         self.append()?;
-        self.backend.sync().map_err(|source| self.io_error("sync", source))
+        self.backend.sync().map_err(|source| self.io_error("sync", 0, source))?;
+        self.check()
     }
 
     fn commits(&self) -> u64 {
@@ -326,7 +380,7 @@ impl JournalWriter {
             SyncPolicy::AtEnd => false,
         };
         if due {
-            self.backend.sync().map_err(|source| self.io_error("sync", source))?;
+            self.backend.sync().map_err(|source| self.io_error("sync", 0, source))?;
             self.synced = Instant::now();
         }
         Ok(())
@@ -334,28 +388,50 @@ impl JournalWriter {
 
     /// Hands on what the encoder has made, if the log is still ours.
     pub(super) fn append(&mut self) -> Result<(), WriteError> {
-        if let Some(lock) = &self.lock {
-            lock.check()?;
-        }
+        self.check()?;
         let bytes = self.encoder.take();
         if let Err(source) = self.backend.append(&bytes) {
-            // What was half written would only be dropped by the next reader.
-            let _ = self.backend.cut(self.length);
-            return Err(self.io_error("write", source));
+            self.take_back(bytes.len() as u64);
+            return Err(self.io_error("write", bytes.len() as u64, source));
         }
         self.length += bytes.len() as u64;
         Ok(())
+    }
+
+    /// Looks whether the right to write is still held, and the log still the file that was written, as it was left.
+    fn check(&self) -> Result<(), WriteError> {
+        if let Some(lock) = &self.lock {
+            lock.check()?;
+        }
+        let estranged = |estranged| WriteError::Estranged { log: self.log.clone(), estranged };
+        self.backend.check(self.length, self.commits()).map_err(estranged)
+    }
+
+    /// Takes off what a failed append left behind, which would only be dropped by the next reader; but nothing of a rival
+    /// that has come in meanwhile.
+    fn take_back(&mut self, appended: u64) {
+        let ours = match self.check() {
+            Ok(()) => true,
+            Err(WriteError::Estranged { estranged: Estranged::Length { found, .. }, .. }) => {
+                (self.length..=self.length + appended).contains(&found)
+            }
+            Err(_) => false,
+        };
+        if ours {
+            let _ = self.backend.cut(self.length);
+        }
     }
 
     fn encode_error(&self, ordinal: u64, source: EncodeError) -> WriteError {
         WriteError::Encode { ordinal, log: self.log.clone(), source }
     }
 
-    fn io_error(&self, action: &'static str, source: io::Error) -> WriteError {
+    fn io_error(&self, action: &'static str, wanted: u64, source: io::Error) -> WriteError {
         let (log, commits) = (self.log.clone(), self.commits());
         match source.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-                WriteError::DiskFull { action, log, commits, source }
+                let room = room_for(Path::new(&log));
+                WriteError::DiskFull { action, log, commits, wanted, room, source }
             }
             _ => WriteError::Io { action, log, commits, source },
         }

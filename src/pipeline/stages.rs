@@ -189,7 +189,11 @@ impl Stages {
         Ok((next, report))
     }
 
-    pub(super) fn read_probes(&mut self, state: &State) -> Result<Vec<Reading>, StageError> {
+    /// Reads every probe of the scene at an equilibrium.
+    ///
+    /// # Errors
+    /// Where the scene cannot be made discrete on the state's mesh.
+    pub fn read_probes(&mut self, state: &State) -> Result<Vec<Reading>, StageError> {
         let (scene, work) = self.workspace(&state.mesh, state.step, Stage::Solve)?;
         Ok(read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm))
     }

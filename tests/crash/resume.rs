@@ -242,9 +242,9 @@ fn a_rival_resumes_while_the_first_has_written_nothing() {
     assert_eq!(folder.names(), ["run.mcap"]);
 }
 
-/// A process that dies while it copies leaves a copy that the next one does not stumble over.
+/// What a process that died left beside a log, or somebody put there, is no obstacle; what may be somebody's stays.
 #[test]
-fn an_abandoned_copy_is_no_obstacle() {
+fn what_lies_beside_a_log_is_no_obstacle() {
     let folder = Folder::new();
     let path = folder.file("run.mcap");
     write(&path, &synthetic::run(3, 2), End::Dropped);
@@ -253,7 +253,45 @@ fn an_abandoned_copy_is_no_obstacle() {
     fs::write(folder.file("run.mcap.lock"), "").unwrap();
     resume_and_finish(&path, 5);
     assert_faultless(&path);
-    assert_eq!(folder.names(), ["run.mcap"]);
+    assert_eq!(folder.names(), ["run.mcap", "run.mcap.new"]);
+    assert_eq!(fs::read(folder.file("run.mcap.new")).unwrap(), b"half a copy");
+}
+
+/// Links in the places of lock and lease are not written through.
+#[test]
+fn links_beside_a_log_are_not_followed() {
+    let folder = Folder::new();
+    let (path, other) = (folder.file("run.mcap"), folder.file("other"));
+    let run = synthetic::run(3, 3);
+    fs::write(&other, "somebody's").unwrap();
+    std::os::unix::fs::symlink(&other, folder.file("run.mcap.lease")).unwrap();
+    write(&path, &run, End::Finished);
+    assert_faultless(&path);
+    assert_eq!(folder.names(), ["other", "run.mcap"]);
+    std::os::unix::fs::symlink(&other, folder.file("run.mcap.lock")).unwrap();
+    let refused = JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap_err();
+    assert!(refused.to_string().contains("cannot make") && refused.to_string().contains("run.mcap.lock"), "{refused}");
+    assert_eq!(fs::read(&other).unwrap(), b"somebody's");
+}
+
+/// A file that held nothing is begun anew under the lock: what a rival has put there meanwhile is left alone.
+#[test]
+fn an_empty_log_is_not_taken_from_a_rival() {
+    let folder = Folder::new();
+    let path = folder.file("run.mcap");
+    let run = synthetic::run(3, 3);
+    fs::write(&path, "").unwrap();
+    let anew = || JournalWriter::create_anew(&path, &synthetic::manifest(), SyncPolicy::AtEnd);
+    let mut first = anew().unwrap();
+    first.commit(&run[0].0, &run[0].1).unwrap();
+    let before = fs::read(&path).unwrap();
+    assert!(matches!(anew(), Err(WriteError::Lock(LockError::Busy { .. }))));
+    assert_eq!(fs::read(&path).unwrap(), before);
+    run[1..].iter().for_each(|(state, record)| first.commit(state, record).unwrap());
+    first.finish().unwrap();
+    assert!(matches!(anew(), Err(WriteError::Exists { .. })));
+    assert_prefix(&Log::read(&path).unwrap(), &run);
+    assert_faultless(&path);
 }
 
 /// Even between the look at the lease and the write the loser does no harm: it writes to a file without a name.

@@ -53,7 +53,7 @@ impl<R: std::io::Read> Lines for BufReader<R> {
 #[test]
 fn the_first_signal_ends_after_the_stage_in_hand() {
     let whole = Straight::small();
-    for (signal, stages) in [("INT", 3), ("TERM", 12), ("INT", 33)] {
+    for (signal, stages) in [("INT", 3), ("TERM", 12), ("INT", 33), ("HUP", 5), ("USR1", 7), ("XCPU", 9)] {
         let place = Place::new();
         let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), stages);
         run.send(signal);
@@ -75,6 +75,26 @@ fn the_first_signal_ends_after_the_stage_in_hand() {
         place.foldline("resume run.mcap").ends(0);
         assert_ends_with(&place.log("run.mcap"), whole.chain, signal);
     }
+}
+
+/// The signals that come more than once for one cause end a run at a stage however often they come, and `nohup` is heeded.
+#[test]
+fn signals_that_come_again_and_one_that_is_ignored() {
+    let place = Place::new();
+    let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), 5);
+    (0..5).for_each(|_| run.send("HUP"));
+    let (said, reported) = run.end();
+    said.ends(75).says(&["interrupted; go on with: foldline resume run.mcap"]);
+    assert_eq!(place.log("run.mcap").entries().len(), reported);
+
+    let whole = Straight::small();
+    let mut nohup = Command::new("nohup");
+    nohup.arg(env!("CARGO_BIN_EXE_foldline")).args(["resume", "run.mcap", "--json", "--threads", "1"]);
+    nohup.current_dir(place.path()).stdin(Stdio::null());
+    let run = Under::way(nohup, 5);
+    run.send("HUP");
+    run.end().0.ends(0);
+    assert_ends_with(&place.log("run.mcap"), whole.chain, "the terminal is closed and nohup was asked for");
 }
 
 /// A stage that takes minutes: the first signal waits for it, the second does not.

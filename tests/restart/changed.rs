@@ -1,6 +1,7 @@
 //! A scene that changed between a run and its resume: what stands is said and kept, and nothing is mixed in silence.
 
 use foldline::journal::{JournalWriter, Log, Manifest};
+use foldline::pipeline::Outcome;
 use foldline::scene::{Stage, SyncPolicy};
 
 use crate::program::{Place, SMALL, Straight, assert_ends_with, scene, small_with};
@@ -22,6 +23,37 @@ fn output_alone() {
     let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
     said.says(&["the log holds 17 stages, all good", "output.sync changed", "every stage stands"]);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "output changed");
+}
+
+/// Probes that a finished run has not are read on its states; what its log will not get is said, however quiet.
+#[test]
+fn new_probes_and_a_mesh_history() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", &whole.bytes);
+    let probed =
+        format!("{SMALL}\n[output]\nmesh_history = true\n\n[[probe]]\nname = \"strain energy\"\nkind = \"energy\"\n");
+    place.write("small.toml", &probed);
+    let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
+    let stand = format!("every stage stands, and the {} in the log keep what they were written with", whole.stages);
+    let lines: Vec<&str> = said.err.lines().filter(|line| line.contains(&stand)).collect();
+    assert!(lines.len() == 2 && lines[0].contains("mesh_history") && lines[1].contains("probes"), "{}", said.err);
+    // Each equilibrium, with the energy that its report tells.
+    let log = whole.log();
+    let done = log.entries().iter().map(|entry| &entry.record.report);
+    let done = done.filter(|report| report.outcome == Outcome::Done && report.stage.finds_equilibrium());
+    let rows: Vec<&str> = said.out.lines().filter(|line| line.contains(": strain energy ")).collect();
+    assert_eq!(rows.len(), done.clone().count(), "{}", said.out);
+    for (row, report) in rows.iter().zip(done) {
+        let value: f64 = row.split("strain energy ").nth(1).unwrap().trim_end_matches(" N·mm").parse().unwrap();
+        // Of the whole shell, to the digits that are printed.
+        assert!((value - report.strain_energy_n_mm).abs() < 1e-4 * value.abs(), "{row}: {}", report.strain_energy_n_mm);
+    }
+    assert_eq!(place.read("run.mcap"), whole.bytes, "the log keeps what it has");
+    for manner in ["--quiet", "--json"] {
+        let said = place.foldline(&format!("run small.toml -o run.mcap --resume {manner}")).ends(0);
+        assert_eq!(said.err.lines().filter(|line| line.contains(&stand)).count(), 2, "{manner}: {}", said.err);
+    }
 }
 
 /// A finished run goes on to a farther target as if that had been the target from the start.
@@ -168,6 +200,25 @@ fn another_machine() {
     place.write("straight.mcap", &whole.bytes);
     let said = place.foldline("bisect run.mcap straight.mcap").ends(0);
     said.says(&["machine: elsewhere and", "processor: abacus"]);
+}
+
+/// Names that a log holds reach a terminal as text.
+#[test]
+fn a_host_that_commands_a_terminal() {
+    let whole = Straight::small();
+    let (place, log) = (Place::new(), whole.log());
+    let elsewhere = Manifest { host: "\u{1b}[2Jelsewhere\u{9b}".into(), ..log.manifests()[0].clone() };
+    let mut writer = JournalWriter::create(&place.file("run.mcap"), &elsewhere, SyncPolicy::AtEnd).unwrap();
+    for (index, entry) in log.entries()[..25].iter().enumerate() {
+        writer.commit(&log.state(index).unwrap(), &entry.record).unwrap();
+    }
+    drop(writer);
+    place.write("straight.mcap", &whole.bytes);
+    for command in ["resume run.mcap", "verify run.mcap", "bisect run.mcap straight.mcap"] {
+        let said = place.foldline(command);
+        assert!(!said.out.contains(['\u{1b}', '\u{9b}']) && !said.err.contains(['\u{1b}', '\u{9b}']), "{command}");
+        said.ends(0).says(&["␛[2Jelsewhere"]);
+    }
 }
 
 /// Where the scene of the last stretch is lost, an earlier one does not silently take its place.

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use foldline::history::{Verdict, replay_stage, verdict};
+use foldline::history::{Verdict, compare, replay_stage, verdict};
 use foldline::journal::Log;
 use foldline::pipeline::{Outcome, Stages};
 use foldline::scene::Stage;
@@ -99,6 +99,39 @@ fn every_stage_comes_out_again() {
         place.write("run.mcap", &whole.bytes);
         let said = place.foldline("replay run.mcap --from-scratch --threads 1").ends(0);
         assert_eq!(said.out.lines().filter(|line| line.ends_with("bit-identical")).count(), whole.stages);
+    }
+}
+
+/// The last bit of every displacement and every rate before a stage, which another processor may round otherwise, is told
+/// as rounding after it: no stage of a path comes out "different".
+#[test]
+fn rounding_on_a_path_is_called_rounding() {
+    let jolt = |(index, value): (usize, &mut f64)| {
+        if *value != 0.0 {
+            *value = if index % 2 == 0 { value.next_up() } else { value.next_down() };
+        }
+    };
+    for (text, whole) in [(ROOF, roof()), (COLUMN, column())] {
+        let log = whole.log();
+        let mut stages = Stages::new(scene(text));
+        let mut rounded = 0;
+        for index in 1..log.entries().len() {
+            let mut before = log.state(index - 1).unwrap();
+            before.displacement.as_flattened_mut().iter_mut().enumerate().for_each(jolt);
+            if let Some(path) = &mut before.path {
+                path.heading.as_flattened_mut().iter_mut().enumerate().for_each(jolt);
+            }
+            let report = &log.entries()[index].record.report;
+            // Where branches meet the stiffness is singular: a way off it magnifies rounding without limit.
+            if report.stage == Stage::SwitchBranch {
+                continue;
+            }
+            let (state, _) = stages.run(report.stage, &before, &mut |_| {}).unwrap();
+            let verdict = verdict(&compare(&log.state(index).unwrap(), &state));
+            rounded += usize::from(matches!(verdict, Verdict::WithinTolerance(_)));
+            assert!(!matches!(verdict, Verdict::Different(_)), "stage {index}, {}: {verdict:?}", report.stage);
+        }
+        assert!(2 * rounded > log.entries().len(), "{rounded} of {} stages round otherwise", log.entries().len());
     }
 }
 

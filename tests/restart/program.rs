@@ -155,10 +155,9 @@ impl Straight {
     /// The bytes that a process leaves which dies right after stage `stages`.
     pub fn cut_after(&self, stages: usize) -> &[u8] {
         let log = self.log();
-        let end = match stages.checked_sub(1) {
-            None => log.entries()[0].bytes.start,
-            Some(last) => log.entries()[last].bytes.end,
-        };
+        let entries = log.entries();
+        // With the index behind its chunk, which comes in the same write.
+        let end = entries.get(stages).map_or_else(|| entries[stages - 1].bytes.end, |next| next.bytes.start);
         &self.bytes[..end as usize]
     }
 

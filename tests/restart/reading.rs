@@ -37,7 +37,7 @@ fn cases() -> Vec<Case> {
             verify: 0,
             recover: 0,
         },
-        Case { name: "truncated", bytes: torn, stages: 21, inspect: cut, verify: 0, recover: 3 },
+        Case { name: "truncated", bytes: torn, stages: 21, inspect: cut, verify: 1, recover: 3 },
         Case { name: "damaged", bytes: flipped(21), stages: 21, inspect: damaged, verify: 1, recover: 3 },
         Case { name: "damaged at once", bytes: flipped(0), stages: 0, inspect: damaged, verify: 1, recover: 1 },
     ]
@@ -53,7 +53,9 @@ fn what_each_log_gives() {
         said.says(inspect);
         let json = place.foldline("inspect run.mcap --json").ends(0).out;
         assert_eq!(json.lines().count(), stages, "{name}");
-        place.foldline("verify run.mcap").ends(verify);
+        let verdict = if verify == 0 { "run.mcap: good\n" } else { " wrong\n" };
+        let said = place.foldline("verify run.mcap").ends(verify);
+        assert!(said.out.ends_with(verdict), "{name}: {}", said.out);
         place.foldline("recover run.mcap -o new.mcap").ends(recover);
         assert_eq!(place.read("run.mcap"), bytes, "{name}: looking at a log changes nothing");
         if recover == 1 {
@@ -68,9 +70,33 @@ fn what_each_log_gives() {
             place.foldline("resume new.mcap").ends(0);
             assert_ends_with(&place.log("new.mcap"), whole.chain, name);
         }
-        place.foldline("resume run.mcap").ends(0);
+        // However quiet it is, it says what is lost.
+        let manner = ["--quiet", "--json", ""][stages % 3];
+        let said = place.foldline(&format!("resume run.mcap {manner}")).ends(0);
+        for damage in inspect.iter().filter(|line| line.starts_with("cut off") || line.starts_with("damaged")) {
+            assert!(said.err.contains(damage), "{name} {manner}: {}", said.err);
+        }
+        if said.err.contains("damaged") {
+            assert!(said.err.contains("run.mcap.dropped-1"), "{name}: {}", said.err);
+        }
         assert_ends_with(&place.log("run.mcap"), whole.chain, name);
     }
+}
+
+/// Garbage behind a log, and a manifest that is lost, are wrong, even where every stage stands.
+#[test]
+fn whatever_is_wrong_is_an_exit_code() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", &whole.bytes);
+    place.foldline("verify run.mcap").ends(0).says(&["run.mcap: good"]);
+    place.write("run.mcap", [&whole.bytes[..], b"garbage"].concat());
+    place.foldline("verify run.mcap").ends(1).says(&["wrong"]);
+    let mut bytes = whole.bytes.clone();
+    let at = bytes.windows(10).position(|window| window == b"[geometry]").unwrap();
+    bytes[at + 1] ^= 1;
+    place.write("run.mcap", &bytes);
+    place.foldline("verify run.mcap").ends(1).says(&["manifest", "wrong"]);
 }
 
 /// Two places of damage are two findings of `verify`.

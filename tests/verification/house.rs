@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 /// From the bottom of the stack to its top.
-const ORDER: [&str; 17] = [
+const ORDER: [&str; 18] = [
     "units",
     "error",
     "digest",
+    "whole_file",
     "scene",
     "spline",
     "shell",

@@ -1,0 +1,93 @@
+//! Whether a log that is being written is still the file that its name leads to, and as long as it was left.
+
+use std::fs::{self, File};
+use std::io;
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// How long what fails for reasons that may pass is tried again: a file server that is busy, too many open files.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Between the first two tries; doubled until it is as long as [`LONGEST_PAUSE`].
+const FIRST_PAUSE: Duration = Duration::from_millis(10);
+
+/// Between two tries at most.
+const LONGEST_PAUSE: Duration = Duration::from_secs(1);
+
+/// What became of a log in other hands.
+#[derive(Debug, thiserror::Error)]
+pub enum Estranged {
+    /// It has no name any more.
+    #[error("was removed while it was written, and its {} with it", stages(*.commits))]
+    Removed {
+        /// Stages that were in it.
+        commits: u64,
+    },
+    /// It has another name.
+    #[error("was moved elsewhere while it was written; there it holds {}, and can be resumed", stages(*.commits))]
+    Moved {
+        /// Stages that are in it.
+        commits: u64,
+    },
+    /// Another file has its name.
+    #[error(
+        "is another file than the one that was written, which was moved away or removed; this one is left as it is"
+    )]
+    Replaced,
+    /// Something else has written to it, or cut it.
+    #[error(
+        "has {found} bytes where {expected} were written: something else writes to it or has cut it. `foldline verify` tells what is left"
+    )]
+    Length {
+        /// Bytes that it has.
+        found: u64,
+        /// Bytes that it had when it was last written.
+        expected: u64,
+    },
+    /// Nobody can tell.
+    #[error("cannot be looked at any more")]
+    Unknown {
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
+}
+
+fn stages(commits: u64) -> String {
+    if commits == 1 { "1 stage".to_owned() } else { format!("{commits} stages") }
+}
+
+/// Looks whether `path` still leads to `file`, which had `length` bytes when it was last written, and `commits` stages.
+pub(super) fn still_ours(file: &File, path: &Path, length: u64, commits: u64) -> Result<(), Estranged> {
+    let unknown = |source| Estranged::Unknown { source };
+    let ours = patiently(|| file.metadata()).map_err(unknown)?;
+    let named = match patiently(|| fs::metadata(path)) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return Err(if ours.nlink() == 0 { Estranged::Removed { commits } } else { Estranged::Moved { commits } });
+        }
+        named => named.map_err(unknown)?,
+    };
+    if (ours.dev(), ours.ino()) != (named.dev(), named.ino()) {
+        return Err(Estranged::Replaced);
+    }
+    if ours.len() != length {
+        return Err(Estranged::Length { found: ours.len(), expected: length });
+    }
+    Ok(())
+}
+
+/// Tries again for a while what fails, except where there is nothing of that name.
+pub(super) fn patiently<T>(mut attempt: impl FnMut() -> io::Result<T>) -> io::Result<T> {
+    let began = Instant::now();
+    let mut pause = FIRST_PAUSE;
+    loop {
+        match attempt() {
+            Err(error) if error.kind() != io::ErrorKind::NotFound && began.elapsed() < PATIENCE => {
+                std::thread::sleep(pause);
+                pause = (2 * pause).min(LONGEST_PAUSE);
+            }
+            outcome => return outcome,
+        }
+    }
+}
