@@ -101,11 +101,17 @@ impl Warning {
     /// A sentence with the numbers, and the way out.
     pub fn in_words(&self) -> String {
         match *self {
-            Self::CoarseElements { elements: [n1, n2], energy_share, .. } => format!(
-                "{n1} × {n2} elements cannot show this shape: halving each would change some {:.0} % of the strain energy; write \
-                 more elements or a higher degree in [mesh], or a lower adapt.threshold",
-                100.0 * energy_share
-            ),
+            Self::CoarseElements { elements: [n1, n2], energy_share, .. } => {
+                let change = if energy_share > 1.0 {
+                    "more than all".to_owned()
+                } else {
+                    format!("some {:.0} %", 100.0 * energy_share)
+                };
+                format!(
+                    "{n1} × {n2} elements cannot show this shape: halving each would change {change} of the strain energy; \
+                     write more elements or a higher degree in [mesh], or a lower adapt.threshold"
+                )
+            }
             Self::RefinementBlocked { spans, decay_lengths, over_threshold, .. } => {
                 let each_way = spans.iter().zip(["u", "v"]).filter(|(number, _)| **number > 0);
                 let kept: Vec<String> =
