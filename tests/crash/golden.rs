@@ -201,6 +201,29 @@ fn write_golden_logs_of_later_states() {
     }
 }
 
+/// Not a test: writes a log that was gone on with to a farther target, where it is not there yet.
+#[test]
+#[ignore = "writes to checkpoints/golden"]
+fn write_golden_log_of_two_stretches() {
+    let path = path_of("stretches");
+    if path.exists() {
+        return;
+    }
+    let (_, manifest) = read_scene("scene.toml");
+    let near = Manifest { scene_text: manifest.scene_text.replace("= 4.0", "= 2.0"), ..manifest.clone() };
+    let mut writer = JournalWriter::create(&path, &near, SyncPolicy::AtEnd).unwrap();
+    let stages = Stages::new(scene(&near.scene_text));
+    let start = stages.start().unwrap();
+    Run::new(stages, start, None).to_end(None, &|| false, &mut writer).unwrap();
+    writer.finish().unwrap();
+    let resumed = JournalWriter::resume(&path, &manifest, SyncPolicy::AtEnd).unwrap();
+    let (mut writer, log) = (resumed.writer, resumed.log);
+    let state = log.state(log.entries().len() - 1).unwrap();
+    let mut run = Run::new(Stages::new(scene(&manifest.scene_text)), state, log.last_commit().copied());
+    run.to_end(None, &|| false, &mut writer).unwrap();
+    writer.finish().unwrap();
+}
+
 /// Not a test: writes the logs of this version, where they are not there yet. The `README.md` says when.
 #[test]
 #[ignore = "writes to checkpoints/golden"]
