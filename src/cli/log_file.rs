@@ -41,6 +41,7 @@ impl ReadLog {
     pub(super) fn warnings_of(log: &Log) -> Vec<String> {
         let mut warnings: Vec<String> =
             log.notes().iter().map(|note| format!("at byte {}: {}", note.at, note.text)).collect();
+        warnings.extend(log.lost_manifests().iter().map(ToString::to_string));
         match log.completeness() {
             Completeness::Finished | Completeness::Unfinished => {}
             Completeness::Truncated { at, dropped } => warnings.push(format!(
@@ -92,7 +93,7 @@ pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
 /// hash in its commit, so that no other takes its place where it is lost.
 pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
     let expected = log.entries()[index].record.commit.scene_hash;
-    for manifest in log.manifests().iter().rev().filter(|manifest| manifest.first_ordinal <= index as u64) {
+    for manifest in log.manifests_of(index) {
         for chosen in 0..1 << DEFAULTS_BEFORE.len() {
             let is_chosen = |index: usize| chosen >> index & 1 == 1;
             let defaults = DEFAULTS_BEFORE.iter().enumerate().filter(|(index, _)| is_chosen(*index));
@@ -103,6 +104,17 @@ pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]
         }
     }
     Err(Failure::SceneLost { log: path.to_path_buf(), ordinal: index })
+}
+
+/// Says which stretches of a log another revision of the numerics or another kind of kernel wrote than this one: what they
+/// give now may differ in its last bits.
+pub(super) fn say_other_numerics(log: &Log) {
+    let here = Manifest::here(Path::new(""), "", 0);
+    for manifest in log.manifests() {
+        if let Some(otherwise) = here.rounds_otherwise(manifest) {
+            say(&format!("stages from {} on: {otherwise}", manifest.first_ordinal));
+        }
+    }
 }
 
 fn scene_in(manifest: &Manifest, path: &Path, settings: &[String]) -> Result<Scene, Failure> {

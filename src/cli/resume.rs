@@ -103,7 +103,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let mut findings = found(log, plan.keep);
     findings.extend(restored);
     findings.extend(plan.changes);
-    findings.extend(other_machine(log, &manifest));
+    findings.extend(other_numerics(log, &manifest));
     let stages = Stages::new(scene.clone());
     let basis = basis(log, plan.keep, &stages).map_err(|source| unusable(Box::new(source)))?;
     let before: Vec<Record> = log.entries()[..plan.keep].iter().map(|entry| entry.record.clone()).collect();
@@ -137,6 +137,9 @@ fn found(log: &Log, keep: usize) -> Vec<String> {
     let all = log.entries().len();
     let mut lines = vec![match (all, keep) {
         (0, _) => "the log holds no stage".to_string(),
+        _ if keep == all && !log.lost_manifests().is_empty() => {
+            format!("the log holds {all} stages, and has lost a manifest")
+        }
         _ if keep == all => format!("the log holds {all} stages, all good"),
         _ => format!("the log holds {all} good stages; the first {keep} stand"),
     }];
@@ -144,9 +147,19 @@ fn found(log: &Log, keep: usize) -> Vec<String> {
     lines
 }
 
-/// Another machine may round differently: it is allowed, said, and recorded in the log.
-fn other_machine(log: &Log, manifest: &Manifest) -> Option<String> {
-    let last = log.manifests().last()?;
+/// Another kernel, revision or program may round differently: it is allowed, said, and recorded in the log.
+fn other_numerics(log: &Log, manifest: &Manifest) -> Vec<String> {
+    let Some(last) = log.manifests().last() else { return Vec::new() };
+    let otherwise = manifest
+        .rounds_otherwise(last)
+        .map(|what| format!("{what}: stages from here on may differ in their last bits"));
+    let [was, is] = [last, manifest].map(|manifest| &manifest.program_version);
+    let program = (was != is).then(|| format!("written by foldline {was}, goes on with foldline {is}"));
+    otherwise.into_iter().chain(program).chain(other_machine(last, manifest)).collect()
+}
+
+/// Another machine, which rounds alike where the kernel is of one kind.
+fn other_machine(last: &Manifest, manifest: &Manifest) -> Option<String> {
     (!last.same_machine(manifest)).then(|| {
         let feature = |list: &[String]| list.join(" ");
         format!(

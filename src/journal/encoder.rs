@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use mcap::records::{MessageHeader, Metadata, Record as McapRecord};
+use mcap::records::{MessageHeader, Record as McapRecord};
 use mcap::write::NoSeek;
 use mcap::{McapError, WriteOptions, Writer};
 
@@ -16,6 +16,7 @@ use super::format::{
     PROFILE, REPORT_TOPIC, STATE_TOPIC, log_time_ns, sequence,
 };
 use super::frame::{self, Frame};
+use super::manifest::Manifest;
 use super::message::{CommitMessage, FinishedMessage, MessageHash, ReportMessage, schema_of, seal};
 use crate::pipeline::{Commit, Record};
 use crate::state::Hash;
@@ -98,6 +99,8 @@ impl Write for Outbox {
 pub(super) struct Encoder {
     writer: Writer<NoSeek<Outbox>>,
     outbox: Outbox,
+    /// Hash of the manifest that began the stretch.
+    stretch: Hash,
 }
 
 /// The messages of one stage, encoded.
@@ -127,7 +130,7 @@ impl Encoder {
             .chunk_size(None)
             .disable_seeking(true);
         let writer = options.create(NoSeek::new(outbox.clone()))?;
-        Ok(Self { writer, outbox })
+        Ok(Self { writer, outbox, stretch: Hash::from_bytes([0; 32]) })
     }
 
     /// The bytes made so far, which are then gone from here.
@@ -135,8 +138,10 @@ impl Encoder {
         std::mem::take(&mut *self.outbox.bytes())
     }
 
-    pub(super) fn manifest(&mut self, record: &Metadata) -> Result<(), McapError> {
-        self.writer.write_metadata(record)
+    /// Begins a stretch.
+    pub(super) fn manifest(&mut self, manifest: &Manifest) -> Result<(), McapError> {
+        self.stretch = manifest.hash();
+        self.writer.write_metadata(&manifest.to_record())
     }
 
     /// One stage as one chunk.
@@ -157,7 +162,7 @@ impl Encoder {
         }
         let named = messages.iter().map(|(topic, data)| MessageHash::of(&topic.topic, data)).collect();
         let (mesh, displacement) = (parts.mesh_hash, parts.state.displacement_hash);
-        let commit = seal(&CommitMessage::new(&parts.record.commit, mesh, displacement, named))?;
+        let commit = seal(&CommitMessage::new(&parts.record.commit, self.stretch, mesh, displacement, named))?;
         messages.push((&OWN.commit, &commit));
 
         const RECORD_OVERHEAD: usize = 256;
@@ -174,7 +179,7 @@ impl Encoder {
 
     /// The end of the run, as a chunk of its own.
     pub(super) fn finished(&mut self, last: &Commit) -> Result<(), EncodeError> {
-        let data = seal(&FinishedMessage::after(last))?;
+        let data = seal(&FinishedMessage::after(last, self.stretch))?;
         self.message(&OWN.finished, last.ordinal, &data)?;
         Ok(self.writer.flush()?)
     }
@@ -195,9 +200,15 @@ impl Encoder {
         self.writer.write_to_known_channel(&header, data)
     }
 
-    /// A chunk of another log again: the same records with the same numbers and times, so that the bytes are the same.
-    pub(super) fn again(&mut self, bytes: &[u8], chunk: &Frame) -> Result<(), McapError> {
-        for record in chunk::records(bytes, chunk).unwrap_or_default() {
+    /// A manifest or a chunk of another log again: the same records with the same numbers and times, so that the bytes are
+    /// the same.
+    pub(super) fn again(&mut self, bytes: &[u8], part: &Frame) -> Result<(), McapError> {
+        if part.opcode == frame::op::METADATA
+            && let McapRecord::Metadata(record) = frame::parse(part.opcode, &bytes[part.body.clone()])?
+        {
+            return self.writer.write_metadata(&record);
+        }
+        for record in chunk::records(bytes, part).unwrap_or_default() {
             match frame::parse(record.opcode, &bytes[record.body])? {
                 McapRecord::Schema { header, data } => {
                     self.writer.add_schema_with_id(header.id, &header.name, &header.encoding, &data)?;

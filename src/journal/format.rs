@@ -12,7 +12,17 @@
 //! A state names its mesh and its displacements by hash, so a stage that changes neither (indicators that mark
 //! nothing, a solve that is turned down) writes some hundred bytes and its report.
 //!
-//! Before the first chunk, and again wherever a run was taken up again, stands a metadata record `foldline.manifest`.
+//! Before the first chunk, and again wherever a run was taken up again, stands a metadata record `foldline.manifest`: it
+//! begins a *stretch* of the run.
+//!
+//! # Versions
+//!
+//! | version | what is new |
+//! |---|---|
+//! | 1 | |
+//! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest says which revision of the numerics wrote the stretch |
+//!
+//! A log may hold commits of several versions: one that is gone on with keeps those that it has.
 //!
 //! # Times
 //! `log_time` is the place in the run, not the clock: stage k stands at (k + 1) · 100 ms after 1970. A viewer then
@@ -21,7 +31,7 @@
 //! reads back. No hash covers either.
 
 /// Version of the layout that this module describes. A reader refuses a newer one.
-pub const FORMAT_VERSION: u32 = 1;
+pub const FORMAT_VERSION: u32 = 2;
 
 /// Profile in the header of the file.
 pub const PROFILE: &str = "foldline";

@@ -6,6 +6,8 @@ use std::ops::Range;
 
 pub(super) use mcap::records::op;
 
+use super::format::MANIFEST;
+
 /// Bytes in front of a record.
 pub(super) const PREFIX_LEN: usize = 1 + 8;
 
@@ -33,8 +35,12 @@ pub(super) struct Cut {
 pub(super) fn next(bytes: &[u8], at: usize) -> Option<Result<Frame, Cut>> {
     let rest = bytes.get(at..).filter(|rest| !rest.is_empty())?;
     let left = rest.len();
-    let Some(([opcode], rest)) = rest.split_first_chunk::<1>() else { return Some(Err(Cut { claim: None, left })) };
-    let Some((length, rest)) = rest.split_first_chunk::<8>() else { return Some(Err(Cut { claim: None, left })) };
+    let Some(([opcode], rest)) = rest.split_first_chunk::<1>() else {
+        return Some(Err(Cut { claim: None, left }));
+    };
+    let Some((length, rest)) = rest.split_first_chunk::<8>() else {
+        return Some(Err(Cut { claim: None, left }));
+    };
     let length = u64::from_le_bytes(*length);
     let start = at + PREFIX_LEN;
     Some(match usize::try_from(length) {
@@ -55,12 +61,20 @@ pub(super) fn chunk_records(bytes: &[u8], frame: &Frame) -> Option<Range<usize>>
     agree.then(|| frame.body.start + CHUNK_HEADER_LEN..frame.body.end)
 }
 
-/// The next place at or after `from` that looks like an uncompressed chunk: its three lengths agree.
-pub(super) fn find_chunk(bytes: &[u8], from: usize) -> Option<usize> {
-    let candidates = bytes.get(from..)?.iter().enumerate().filter(|(_, byte)| **byte == op::CHUNK);
-    candidates.map(|(offset, _)| from + offset).find(|&at| {
-        matches!(next(bytes, at), Some(Ok(frame)) if frame.opcode == op::CHUNK && chunk_records(bytes, &frame).is_some())
+/// The next place at or after `from` that looks like an uncompressed chunk, whose three lengths agree, or like a manifest.
+pub(super) fn find(bytes: &[u8], from: usize) -> Option<usize> {
+    let kinds = [op::CHUNK, op::METADATA];
+    let candidates = bytes.get(from..)?.iter().enumerate().filter(|(_, byte)| kinds.contains(*byte));
+    candidates.map(|(offset, _)| from + offset).find(|&at| match next(bytes, at) {
+        Some(Ok(frame)) if frame.opcode == op::CHUNK => chunk_records(bytes, &frame).is_some(),
+        Some(Ok(frame)) => has_name(&bytes[frame.body], MANIFEST),
+        _ => false,
     })
+}
+
+/// Whether a record begins with this text.
+fn has_name(mut body: &[u8], name: &str) -> bool {
+    length(&mut body) == Some(name.len()) && body.starts_with(name.as_bytes())
 }
 
 /// A record parsed by MCAP, once no text in it claims to be longer than the record: the parser reserves what a length

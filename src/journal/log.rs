@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::codec::{CodecError, decode_mesh, decode_state};
 use super::damage::{Completeness, LaterCommit, Problem};
 use super::manifest::Manifest;
+use super::stretch::{LostManifest, Stretches};
 use crate::pipeline::{Commit, Record};
 use crate::state::{Hash, Mesh, State};
 
@@ -22,6 +23,10 @@ pub struct Entry {
     /// Where its chunk lies in the log, bytes.
     pub bytes: Range<u64>,
     pub(super) state: Range<usize>,
+    /// Place of its manifest among those of the log, where that is there.
+    pub(super) stretch: Option<usize>,
+    /// Whether its commit names the manifest, as from version 2 on.
+    pub(super) names_stretch: bool,
 }
 
 /// Something worth telling that costs no commit.
@@ -75,8 +80,7 @@ pub(super) struct Part {
 #[derive(Debug)]
 pub struct Log {
     pub(super) library: String,
-    pub(super) manifests: Vec<Manifest>,
-    pub(super) manifest_lost: bool,
+    pub(super) stretches: Stretches,
     pub(super) entries: Vec<Entry>,
     pub(super) meshes: HashMap<Hash, Range<usize>>,
     pub(super) displacements: HashMap<Hash, Range<usize>>,
@@ -94,12 +98,30 @@ pub struct Log {
 impl Log {
     /// The manifests of the run's stretches, in order; one that is damaged is not among them.
     pub fn manifests(&self) -> &[Manifest] {
-        &self.manifests
+        &self.stretches.manifests
     }
 
-    /// Whether a damaged manifest stands behind the last good one: what the run last went on with is not known.
+    /// The manifests that stage `index` may have been made under, likeliest first: the one that its commit names, if the log
+    /// has it. Commits of version 1 name none.
+    pub fn manifests_of(&self, index: usize) -> impl Iterator<Item = &Manifest> {
+        let entry = self.entries.get(index);
+        let named = entry.filter(|entry| entry.names_stretch).map(|entry| entry.stretch);
+        let may = move |place: usize, manifest: &Manifest| match named {
+            Some(stretch) => stretch == Some(place),
+            None => manifest.first_ordinal <= index as u64,
+        };
+        let manifests = self.manifests().iter().enumerate().rev();
+        manifests.filter(move |(place, manifest)| may(*place, manifest)).map(|(_, manifest)| manifest)
+    }
+
+    /// Manifests that are lost, in the order of the file.
+    pub fn lost_manifests(&self) -> &[LostManifest] {
+        &self.stretches.lost
+    }
+
+    /// Whether the last of them is behind the last good one: what the run last went on with is not known.
     pub fn last_manifest_is_lost(&self) -> bool {
-        self.manifest_lost
+        self.stretches.last_is_lost
     }
 
     /// The stages, in the order of the run; entry k has ordinal k.

@@ -18,7 +18,7 @@
 //! | `codec`, `soundness` | states and meshes as bytes, and what they must satisfy |
 //! | `message`, `manifest` | reports, commits, the end, who wrote it |
 //! | `encoder`, `backend`, `writer` | from a stage to bytes in a file |
-//! | `frame`, `chunk`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
+//! | `frame`, `chunk`, `stretch`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
 //! | `recovery` | going on with a log, copying what is good of one |
 //! | `lock` | one writer at a time |
 //! | `verify` | all that can be checked, all of it |
@@ -71,6 +71,7 @@ pub mod message;
 mod reader;
 mod recovery;
 mod soundness;
+mod stretch;
 mod trace;
 mod verify;
 mod writer;
@@ -85,6 +86,7 @@ pub use manifest::{Manifest, ManifestError};
 pub use reader::ReadError;
 pub use recovery::{RecoverError, RecoverOutcome, Resume, ResumeError, Resumed, recover};
 pub use soundness::{Flaw, check_mesh, check_state};
+pub use stretch::LostManifest;
 pub use trace::{ITERATE_TOPIC, TraceRow, write_trace};
 pub use verify::{Finding, Level, verify, verify_log};
 pub use writer::{JournalWriter, ViewerTopics, WriteError};

@@ -18,6 +18,7 @@ use super::frame::{self, Cut, Frame, PREFIX_LEN, op};
 use super::log::{Entry, Kept, Log, Note, Part};
 use super::manifest::Manifest;
 use super::message::FinishedMessage;
+use super::stretch::Stretches;
 use crate::pipeline::{Commit, Record};
 use crate::state::Hash;
 
@@ -94,8 +95,7 @@ impl Log {
         }
         Ok(Log {
             library: scan.header.map(|(_, library)| library).unwrap_or_default(),
-            manifests: scan.manifests,
-            manifest_lost: scan.manifest_lost,
+            stretches: scan.stretches,
             entries: scan.entries,
             meshes: scan.meshes,
             displacements: scan.displacements,
@@ -117,9 +117,8 @@ impl Log {
 struct Scan {
     channels: Channels,
     header: Option<(String, String)>,
-    manifests: Vec<Manifest>,
+    stretches: Stretches,
     manifest_seen: bool,
-    manifest_lost: bool,
     entries: Vec<Entry>,
     meshes: HashMap<Hash, Range<usize>>,
     displacements: HashMap<Hash, Range<usize>>,
@@ -155,7 +154,7 @@ impl Scan {
                     if !self.has_lost() {
                         self.good_end = frame.body.end;
                     }
-                    if self.closed { frame::find_chunk(bytes, frame.body.end) } else { Some(frame.body.end) }
+                    if self.closed { frame::find(bytes, frame.body.end) } else { Some(frame.body.end) }
                 }
                 (Err(damage), next) => {
                     let only_zeros = bytes[at..].iter().all(|byte| *byte == 0);
@@ -166,7 +165,13 @@ impl Scan {
                     // A chunk keeps its place even where its content is damaged; all else may have lost the step.
                     match next {
                         Ok(frame) if frame::chunk_records(bytes, &frame).is_some() => Some(frame.body.end),
-                        _ => frame::find_chunk(bytes, at + 1),
+                        found => {
+                            let following = frame::find(bytes, at + 1);
+                            if !only_zeros && !self.closed {
+                                self.stretches.gap(at, &bytes[at..following.unwrap_or(bytes.len())], &found);
+                            }
+                            following
+                        }
                     }
                 }
                 (Ok(()), Err(_)) => None,
@@ -177,6 +182,7 @@ impl Scan {
             }
         }
         let good = self.entries.len() as u64;
+        self.stretches.end(good);
         self.later.retain(|commit| commit.ordinal >= good);
     }
 
@@ -226,7 +232,7 @@ impl Scan {
 
     fn metadata(&mut self, frame: &Frame, record: &mcap::records::Metadata) {
         match Manifest::from_record(record) {
-            Ok(manifest) => {
+            Ok((manifest, hash)) => {
                 if manifest.format_version > FORMAT_VERSION {
                     self.newer_format = Some(manifest.format_version);
                 }
@@ -234,12 +240,13 @@ impl Scan {
                 // Behind a loss it speaks of commits that are not used.
                 if manifest.first_ordinal == self.entries.len() as u64 {
                     self.parts.push(Part { at: frame.at, end: frame.body.end, kept: Kept::Manifest });
-                    self.manifests.push(manifest);
-                    self.manifest_lost = false;
+                    self.stretches.begin(manifest, hash);
+                } else {
+                    self.stretches.begin_later(frame.at, manifest, hash);
                 }
             }
             Err(error) if record.name == MANIFEST => {
-                self.manifest_lost = true;
+                self.stretches.suspect(frame.at);
                 self.notes.push(Note { at: frame.at as u64, text: format!("{error}; it is left out") });
             }
             Err(_) => {
@@ -254,7 +261,9 @@ impl Scan {
         let kept = match chunk::open(bytes, frame, &mut self.channels)? {
             Content::Commit(content) => {
                 let (ordinal, stage, step) = (content.commit.ordinal, content.commit.stage, content.commit.step);
+                let manifest = content.commit.manifest_hash.map(|hash| hash.0);
                 if let Err(damage) = self.commit(frame, *content) {
+                    self.stretches.of_later_commit(frame.at, manifest);
                     if self.later_seen.insert(ordinal) {
                         self.later.push(LaterCommit { at: frame.at as u64, ordinal, stage, step });
                     }
@@ -270,6 +279,7 @@ impl Scan {
                     let damage = Damage::OtherEnd { claims: finished.commits, found };
                     return if self.has_lost() { Ok(()) } else { Err(damage) };
                 }
+                self.stretches.of_commit(frame.at, found, finished.manifest_hash.map(|hash| hash.0));
                 self.finished = Some(finished);
                 Kept::Finished
             }
@@ -309,9 +319,19 @@ impl Scan {
         }
         self.meshes.extend(content.mesh.map(|place| (mesh_hash, place)));
         self.displacements.extend(content.displacement.map(|place| (displacement, place)));
+        let stretch = self.stretches.of_commit(frame.at, ordinal, content.commit.manifest_hash.map(|hash| hash.0));
+        let names_stretch = content.commit.manifest_hash.is_some();
         let record = Record { wall_s: content.report.wall_s, report: content.report.report, commit };
         let bytes = frame.at as u64..frame.body.end as u64;
-        self.entries.push(Entry { record, mesh_hash, displacement_hash: displacement, bytes, state: content.state });
+        self.entries.push(Entry {
+            record,
+            mesh_hash,
+            displacement_hash: displacement,
+            bytes,
+            state: content.state,
+            stretch,
+            names_stretch,
+        });
         Ok(())
     }
 }

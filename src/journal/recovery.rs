@@ -14,8 +14,6 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use mcap::records::Record as McapRecord;
-
 use super::backend::{Backend, FileBackend, beside, sync_folder_of};
 use super::damage::Completeness;
 use super::encoder::{EncodeError, Encoder, library};
@@ -144,7 +142,7 @@ impl Resume {
         let mut encoder = Encoder::new(&library()).map_err(|source| begin(source.into()))?;
         let manifest = Manifest { first_ordinal: keep as u64, ..manifest.clone() };
         let copied = copy(&log, Some(keep), &mut encoder, &mut backend).and_then(|length| {
-            encoder.manifest(&manifest.to_record()).map_err(EncodeError::Mcap)?;
+            encoder.manifest(&manifest).map_err(EncodeError::Mcap)?;
             let bytes = encoder.take();
             backend.append(&bytes)?;
             if let Ok(metadata) = fs::metadata(&path) {
@@ -221,16 +219,10 @@ pub(super) fn again<E: From<EncodeError>>(
             Some(_) if part.kept == Kept::Finished => continue,
             _ => {}
         }
-        let Some(Ok(frame)) = frame::next(&log.bytes, part.at) else { continue };
-        let made = match part.kept {
-            Kept::Manifest => match frame::parse(frame.opcode, &log.bytes[frame.body]) {
-                Ok(McapRecord::Metadata(record)) => encoder.manifest(&record),
-                Ok(_) => Ok(()),
-                Err(error) => Err(error),
-            },
-            Kept::Commit | Kept::Finished => encoder.again(&log.bytes, &frame),
+        let Some(Ok(frame)) = frame::next(&log.bytes, part.at) else {
+            continue;
         };
-        made.map_err(EncodeError::Mcap)?;
+        encoder.again(&log.bytes, &frame).map_err(EncodeError::Mcap)?;
         pending += part.end - part.at;
         if pending >= BATCH_BYTES {
             emit(encoder.take())?;
@@ -366,6 +358,7 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> 
     };
     let commits = log.entries().len() as u64;
     let finished = log.completeness() == Completeness::Finished;
+    let lost_manifest = log.lost_manifests().first().map(ToString::to_string);
     let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
     if let (0, Some(why)) = (commits, &loss) {
         return Ok(RecoverOutcome::Hopeless { why: why.clone() });
@@ -392,7 +385,7 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> 
     }
     let later_commits = log.later_commits().len() as u64;
     let dropped = log.file_len() - log.good_end();
-    Ok(match loss {
+    Ok(match loss.or(lost_manifest) {
         Some(why) => RecoverOutcome::Lossy { commits, dropped, later_commits, why },
         None => RecoverOutcome::Lossless { commits },
     })

@@ -58,6 +58,10 @@ pub fn verify_log(log: &Log) -> Vec<Finding> {
         let text = format!("whole at byte {}, but what it follows on is lost: it is not used", commit.at);
         findings.push(finding(Level::Warning, place, text));
     }
+    for lost in log.lost_manifests() {
+        let way_out = "`foldline run SCENE -o LOG --resume` goes on with the scene's file";
+        findings.push(finding(Level::Error, format!("commit {}", lost.ordinal), format!("{lost}. {way_out}")));
+    }
     findings.extend(manifests(log));
     for index in 0..log.entries().len() {
         if let Err(error) = log.state(index) {
@@ -107,12 +111,16 @@ fn completeness(log: &Log) -> Finding {
 fn manifests(log: &Log) -> Vec<Finding> {
     let mut findings = Vec::new();
     let manifests = log.manifests();
-    if manifests.first().is_none_or(|first| first.first_ordinal != 0) {
+    let is_lost = log.lost_manifests().first().is_some_and(|lost| lost.ordinal == 0);
+    if manifests.first().is_none_or(|first| first.first_ordinal != 0) && !is_lost {
         let text = "no manifest of the beginning: the scene has to come from its file".to_owned();
         findings.push(finding(Level::Warning, "log", text));
     }
     for pair in manifests.windows(2) {
         let place = format!("commit {}", pair[1].first_ordinal);
+        if let Some(otherwise) = pair[1].rounds_otherwise(&pair[0]) {
+            findings.push(finding(Level::Info, place.clone(), format!("from here on {otherwise}: bits may differ")));
+        }
         if !pair[0].same_machine(&pair[1]) {
             let text = format!("from here on computed on another machine: {} after {}", pair[1].host, pair[0].host);
             findings.push(finding(Level::Info, place.clone(), text));

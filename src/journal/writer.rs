@@ -225,7 +225,7 @@ impl JournalWriter {
             synced: Instant::now(),
             given_up: false,
         };
-        writer.encoder.manifest(&manifest.to_record()).map_err(encode)?;
+        writer.encoder.manifest(manifest).map_err(encode)?;
         writer.append()?;
         Ok(writer)
     }

@@ -9,6 +9,7 @@ mod memory;
 mod power;
 mod resume;
 mod signals;
+mod stretches;
 mod support;
 mod synthetic;
 mod truncation;

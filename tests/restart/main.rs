@@ -4,6 +4,7 @@ mod bisect;
 mod changed;
 mod cost;
 mod cuts;
+mod numerics;
 mod paths;
 mod program;
 mod reading;
