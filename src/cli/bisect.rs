@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::log_file::{ReadLog, read_log, scene_at};
+use super::log_file::{ReadLog, open_long, read_log, scene_at};
 use super::output::print;
 use super::replay::place;
 use super::stage_table::stage_table;
 use crate::history::{
-    Comparison, Condition, SnapReport, find_parting, find_snap, first_loss_of_stability, shown_value,
+    Comparison, Condition, SnapReport, find_parting, find_snap, first_loss_of_stability, first_where, shown_value,
 };
+use crate::journal::LongLog;
 use crate::pipeline::Parameter;
 use crate::units::{count, place as place_mm, unsigned_zero};
 
@@ -38,6 +39,11 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Answers the question.
     pub(super) fn run(self) -> Result<u8, Failure> {
+        if let Some(condition) = &self.when
+            && let Some(long) = open_long(&self.log)?
+        {
+            return self.first_of_long(&long, condition);
+        }
         let read = read_log(&self.log)?;
         match (&self.other, &self.when) {
             (Some(other), _) => self.part(&read, &read_log(other)?, other),
@@ -102,6 +108,16 @@ impl Arguments {
         let found = records.iter().position(|record| condition.holds(&record.report)).ok_or_else(never)?;
         print(&stage_table(&records[found.saturating_sub(1)..=found]))?;
         Ok(0)
+    }
+
+    fn first_of_long(&self, long: &LongLog, text: &str) -> Result<u8, Failure> {
+        let never = || Failure::NeverHolds { log: self.log.clone(), condition: text.to_string() };
+        let records = long.tail().entries().iter().map(|entry| &entry.record);
+        let sample = records.max_by_key(|record| record.report.probes.len()).ok_or_else(never)?;
+        let condition = Condition::parse(text, &sample.report)?;
+        let found = first_where(long, &condition)
+            .map_err(|source| Failure::WrongLog { log: self.log.clone(), source: Box::new(source) })?;
+        print(&stage_table(&found.ok_or_else(never)?)).map(|()| 0)
     }
 
     fn jump(&self, read: &ReadLog) -> Result<u8, Failure> {

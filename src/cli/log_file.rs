@@ -5,7 +5,7 @@ use std::path::Path;
 use super::failure::Failure;
 use super::output::say;
 use super::scene_file::checked;
-use crate::journal::{Completeness, Log, Manifest, ReadError};
+use crate::journal::{Completeness, Log, LongLog, Manifest, ReadError};
 use crate::pipeline::Record;
 use crate::scene::Scene;
 
@@ -56,6 +56,15 @@ impl ReadLog {
     }
 }
 
+/// Opens a long log, of which only the end is read, and says what is lost of that; `None` for one that is read whole.
+pub(super) fn open_long(path: &Path) -> Result<Option<LongLog>, Failure> {
+    let long = LongLog::open(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
+    for warning in long.iter().flat_map(|long| ReadLog::warnings_of(long.tail())) {
+        say(&format!("foldline: {}: {warning}", path.display()));
+    }
+    Ok(long)
+}
+
 /// Reads a log and the scene of its last stretch, and says what of it is lost; where that is lost, an earlier one
 /// serves to show what is there.
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
@@ -77,7 +86,7 @@ pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
 
 /// The scene that the log was last gone on with.
 pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
-    let stages = log.entries().len();
+    let stages = log.commits();
     if log.last_manifest_is_lost() {
         return Err(Failure::SceneLost { log: path.to_path_buf(), ordinal: stages.saturating_sub(1) });
     }
@@ -92,7 +101,8 @@ pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
 /// The scene that stage `index` was run with, with settings laid over it: that of its stretch, and held against the
 /// hash in its commit, so that no other takes its place where it is lost.
 pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
-    let expected = log.entries()[index].record.commit.scene_hash;
+    let lost = || Failure::SceneLost { log: path.to_path_buf(), ordinal: index };
+    let expected = log.entry(index).ok_or_else(lost)?.record.commit.scene_hash;
     for manifest in log.manifests_of(index) {
         for chosen in 0..1 << DEFAULTS_BEFORE.len() {
             let is_chosen = |index: usize| chosen >> index & 1 == 1;
@@ -103,7 +113,7 @@ pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]
             }
         }
     }
-    Err(Failure::SceneLost { log: path.to_path_buf(), ordinal: index })
+    Err(lost())
 }
 
 /// Says which stretches of a log another revision of the numerics or another kind of kernel wrote than this one: what they

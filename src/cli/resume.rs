@@ -84,11 +84,15 @@ fn refused(path: &Path, error: ResumeError) -> Failure {
 }
 
 /// Goes on with a log as far as it stands for `scene`.
+///
+/// Of a long log only the end is read, which is enough where the scene is the same.
 pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &RunOptions) -> Result<(), Failure> {
     let raised = watch_signals()?;
     let path = &options.log;
     let unusable = |source: Box<dyn std::error::Error + Send + Sync>| Failure::Resume { log: path.clone(), source };
-    let log = old.claim.log();
+    let same_scene = scene_of(old.claim.log(), path).is_ok_and(|was| was.differences(&scene).is_empty());
+    let claim = if same_scene { old.claim } else { old.claim.whole().map_err(|source| unusable(Box::new(source)))? };
+    let log = claim.log();
     let mut restored = None;
     let was = match scene_of(log, path) {
         Err(lost @ (Failure::SceneLost { .. } | Failure::NoScene { .. })) => {
@@ -106,7 +110,12 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     findings.extend(other_numerics(log, &manifest));
     let stages = Stages::new(scene.clone());
     let basis = basis(log, plan.keep, &stages).map_err(|source| unusable(Box::new(source)))?;
-    let before: Vec<Record> = log.entries()[..plan.keep].iter().map(|entry| entry.record.clone()).collect();
+    let (first, all) = (log.first(), log.commits());
+    let kept = log.entries().iter().take(plan.keep.saturating_sub(first));
+    let before: Vec<Record> = kept.map(|entry| entry.record.clone()).collect();
+    if first > 0 {
+        findings.push(format!("the summary is of the stages from {first} on; every stage: foldline inspect"));
+    }
     let run = Run::new(stages, basis.state, basis.commit);
     let reached = run.state().parameter;
     let shown = Parameter::of(&scene).shown(reached);
@@ -119,12 +128,12 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     if options.is_shown() {
         findings.iter().for_each(|line| say(line));
     }
-    let finished = log.completeness() == Completeness::Finished && plan.keep == log.entries().len();
+    let finished = log.completeness() == Completeness::Finished && plan.keep == all;
     if next.is_none() && finished {
         return options.sum_up(&Summary::new(&scene, &before));
     }
     let resumed =
-        old.claim.start_after(plan.keep, &manifest, scene.output.sync).map_err(|source| unusable(Box::new(source)))?;
+        claim.start_after(plan.keep, &manifest, scene.output.sync).map_err(|source| unusable(Box::new(source)))?;
     if let (true, Some(dropped)) = (options.is_shown(), &resumed.dropped) {
         say(&format!("what was dropped is kept in {}", dropped.display()));
     }
@@ -134,7 +143,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
 
 /// What a log holds and what of it is used.
 fn found(log: &Log, keep: usize) -> Vec<String> {
-    let all = log.entries().len();
+    let all = log.commits();
     let mut lines = vec![match (all, keep) {
         (0, _) => "the log holds no stage".to_string(),
         _ if keep == all && !log.lost_manifests().is_empty() => {

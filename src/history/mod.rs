@@ -3,6 +3,7 @@
 mod bisection;
 mod compare;
 mod condition;
+mod long;
 mod part;
 mod replay;
 mod resume;
@@ -12,6 +13,7 @@ mod stability;
 pub use bisection::{IndexBisection, LoadBisection};
 pub use compare::{Comparison, Difference, compare};
 pub use condition::{Condition, ConditionError};
+pub use long::{first_where, stages_of_step};
 pub use part::{Parting, find_parting};
 pub use replay::{ReplayError, Replayed, Verdict, replay_stage, verdict};
 pub use resume::{Basis, BasisError, NothingStands, ResumePlan, basis, plan, restored_scene, shown_value};

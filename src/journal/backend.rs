@@ -36,6 +36,8 @@ pub struct FileBackend {
     /// The log that this file takes the place of, before the first byte is added to what was copied.
     replaces: Option<Replacement>,
     folder_synced: bool,
+    /// Length that the file is cut to before the first byte is added.
+    cut_first: Option<u64>,
 }
 
 /// A file on its way to taking another's place.
@@ -53,7 +55,37 @@ impl FileBackend {
     /// Where there is one already ([`io::ErrorKind::AlreadyExists`]), or none can be made.
     pub fn create_new(path: &Path) -> io::Result<Self> {
         let file = OpenOptions::new().append(true).create_new(true).open(path)?;
-        Ok(Self { file, path: path.to_owned(), publish_as: None, replaces: None, folder_synced: false })
+        Ok(Self {
+            file,
+            path: path.to_owned(),
+            publish_as: None,
+            replaces: None,
+            folder_synced: false,
+            cut_first: None,
+        })
+    }
+
+    /// A log that is gone on with in place: what lies behind its first `length` bytes is cut off before the first byte is
+    /// added.
+    ///
+    /// # Errors
+    /// Where the file cannot be opened.
+    pub(super) fn behind(path: &Path, length: u64) -> io::Result<Self> {
+        let file = OpenOptions::new().append(true).open(path)?;
+        let path = path.to_owned();
+        Ok(Self { file, path, publish_as: None, replaces: None, folder_synced: true, cut_first: Some(length) })
+    }
+
+    /// Cuts off what is not gone on with. That is durable before anything takes its place: half of the one and half of the other
+    /// would be neither.
+    fn cut_first(&mut self) -> io::Result<()> {
+        let Some(length) = self.cut_first else { return Ok(()) };
+        if self.file.metadata()?.len() != length {
+            self.file.set_len(length)?;
+            self.file.sync_all()?;
+        }
+        self.cut_first = None;
+        Ok(())
     }
 
     /// The same, but the file has this name only from its first bytes on, so that no log is ever there without its
@@ -115,6 +147,7 @@ impl FileBackend {
 impl Backend for FileBackend {
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.settle()?;
+        self.cut_first()?;
         self.file.write_all(bytes)?;
         self.publish()
     }
@@ -169,6 +202,15 @@ pub(super) fn is_at(file: &File, path: &Path) -> bool {
         let _ = (file, path);
         true
     }
+}
+
+/// A file under a temporary name in the folder of `path`, with the permissions of an ordinary new file.
+pub(super) fn new_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
 }
 
 /// The path with a suffix behind the whole file name.

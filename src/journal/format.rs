@@ -20,7 +20,7 @@
 //! | version | what is new |
 //! |---|---|
 //! | 1 | |
-//! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest says which revision of the numerics wrote the stretch |
+//! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest says which revision of the numerics wrote the stretch; a chunk may lack a state, and a mesh or displacements that no state needs, in a log that was thinned and says so in a metadata record `foldline.thinned` |
 //!
 //! A log may hold commits of several versions: one that is gone on with keeps those that it has.
 //!
@@ -38,6 +38,9 @@ pub const PROFILE: &str = "foldline";
 
 /// Name of the metadata records that hold a manifest.
 pub const MANIFEST: &str = "foldline.manifest";
+
+/// Name of the metadata record of a log that was thinned.
+pub const THINNED: &str = "foldline.thinned";
 
 /// Encoding of states and meshes: a version byte, then bincode (little endian, fixed-width integers).
 pub const BINARY_ENCODING: &str = "foldline-bincode-v1";

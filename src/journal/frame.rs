@@ -35,12 +35,8 @@ pub(super) struct Cut {
 pub(super) fn next(bytes: &[u8], at: usize) -> Option<Result<Frame, Cut>> {
     let rest = bytes.get(at..).filter(|rest| !rest.is_empty())?;
     let left = rest.len();
-    let Some(([opcode], rest)) = rest.split_first_chunk::<1>() else {
-        return Some(Err(Cut { claim: None, left }));
-    };
-    let Some((length, rest)) = rest.split_first_chunk::<8>() else {
-        return Some(Err(Cut { claim: None, left }));
-    };
+    let Some(([opcode], rest)) = rest.split_first_chunk::<1>() else { return Some(Err(Cut { claim: None, left })) };
+    let Some((length, rest)) = rest.split_first_chunk::<8>() else { return Some(Err(Cut { claim: None, left })) };
     let length = u64::from_le_bytes(*length);
     let start = at + PREFIX_LEN;
     Some(match usize::try_from(length) {
@@ -50,7 +46,7 @@ pub(super) fn next(bytes: &[u8], at: usize) -> Option<Result<Frame, Cut>> {
 }
 
 /// Chunk header of an uncompressed chunk: two times, size, checksum, an empty name, size.
-const CHUNK_HEADER_LEN: usize = 8 + 8 + 8 + 4 + 4 + 8;
+pub(super) const CHUNK_HEADER_LEN: usize = 8 + 8 + 8 + 4 + 4 + 8;
 
 /// Where the records of an uncompressed chunk lie, if the lengths in its header agree with its own.
 pub(super) fn chunk_records(bytes: &[u8], frame: &Frame) -> Option<Range<usize>> {
@@ -67,14 +63,15 @@ pub(super) fn find(bytes: &[u8], from: usize) -> Option<usize> {
     let candidates = bytes.get(from..)?.iter().enumerate().filter(|(_, byte)| kinds.contains(*byte));
     candidates.map(|(offset, _)| from + offset).find(|&at| match next(bytes, at) {
         Some(Ok(frame)) if frame.opcode == op::CHUNK => chunk_records(bytes, &frame).is_some(),
-        Some(Ok(frame)) => has_name(&bytes[frame.body], MANIFEST),
+        Some(Ok(frame)) => name(&bytes[frame.body]) == Some(MANIFEST),
         _ => false,
     })
 }
 
-/// Whether a record begins with this text.
-fn has_name(mut body: &[u8], name: &str) -> bool {
-    length(&mut body) == Some(name.len()) && body.starts_with(name.as_bytes())
+/// The text that a record begins with.
+pub(super) fn name(mut body: &[u8]) -> Option<&str> {
+    let len = length(&mut body)?;
+    std::str::from_utf8(take(&mut body, len)?).ok()
 }
 
 /// A record parsed by MCAP, once no text in it claims to be longer than the record: the parser reserves what a length

@@ -3,8 +3,8 @@
 //! The operating system's lock on `LOG.lock` goes with the process, however it ends: a stale lock cannot be. Where a
 //! file system does not honour such locks, the lease in `LOG.lease` stands in: whoever comes writes a random token,
 //! and a writer looks before every commit whether the token is still its own. The one that has lost it stops. It could
-//! not do harm even between the look and the write: whoever takes a log over copies it to a new file, and the loser
-//! only ever writes to the old one.
+//! not do harm even between the look and the write: where there is only the lease, whoever takes a log over copies it to a new
+//! file, and the loser only ever writes to the old one. Under the system's lock a log is gone on with in place.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::hash::{BuildHasher, RandomState};
@@ -66,6 +66,8 @@ pub struct LogLock {
     lock_path: PathBuf,
     /// Holds the lock as long as it is open.
     lock: File,
+    /// Whether the system keeps others out, and not the lease alone.
+    is_exclusive: bool,
 }
 
 impl LogLock {
@@ -76,7 +78,8 @@ impl LogLock {
     pub fn take(log: &Path) -> Result<Self, LockError> {
         let (lock_path, lease) = (beside(log, ".lock"), beside(log, ".lease"));
         let failed = |path: &Path, source| LockError::Io { path: path.display().to_string(), source };
-        let lock = loop {
+        let (lock, is_exclusive) = loop {
+            let mut is_exclusive = true;
             let lock = OpenOptions::new().write(true).create(true).truncate(false).open(&lock_path);
             let lock = lock.map_err(|source| failed(&lock_path, source))?;
             match lock.try_lock() {
@@ -85,18 +88,23 @@ impl LogLock {
                     return Err(LockError::Busy { log: log.display().to_string(), holder: holder(&lease) });
                 }
                 // A file system without locks: the lease alone has to do.
-                Err(TryLockError::Error(source)) if source.kind() == io::ErrorKind::Unsupported => {}
+                Err(TryLockError::Error(source)) if source.kind() == io::ErrorKind::Unsupported => is_exclusive = false,
                 Err(TryLockError::Error(source)) => return Err(failed(&lock_path, source)),
             }
             if is_at(&lock, &lock_path) {
-                break lock;
+                break (lock, is_exclusive);
             }
         };
         let random = || RandomState::new().hash_one(std::process::id());
         let token = format!("{:016x}{:016x}", random(), random());
         let text = format!("{token}\nprocess {} ({})\n", std::process::id(), super::manifest::host());
         fs::write(&lease, text).map_err(|source| failed(&lease, source))?;
-        Ok(Self { log: log.to_owned(), lease, token, lock_path, lock })
+        Ok(Self { log: log.to_owned(), lease, token, lock_path, lock, is_exclusive })
+    }
+
+    /// Whether no other process can have the right at the same time.
+    pub fn is_exclusive(&self) -> bool {
+        self.is_exclusive
     }
 
     /// Looks whether the right is still held.

@@ -41,6 +41,8 @@ pub struct Manifest {
     pub started_unix_s: u64,
     /// Ordinal of the first stage of this stretch.
     pub first_ordinal: u64,
+    /// Whether the scene reads as in the stretch before.
+    pub same_scene: bool,
 }
 
 /// Why a metadata record is not a manifest.
@@ -81,6 +83,7 @@ impl Manifest {
             host: host(),
             started_unix_s: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
             first_ordinal: 0,
+            same_scene: false,
         }
     }
 
@@ -126,12 +129,13 @@ impl Manifest {
 
     /// All entries but the hash over them.
     fn entries(&self) -> BTreeMap<String, String> {
-        BTreeMap::from(
+        let mut entries = BTreeMap::from(
             [
                 ("format_version", self.format_version.to_string()),
                 ("program", "foldline".to_owned()),
                 ("program_version", self.program_version.clone()),
                 ("scene_file", self.scene_file.clone()),
+                (LIBRARY, super::encoder::library()),
                 ("scene", self.scene_text.clone()),
                 ("cpu", self.cpu.clone()),
                 ("cpu_features", self.cpu_features.join(" ")),
@@ -143,7 +147,12 @@ impl Manifest {
                 ("first_ordinal", self.first_ordinal.to_string()),
             ]
             .map(|(key, value)| (key.to_owned(), value)),
-        )
+        );
+        if self.first_ordinal > 0 || self.same_scene {
+            let what = if self.same_scene { SAME_SCENE } else { "another scene" };
+            entries.insert(AGAIN.to_owned(), what.to_owned());
+        }
+        entries
     }
 
     /// The manifest that a record holds, and its name in the commits of its stretch.
@@ -169,6 +178,7 @@ impl Manifest {
             host: text("host")?,
             started_unix_s: number("started_unix_s", text("started_unix_s")?)?,
             first_ordinal: number("first_ordinal", text("first_ordinal")?)?,
+            same_scene: record.metadata.get(AGAIN).is_some_and(|what| what == SAME_SCENE),
         };
         Ok((manifest, name))
     }
@@ -176,6 +186,23 @@ impl Manifest {
 
 /// Fewer bytes than any manifest takes: its name and those of its entries, and the hash. A gap that is shorter held none.
 pub(super) const MANIFEST_LEN_AT_LEAST: usize = 256;
+
+/// Entry with what the program puts into the header of a log, which has no checksum of its own.
+pub(super) const LIBRARY: &str = "library";
+
+/// Entry of a stretch that is not the first. It comes first in the record, so that even a torn one says whether its scene was
+/// that of the stretch before.
+const AGAIN: &str = "again";
+const SAME_SCENE: &str = "same scene";
+
+/// Whether a torn manifest is one of a stretch with the scene of the stretch before: that it is lost costs nothing.
+pub(super) fn begins_with_same_scene(bytes: &[u8]) -> bool {
+    let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
+    let entry = [text(AGAIN), text(SAME_SCENE)].concat();
+    bytes
+        .get(..MANIFEST_LEN_AT_LEAST.min(bytes.len()))
+        .is_some_and(|head| head.windows(entry.len()).any(|it| it == entry))
+}
 
 /// Whether bytes that cannot be read hold a piece of a manifest: the name of an entry that nothing else in a log has.
 pub(super) fn has_piece_of_manifest(bytes: &[u8]) -> bool {

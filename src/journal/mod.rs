@@ -17,9 +17,11 @@
 //! | `format` | topics, encodings, versions, limits, times |
 //! | `codec`, `soundness` | states and meshes as bytes, and what they must satisfy |
 //! | `message`, `manifest` | reports, commits, the end, who wrote it |
-//! | `encoder`, `backend`, `writer` | from a stage to bytes in a file |
-//! | `frame`, `chunk`, `stretch`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
-//! | `recovery` | going on with a log, copying what is good of one |
+//! | `ledger`, `summary`, `encoder`, `backend`, `writer` | from a stage to bytes in a file |
+//! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
+//! | `checkpoint`, `index`, `index_keeper`, `long` | a long log, of which only the end is read |
+//! | `resume`, `recovery` | going on with a log, copying what is good of one |
+//! | `thin` | a log without some of its states |
 //! | `lock` | one writer at a time |
 //! | `verify` | all that can be checked, all of it |
 //!
@@ -58,20 +60,29 @@
 //! the last program before the change, by the command that the `README.md` names, and add them with their rows. A
 //! golden log is never written again.
 mod backend;
+mod checkpoint;
 mod chunk;
 mod codec;
 mod damage;
 mod encoder;
 pub mod format;
 mod frame;
+mod index;
+mod index_keeper;
+mod ledger;
 mod lock;
 mod log;
+mod long;
 mod manifest;
 pub mod message;
 mod reader;
 mod recovery;
+mod resume;
+mod scan;
 mod soundness;
 mod stretch;
+mod summary;
+mod thin;
 mod trace;
 mod verify;
 mod writer;
@@ -80,13 +91,17 @@ pub use backend::{Backend, FileBackend};
 pub use codec::{CODEC_VERSION, CodecError, EncodedState, decode_mesh, decode_state, encode_mesh, encode_state};
 pub use damage::{Completeness, Damage, LaterCommit, Problem};
 pub use encoder::{EncodeError, ViewerMessage, ViewerTopic};
+pub use index::word_number;
 pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
+pub use long::{LongLog, LongLogError};
 pub use manifest::{Manifest, ManifestError};
 pub use reader::ReadError;
-pub use recovery::{RecoverError, RecoverOutcome, Resume, ResumeError, Resumed, recover};
+pub use recovery::{RecoverError, RecoverOutcome, recover};
+pub use resume::{Resume, ResumeError, Resumed};
 pub use soundness::{Flaw, check_mesh, check_state};
 pub use stretch::LostManifest;
+pub use thin::{ThinError, Thinned, thin};
 pub use trace::{ITERATE_TOPIC, TraceRow, write_trace};
 pub use verify::{Finding, Level, verify, verify_log};
 pub use writer::{JournalWriter, ViewerTopics, WriteError};

@@ -1,191 +1,23 @@
-//! Going on with a log, and copying what is good of one.
+//! Copying what is good of a log.
 //!
-//! MCAP cannot append: its summary at the end of the file lists every chunk, and viewers read nothing else. So the good
-//! records of a log are put through a new writer, which then knows them all: same numbers, same times, same bytes. The
-//! copy grows beside the log as `LOG.new`, is forced to disk while the run already goes on, and takes the log's place
-//! before the first new commit is added. Until then, and if the process dies meanwhile, the log is as it was.
-//!
-//! What a log loses when it is resumed is kept beside it as `LOG.dropped-N` wherever it might still be worth something:
-//! after damage always, after a cut only if whole commits lie behind it. The torn rest of the stage that was in flight
-//! is worth nothing, and goes.
+//! The good records are put through a new writer, which then knows them all: same numbers, same times, same bytes.
 
 use std::fs;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::io;
+use std::path::Path;
 
-use super::backend::{Backend, FileBackend, beside, sync_folder_of};
+use super::backend::{Backend, FileBackend};
 use super::damage::Completeness;
-use super::encoder::{EncodeError, Encoder, library};
+use super::encoder::{EncodeError, Encoder};
 use super::frame;
 use super::lock::{LockError, LogLock};
 use super::log::{Kept, Log};
-use super::manifest::Manifest;
 use super::reader::ReadError;
-use super::writer::JournalWriter;
-use crate::scene::SyncPolicy;
 
 /// Bytes that are collected before they go to the new file.
 const BATCH_BYTES: usize = 1 << 20;
 
-/// Why a run cannot go on from a log.
-#[derive(Debug, thiserror::Error)]
-pub enum ResumeError {
-    /// There is no such file.
-    #[error("cannot resume {log}: there is no such file")]
-    NoLog {
-        /// The log.
-        log: String,
-        /// What the system says.
-        #[source]
-        source: io::Error,
-    },
-    /// Another process writes it.
-    #[error(transparent)]
-    Lock(#[from] LockError),
-    /// It is not a log.
-    #[error("cannot resume {log}")]
-    Read {
-        /// The log.
-        log: String,
-        /// Why not.
-        #[source]
-        source: ReadError,
-    },
-    /// The copy cannot be made.
-    #[error("cannot resume {log}: {path} cannot be written. The log is as it was")]
-    Copy {
-        /// The log.
-        log: String,
-        /// The copy, or the part that is kept beside it.
-        path: String,
-        /// What the system says.
-        #[source]
-        source: io::Error,
-    },
-    /// The new stretch cannot be begun.
-    #[error("cannot resume {log}. The log is as it was")]
-    Begin {
-        /// The log.
-        log: String,
-        /// Why not.
-        #[source]
-        source: EncodeError,
-    },
-}
-
-/// A log that this process, and no other, may go on with.
-#[derive(Debug)]
-pub struct Resume {
-    path: PathBuf,
-    name: String,
-    lock: LogLock,
-    log: Log,
-}
-
-/// A log that is being gone on with.
-#[derive(Debug)]
-pub struct Resumed {
-    /// Takes the stages that follow.
-    pub writer: JournalWriter,
-    /// The log as it was, for the state to go on from. Holds the whole file in memory; drop it once that is taken.
-    pub log: Log,
-    /// Where the part that was dropped is kept, if it might still be worth something.
-    pub dropped: Option<PathBuf>,
-}
-
-impl Resume {
-    /// Claims a log and reads it. Changes nothing.
-    ///
-    /// # Errors
-    /// Where it is not there, not a log, or another process writes it.
-    pub fn open(path: &Path) -> Result<Self, ResumeError> {
-        let name = path.display().to_string();
-        // Through links, so that the file they lead to is replaced and not the link.
-        let path = path.canonicalize().map_err(|source| ResumeError::NoLog { log: name.clone(), source })?;
-        let lock = LogLock::take(&path)?;
-        let log = Log::read(&path).map_err(|source| ResumeError::Read { log: name.clone(), source })?;
-        Ok(Self { path, name, lock, log })
-    }
-
-    /// What the log holds.
-    pub fn log(&self) -> &Log {
-        &self.log
-    }
-
-    /// Begins a new stretch behind the last good commit. That the run was finished, where it was, is not carried over.
-    ///
-    /// # Errors
-    /// Where the copy cannot be made; the log is then as it was.
-    pub fn start(self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
-        let all = self.log.entries().len();
-        self.start_after(all, manifest, sync)
-    }
-
-    /// The same behind the first `keep` commits; those after them go.
-    ///
-    /// # Errors
-    /// Where the copy cannot be made; the log is then as it was.
-    pub fn start_after(self, keep: usize, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
-        let Self { path, name, lock, log } = self;
-        let begin = |source| ResumeError::Begin { log: name.clone(), source };
-        let keep = keep.min(log.entries().len());
-        let dropped = if keep < log.entries().len() { Some(keep_whole(&path)?) } else { keep_dropped(&path, &log)? };
-        let new = beside(&path, ".new");
-        let failed = |source| ResumeError::Copy { log: name.clone(), path: new.display().to_string(), source };
-        // Left by a process that died while it did this; the lock says that it is nobody's.
-        match fs::remove_file(&new) {
-            Err(source) if source.kind() != io::ErrorKind::NotFound => return Err(failed(source)),
-            _ => {}
-        }
-        let mut backend = FileBackend::create_new(&new).map_err(failed)?;
-        let mut encoder = Encoder::new(&library()).map_err(|source| begin(source.into()))?;
-        let manifest = Manifest { first_ordinal: keep as u64, ..manifest.clone() };
-        let copied = copy(&log, Some(keep), &mut encoder, &mut backend).and_then(|length| {
-            encoder.manifest(&manifest).map_err(EncodeError::Mcap)?;
-            let bytes = encoder.take();
-            backend.append(&bytes)?;
-            if let Ok(metadata) = fs::metadata(&path) {
-                let _ = fs::set_permissions(&new, metadata.permissions());
-            }
-            backend.replace(&path)?;
-            Ok(length + bytes.len() as u64)
-        });
-        let length = copied.map_err(|error| {
-            let _ = fs::remove_file(&new);
-            match error {
-                CopyError::Io(source) => failed(source),
-                CopyError::Encode(source) => begin(source),
-            }
-        })?;
-        let writer = JournalWriter {
-            encoder,
-            backend: Box::new(backend),
-            lock: Some(lock),
-            log: name,
-            sync,
-            viewer: None,
-            known: log.entries()[..keep].iter().flat_map(|entry| [entry.mesh_hash, entry.displacement_hash]).collect(),
-            last: keep.checked_sub(1).map(|last| log.entries()[last].record.commit),
-            length,
-            synced: Instant::now(),
-            given_up: false,
-        };
-        Ok(Resumed { writer, log, dropped })
-    }
-}
-
-impl JournalWriter {
-    /// Goes on with a log: [`Resume::open`] and [`Resume::start`] in one, for callers who know the scene.
-    ///
-    /// # Errors
-    /// Those of both.
-    pub fn resume(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
-        Resume::open(path)?.start(manifest, sync)
-    }
-}
-
-enum CopyError {
+pub(super) enum CopyError {
     Io(io::Error),
     Encode(EncodeError),
 }
@@ -219,9 +51,7 @@ pub(super) fn again<E: From<EncodeError>>(
             Some(_) if part.kept == Kept::Finished => continue,
             _ => {}
         }
-        let Some(Ok(frame)) = frame::next(&log.bytes, part.at) else {
-            continue;
-        };
+        let Some(Ok(frame)) = frame::next(&log.bytes, part.at) else { continue };
         encoder.again(&log.bytes, &frame).map_err(EncodeError::Mcap)?;
         pending += part.end - part.at;
         if pending >= BATCH_BYTES {
@@ -232,56 +62,19 @@ pub(super) fn again<E: From<EncodeError>>(
     emit(encoder.take())
 }
 
-fn copy(log: &Log, keep: Option<usize>, encoder: &mut Encoder, backend: &mut dyn Backend) -> Result<u64, CopyError> {
+/// Puts the good records of a log through an encoder to a file; gives back how many bytes they take.
+pub(super) fn copy(
+    log: &Log,
+    keep: Option<usize>,
+    encoder: &mut Encoder,
+    backend: &mut dyn Backend,
+) -> Result<u64, CopyError> {
     let mut length = 0;
     again(log, keep, encoder, |bytes| {
         length += bytes.len() as u64;
         Ok::<(), CopyError>(backend.append(&bytes)?)
     })?;
     Ok(length)
-}
-
-/// Keeps a log that goes on from an earlier stage than its last as `LOG.replaced-N`.
-fn keep_whole(path: &Path) -> Result<PathBuf, ResumeError> {
-    for number in 1_u32.. {
-        let kept = beside(path, &format!(".replaced-{number}"));
-        // The log itself is replaced by renaming, so another name for it is as good as a copy, and costs nothing.
-        match fs::hard_link(path, &kept) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            Err(_) => {
-                let log = path.display().to_string();
-                let failed = |source| ResumeError::Copy { log, path: kept.display().to_string(), source };
-                return fs::copy(path, &kept).map(|_| kept.clone()).map_err(failed);
-            }
-            Ok(()) => return Ok(kept),
-        }
-    }
-    Ok(path.to_path_buf())
-}
-
-/// Writes what a damaged log loses to `LOG.dropped-N`, if it might still be worth something.
-fn keep_dropped(path: &Path, log: &Log) -> Result<Option<PathBuf>, ResumeError> {
-    if !matches!(log.completeness(), Completeness::Damaged { .. }) {
-        return Ok(None);
-    }
-    for number in 1_u32.. {
-        let beside = beside(path, &format!(".dropped-{number}"));
-        let written = match fs::OpenOptions::new().write(true).create_new(true).open(&beside) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            Err(error) => Err(error),
-            Ok(mut file) => {
-                file.write_all(log.tail()).and_then(|()| file.sync_all()).and_then(|()| sync_folder_of(&beside))
-            }
-        };
-        return match written {
-            Ok(()) => Ok(Some(beside)),
-            Err(source) => {
-                let log = path.display().to_string();
-                Err(ResumeError::Copy { log, path: beside.display().to_string(), source })
-            }
-        };
-    }
-    Ok(None)
 }
 
 /// What became of a log that was recovered.
@@ -372,8 +165,7 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> 
     let write = |backend: &mut FileBackend| {
         let mut encoder = Encoder::new(&log.library).map_err(EncodeError::Mcap)?;
         copy(&log, (!finished).then_some(log.entries().len()), &mut encoder, backend)?;
-        encoder.close().map_err(EncodeError::Mcap)?;
-        backend.append(&encoder.take())?;
+        encoder.close(commits, |piece| backend.append(&piece))?;
         Ok(backend.sync()?)
     };
     if let Err(error) = write(&mut backend) {

@@ -5,8 +5,8 @@
 //! one stretch is known to have been none. In version 1, and behind the last commit, what cannot be read is taken for a
 //! manifest where it holds a piece of one or has been zeroed.
 
-use super::frame::{Cut, Frame, PREFIX_LEN, op};
-use super::manifest::{MANIFEST_LEN_AT_LEAST, Manifest, has_piece_of_manifest};
+use super::frame::op;
+use super::manifest::{MANIFEST_LEN_AT_LEAST, Manifest, begins_with_same_scene, has_piece_of_manifest};
 use crate::state::Hash;
 
 /// A manifest that a log should hold and does not.
@@ -30,7 +30,7 @@ impl std::fmt::Display for LostManifest {
 }
 
 /// The stretches of a log, as it is read front to back.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Stretches {
     pub manifests: Vec<Manifest>,
     hashes: Vec<Hash>,
@@ -53,22 +53,23 @@ impl Stretches {
     }
 
     /// A manifest that does not: commits before it are lost.
-    pub fn begin_later(&mut self, at: usize, manifest: Manifest, hash: Hash) {
-        self.later.push((at as u64, hash, manifest.scene_text));
+    pub fn begin_later(&mut self, at: u64, manifest: Manifest, hash: Hash) {
+        self.later.push((at, hash, manifest.scene_text));
     }
 
     /// Something at `at` that may have been a manifest.
-    pub fn suspect(&mut self, at: usize) {
-        self.suspect.get_or_insert(at as u64);
+    pub fn suspect(&mut self, at: u64) {
+        self.suspect.get_or_insert(at);
     }
 
-    /// What lies between two records that can be read, from `at` on, might have been a manifest.
-    pub fn gap(&mut self, at: usize, gap: &[u8], found: &Result<Frame, Cut>) {
-        let opcode = match found {
-            Ok(frame) => Some(frame.opcode),
-            Err(cut) => cut.claim.map(|(opcode, _)| opcode).or(gap.first().copied()),
-        };
-        let torn = found.is_err() && opcode == Some(op::METADATA);
+    /// What lies between two records that can be read, from `at` on, might have been a manifest; or the file ends in it
+    /// (`is_cut`). A torn manifest of the scene that the run had before is none that is missed.
+    pub fn gap(&mut self, at: u64, gap: &[u8], is_cut: bool) {
+        let opcode = gap.first().copied();
+        let torn = is_cut && opcode == Some(op::METADATA);
+        if torn && begins_with_same_scene(gap) {
+            return;
+        }
         let large = gap.len() >= MANIFEST_LEN_AT_LEAST;
         let zeroed = || opcode != Some(op::CHUNK) && gap.windows(ZEROED).any(|window| window == [0; ZEROED]);
         if torn || (large && (has_piece_of_manifest(gap) || zeroed())) {
@@ -77,21 +78,21 @@ impl Stretches {
     }
 
     /// The stretch of a commit that names its manifest by `hash`, as from version 2 on; `None` where it is lost.
-    pub fn of_commit(&mut self, at: usize, ordinal: u64, hash: Option<Hash>) -> Option<usize> {
+    pub fn of_commit(&mut self, at: u64, ordinal: u64, hash: Option<Hash>) -> Option<usize> {
         let is_last = match hash {
             Some(hash) => self.hashes.last() == Some(&hash),
             None => self.suspect.is_none() && !self.last_is_lost,
         };
         match is_last {
             true => self.last_is_lost = false,
-            false => self.lose(self.suspect.unwrap_or(at as u64), ordinal),
+            false => self.lose(self.suspect.unwrap_or(at), ordinal),
         }
         self.suspect = None;
         self.manifests.len().checked_sub(1).filter(|_| is_last)
     }
 
     /// A commit behind a loss.
-    pub fn of_later_commit(&mut self, at: usize, hash: Option<Hash>) {
+    pub fn of_later_commit(&mut self, at: u64, hash: Option<Hash>) {
         let known = |hash| self.hashes.last() == Some(&hash) || self.later.iter().any(|(_, later, _)| *later == hash);
         match hash {
             Some(hash) if known(hash) => self.suspect = None,
@@ -109,6 +110,13 @@ impl Stretches {
         }
     }
 
+    /// The stretches of the commits up to this one, of a log that has lost no manifest.
+    pub fn up_to(&self, ordinal: u64) -> Self {
+        let count = self.manifests.iter().take_while(|manifest| manifest.first_ordinal <= ordinal).count();
+        let (manifests, hashes) = (self.manifests[..count].to_vec(), self.hashes[..count].to_vec());
+        Self { manifests, hashes, ..Self::default() }
+    }
+
     fn lose(&mut self, at: u64, ordinal: u64) {
         if !self.last_is_lost {
             self.lost.push(LostManifest { at, ordinal });
@@ -119,5 +127,3 @@ impl Stretches {
 
 /// Zeros in a row that may have been a manifest: a quarter of the smallest piece of a disk that is lost at once.
 const ZEROED: usize = 128;
-
-const _: () = assert!(ZEROED < MANIFEST_LEN_AT_LEAST && PREFIX_LEN < ZEROED);

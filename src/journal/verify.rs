@@ -63,7 +63,8 @@ pub fn verify_log(log: &Log) -> Vec<Finding> {
         findings.push(finding(Level::Error, format!("commit {}", lost.ordinal), format!("{lost}. {way_out}")));
     }
     findings.extend(manifests(log));
-    for index in 0..log.entries().len() {
+    findings.extend(states_kept(log));
+    for index in (0..log.entries().len()).filter(|index| log.keeps_state(*index)) {
         if let Err(error) = log.state(index) {
             findings.push(finding(Level::Error, place(&log.entries()[index]), with_causes(&error)));
         }
@@ -106,6 +107,22 @@ fn completeness(log: &Log) -> Finding {
         }
     };
     finding(level, "log", text)
+}
+
+/// That states are missing: as it was meant, or not.
+fn states_kept(log: &Log) -> Option<Finding> {
+    let all = log.entries().len();
+    let states = (0..all).filter(|index| log.keeps_state(*index)).count();
+    match log.thinned() {
+        Some(kept) => {
+            Some(finding(Level::Info, "log", format!("thinned ({kept}): {states} of {all} stages have their state")))
+        }
+        None if states < all => {
+            let text = format!("{} of {all} stages have no state, and the log was not thinned", all - states);
+            Some(finding(Level::Error, "log", text))
+        }
+        None => None,
+    }
 }
 
 fn manifests(log: &Log) -> Vec<Finding> {
@@ -157,6 +174,9 @@ fn bytes_between(log: &Log) -> Option<Finding> {
     Some(finding(Level::Warning, format!("byte {at}"), text))
 }
 
+/// Length of the record in front of the summary, with the nine bytes before it.
+const DATA_END_LEN: usize = 9 + 4;
+
 fn write_again(log: &Log, compare: &mut impl FnMut(&[u8])) -> Result<(), EncodeError> {
     let mut encoder = Encoder::new(&log.library)?;
     again(log, None, &mut encoder, |bytes| {
@@ -164,8 +184,14 @@ fn write_again(log: &Log, compare: &mut impl FnMut(&[u8])) -> Result<(), EncodeE
         Ok::<(), EncodeError>(())
     })?;
     if log.closed {
-        encoder.close()?;
-        compare(&encoder.take());
+        let checksum = log.bytes.get(log.good_end.saturating_sub(4)..log.good_end).unwrap_or_default();
+        let is_there = checksum.iter().any(|byte| *byte != 0);
+        let before = log.good_end.saturating_sub(DATA_END_LEN);
+        let checksum = if is_there { crc32fast::hash(&log.bytes[..before]) } else { 0 };
+        encoder.close_with_checksum(log.commits() as u64, checksum, |piece| {
+            compare(&piece);
+            Ok::<(), EncodeError>(())
+        })?;
     }
     Ok(())
 }

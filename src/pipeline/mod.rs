@@ -1,5 +1,6 @@
 //! Stages, the loop that runs them, step control, and the sinks that see every stage.
 
+mod fields;
 mod load_solve;
 mod path_control;
 mod path_solve;
@@ -15,6 +16,7 @@ mod stages;
 mod step_control;
 mod warning;
 
+pub use fields::{as_number, fields_of};
 pub use path_control::CriticalPoint;
 pub use record::{Commit, Record};
 pub use report::{Outcome, Parameter, Reading, Report, WrittenReport, released_in_words};

@@ -167,6 +167,7 @@ fn read_scene(name: &str) -> (Scene, Manifest) {
         host: "golden".to_owned(),
         started_unix_s: 0,
         first_ordinal: 0,
+        same_scene: false,
     };
     (scene, manifest)
 }

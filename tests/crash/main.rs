@@ -5,6 +5,7 @@ mod findings;
 mod flips;
 mod golden;
 mod kill;
+mod long;
 mod memory;
 mod power;
 mod resume;

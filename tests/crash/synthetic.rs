@@ -146,5 +146,6 @@ pub fn manifest() -> Manifest {
         host: "somewhere".to_owned(),
         started_unix_s: 1_700_000_000,
         first_ordinal: 0,
+        same_scene: false,
     }
 }

@@ -9,6 +9,7 @@ mod paths;
 mod program;
 mod reading;
 mod replay;
+mod thin;
 mod threads;
 
 #[path = "../verification/support.rs"]
