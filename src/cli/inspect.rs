@@ -6,10 +6,11 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::json_line::json_line;
-use super::log_file::{open_long, read_log};
+use super::log_file::{ask_long, read_log};
 use super::output::print;
 use super::stage_table::{stage_table, step_in_full};
 use crate::history::stages_of_step;
+use crate::journal::{LongLog, LongLogError};
 use crate::pipeline::Record;
 use crate::study::Summary;
 
@@ -32,16 +33,12 @@ impl Arguments {
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, step, json } = self;
         if let Some(step) = step
-            && let Some(long) = open_long(&log)?
+            && let Some((found, known)) = ask_long(&log, |long| Ok((stages_of_step(long, step)?, steps_of(long)?)))?
         {
-            let wrong = |source| Failure::WrongLog { log: log.clone(), source: Box::new(source) };
-            let found = stages_of_step(&long, step).map_err(wrong)?;
-            if found.is_empty() {
-                let first = long.record(0).map_err(wrong)?.report.step;
-                let last = long.tail().entries().last().map(|entry| entry.record.report.step);
-                return Err(Failure::NoSuchStep { known: last.map(|last| (first, last)), step, log });
-            }
-            return show_step(&found, step, json);
+            return match found.is_empty() {
+                true => Err(Failure::NoSuchStep { known, step, log }),
+                false => show_step(&found, step, json),
+            };
         }
         let read = read_log(&log)?;
         let records = read.records();
@@ -65,6 +62,12 @@ impl Arguments {
         }
         print(&text)
     }
+}
+
+/// First and last load step of a long log.
+fn steps_of(long: &LongLog) -> Result<Option<(u64, u64)>, LongLogError> {
+    let last = long.tail().entries().last().map(|entry| entry.record.report.step);
+    Ok(Some(long.record(0)?.report.step).zip(last))
 }
 
 /// Numbers in order, those that follow on one another as ranges.

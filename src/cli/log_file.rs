@@ -5,7 +5,7 @@ use std::path::Path;
 use super::failure::Failure;
 use super::output::say;
 use super::scene_file::checked;
-use crate::journal::{Completeness, Log, LongLog, Manifest, ReadError};
+use crate::journal::{Completeness, Log, LongLog, LongLogError, Manifest, ReadError};
 use crate::pipeline::Record;
 use crate::scene::Scene;
 
@@ -56,13 +56,23 @@ impl ReadLog {
     }
 }
 
-/// Opens a long log, of which only the end is read, and says what is lost of that; `None` for one that is read whole.
-pub(super) fn open_long(path: &Path) -> Result<Option<LongLog>, Failure> {
-    let long = LongLog::open(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
-    for warning in long.iter().flat_map(|long| ReadLog::warnings_of(long.tail())) {
+/// Asks a long log, of which only the end is read, and says what is lost of that; `None` for one that is read whole. Where the
+/// index turns out not to fit, the log is read through and asked again.
+pub(super) fn ask_long<T>(
+    path: &Path,
+    ask: impl Fn(&LongLog) -> Result<T, LongLogError>,
+) -> Result<Option<T>, Failure> {
+    let unreadable = |source| Failure::Read { path: path.to_path_buf(), source };
+    let Some(long) = LongLog::open(path).map_err(unreadable)? else { return Ok(None) };
+    for warning in ReadLog::warnings_of(long.tail()) {
         say(&format!("foldline: {}: {warning}", path.display()));
     }
-    Ok(long)
+    if let Ok(answer) = ask(&long) {
+        return Ok(Some(answer));
+    }
+    let Some(long) = LongLog::read_through(path).map_err(unreadable)? else { return Ok(None) };
+    let wrong = |source| Failure::WrongLog { log: path.to_path_buf(), source: Box::new(source) };
+    ask(&long).map(Some).map_err(wrong)
 }
 
 /// Reads a log and the scene of its last stretch, and says what of it is lost; where that is lost, an earlier one

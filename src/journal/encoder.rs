@@ -109,6 +109,8 @@ pub(super) struct Encoder {
     ledger: Ledger,
     /// Length of the log so far.
     length: u64,
+    /// Bytes that the log lacks and the ledger has.
+    in_front: Vec<u8>,
 }
 
 /// Chunks after which MCAP's writer is replaced by a new one: it keeps some 350 bytes for each until the end.
@@ -135,21 +137,32 @@ impl Encoder {
     pub(super) fn new(library: &str) -> Result<Self, McapError> {
         let (writer, outbox) = writer(library)?;
         let stretch = Hash::from_bytes([0; 32]);
-        Ok(Self { writer, outbox, writer_made_at: 0, stretch, ledger: Ledger::default(), length: 0 })
+        Ok(Self {
+            writer,
+            outbox,
+            writer_made_at: 0,
+            stretch,
+            ledger: Ledger::default(),
+            length: 0,
+            in_front: Vec::new(),
+        })
     }
 
     /// Goes on behind the first `length` bytes of a log, which `ledger` describes.
     pub(super) fn behind(ledger: Ledger, length: u64) -> Result<Self, McapError> {
         let (writer, outbox) = writer_that_knows(&ledger)?;
         let stretch = Hash::from_bytes([0; 32]);
-        Ok(Self { writer, outbox, writer_made_at: ledger.chunks.len(), stretch, ledger, length })
+        Ok(Self { writer, outbox, writer_made_at: ledger.chunks.len(), stretch, ledger, length, in_front: Vec::new() })
     }
 
     /// The bytes made so far, whole records, which are then gone from here.
     pub(super) fn take(&mut self) -> Vec<u8> {
-        let bytes = std::mem::take(&mut *self.outbox.bytes());
+        let mut bytes = std::mem::take(&mut *self.outbox.bytes());
         self.ledger.enter(self.length, &bytes);
         self.length += bytes.len() as u64;
+        if !self.in_front.is_empty() {
+            bytes.splice(..0, std::mem::take(&mut self.in_front));
+        }
         if self.ledger.chunks.len() - self.writer_made_at >= CHUNKS_OF_ONE_WRITER {
             self.writer_made_at = self.ledger.chunks.len();
             // The one there is does as well.
@@ -158,6 +171,16 @@ impl Encoder {
             }
         }
         bytes
+    }
+
+    /// Gives back bytes that were taken: they go out in front of what is made next.
+    pub(super) fn give_back(&mut self, bytes: &[u8]) {
+        self.in_front = bytes.to_vec();
+    }
+
+    /// What the log holds.
+    pub(super) fn ledger(&self) -> &Ledger {
+        &self.ledger
     }
 
     /// Begins a stretch.

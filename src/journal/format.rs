@@ -24,6 +24,14 @@
 //!
 //! A log may hold commits of several versions: one that is gone on with keeps those that it has.
 //!
+//! # Why nothing is compressed
+//! Measured on the chunks of three runs, one by one, as they would have to be written: zstd at level 1
+//! leaves 89 %, 60 % and 48 % of a chunk of 9, 26 and 3 kB, lz4 94 %, 74 % and 61 %, and higher levels gain no more than five in
+//! a hundred. What is left over are displacements, four fifths of a log, of which the last bits are noise. A library in C and
+//! chunks that have to be unpacked before they can be bounded are not worth that; `foldline thin` drops nine states of ten. A whole
+//! log in one piece comes to 30 to 40 %, because a state repeats the displacements of the equilibrium before it: they would
+//! have to be named by their hash, as the mesh is, in an encoding to come.
+//!
 //! # Times
 //! `log_time` is the place in the run, not the clock: stage k stands at (k + 1) · 100 ms after 1970. A viewer then
 //! plays ten stages a second, whatever a stage cost and however many nights lie between an interruption and the

@@ -62,7 +62,15 @@ impl LongLog {
         {
             return Ok(Some(opened));
         }
-        Self::read(path, &index_path, None)
+        Self::read_through(path)
+    }
+
+    /// Opens it without the index that there is, which does not fit, and writes a new one.
+    ///
+    /// # Errors
+    /// Where the log cannot be read.
+    pub fn read_through(path: &Path) -> io::Result<Option<Self>> {
+        Self::read(path, &beside(path, ".index"), None)
     }
 
     fn read(path: &Path, index_path: &Path, index: Option<Index>) -> io::Result<Option<Self>> {

@@ -6,7 +6,8 @@
 //!    the log does not have them yet), the stage's report, and at its end a commit message. It reaches the file in one
 //!    write. A process that dies loses the stage in flight and nothing else.
 //! 2. **Every commit vouches for its chunk.** The commit message is sealed with the hash of its own bytes and names the
-//!    hash of every other message in the chunk; its chain hash follows from the commit before it. A log that was cut or
+//!    hash of every other message in the chunk and of the manifest of its stretch; its chain hash follows from the commit
+//!    before it. A log that was cut or
 //!    changed anywhere is read up to the last commit for which all of that holds, and [`Log::completeness`] says what
 //!    lies behind. States are decoded only when they are asked for, and held against their content hash.
 //! 3. **The end is explicit.** MCAP's footer proves nothing (its writer adds one even while a panic unwinds), so a run
@@ -23,7 +24,7 @@
 //! | `resume`, `recovery` | going on with a log, copying what is good of one |
 //! | `thin` | a log without some of its states |
 //! | `lock` | one writer at a time |
-//! | `verify` | all that can be checked, all of it |
+//! | `rewriting`, `verify` | all that can be checked, all of it |
 //!
 //! # Writing, stopping, going on
 //!
@@ -31,6 +32,20 @@
 //! hands it every stage. At the end [`JournalWriter::finish`]; where a run is stopped on purpose
 //! [`JournalWriter::close`], which leaves the end open but adds what viewers look for. [`Resume`] claims a log, reads
 //! it, and goes on behind its last good commit.
+//!
+//! A log that is as it was written is gone on with in place, under a lock that no other process can hold; any other is
+//! copied (`resume` says how both survive a kill and a power cut).
+//!
+//! # Long logs
+//!
+//! From some four thousand commits on, `LOG.index` lies beside a log: where its commits are and the numbers of their
+//! reports, written as the run goes on. [`LongLog`] and [`Resume`] read the end of such a log alone, and through the index
+//! what they are asked for, and check the seals and hashes of what they read. The index is a cache: without it, or where it
+//! does not fit, the log is read through, in parts that fit in memory, and the index is written anew. [`verify`] reads all
+//! of a log and none of its index.
+//!
+//! [`thin`] writes a log anew without the states between some load steps; commits and reports, and with them the chain,
+//! stay.
 //!
 //! # Checking that other programs can read a log
 //!
@@ -78,6 +93,7 @@ pub mod message;
 mod reader;
 mod recovery;
 mod resume;
+mod rewriting;
 mod scan;
 mod soundness;
 mod stretch;

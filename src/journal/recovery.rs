@@ -36,7 +36,7 @@ impl From<EncodeError> for CopyError {
 
 /// Puts the good records of a log through an encoder, all of them or those up to the first `keep` commits without the
 /// record of the end; `emit` gets the bytes in pieces of about a mebibyte.
-pub(super) fn again<E: From<EncodeError>>(
+fn again<E: From<EncodeError>>(
     log: &Log,
     keep: Option<usize>,
     encoder: &mut Encoder,

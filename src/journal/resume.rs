@@ -22,6 +22,7 @@ use std::time::Instant;
 use super::backend::{Backend, FileBackend, beside, new_beside, sync_folder_of};
 use super::damage::Completeness;
 use super::encoder::{EncodeError, Encoder, library};
+use super::frame;
 use super::index::{Builder, Index};
 use super::index_keeper::{IndexKeeper, is_index};
 use super::ledger::Ledger;
@@ -176,34 +177,35 @@ impl Resume {
         if in_place { self.in_place(&manifest, sync) } else { self.whole()?.copied(keep, &manifest, sync) }
     }
 
-    fn in_place(self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
+    fn in_place(mut self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
+        let begin =
+            |name: &str, source: mcap::McapError| ResumeError::Begin { log: name.to_owned(), source: source.into() };
+        let ledger = self.before.as_mut().map(|before| std::mem::take(&mut before.ledger));
+        let behind = encoder_behind(&self.log, ledger).map_err(|source| begin(&self.name, source))?;
+        let Some((mut encoder, length)) = behind else {
+            let all = self.log.commits();
+            return self.whole()?.copied(all, manifest, sync);
+        };
         let Self { path, name, lock, log, before, .. } = self;
-        let begin = |source| ResumeError::Begin { log: name.clone(), source };
         let dropped = keep_dropped(&path, &log)?;
         remove_abandoned(&path, &name)?;
         let index_path = beside(&path, ".index");
-        let (mut ledger, mut index, known_to) = match before {
-            None => (Ledger::default(), Some(IndexKeeper::new(index_path)), 0),
-            Some(Before { ledger, index, builder }) => {
-                let known_to = log.entries.last().map_or(0, |entry| (entry.bytes.start - log.base) as usize);
-                (ledger, index.and_then(|index| IndexKeeper::behind(index_path, &index, builder)), known_to)
+        let mut index = match before {
+            None => Some(IndexKeeper::new(index_path)),
+            Some(Before { index, builder, .. }) => {
+                index.and_then(|index| IndexKeeper::behind(index_path, &index, builder))
             }
         };
-        ledger.enter(log.base + known_to as u64, &log.bytes[known_to..log.stretch_end]);
         for entry in log.entries() {
+            let ledger = encoder.ledger();
             let place = ledger.chunks.get(entry.record.commit.ordinal as usize).copied();
-            index = index.and_then(|index| match place {
-                Some(place) if index.wants(&entry.record) => {
-                    index.take(place, &entry.record, || mark(&log, &ledger, entry))
-                }
-                Some(_) => Some(index),
-                None => None,
+            index = index.zip(place).and_then(|(index, place)| match index.wants(&entry.record) {
+                true => index.take(place, &entry.record, || mark(&log, ledger, entry)),
+                false => Some(index),
             });
         }
-        let length = log.base + log.stretch_end as u64;
-        let mut encoder = Encoder::behind(ledger, length).map_err(|source| begin(source.into()))?;
         // Stands in front of the first commit, and reaches the log together with it.
-        encoder.manifest(manifest).map_err(|source| begin(source.into()))?;
+        encoder.manifest(manifest).map_err(|source| begin(&name, source))?;
         let backend = FileBackend::behind(&path, length).map_err(|source| ResumeError::Copy {
             log: name.clone(),
             path: path.display().to_string(),
@@ -330,6 +332,37 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.as_file().sync_all()?;
     file.persist_noclobber(path).map_err(|error| error.error)?;
     sync_folder_of(path)
+}
+
+/// An encoder behind the last commit or manifest of a log, and the length to which the log is cut. Message indexes that a writer
+/// which was cut off did not get to go out in front of what comes next. `None` where the last commit's chunk has a byte, covered
+/// by no hash, that would be written otherwise.
+fn encoder_behind(log: &Log, ledger: Option<Ledger>) -> Result<Option<(Encoder, u64)>, mcap::McapError> {
+    let end = log.base + log.stretch_end as u64;
+    let Some(entry) = log.entries.last() else {
+        let mut ledger = Ledger::default();
+        ledger.enter(log.base, &log.bytes[..log.stretch_end]);
+        return Ok(Some((Encoder::behind(ledger, end)?, end)));
+    };
+    let last = (entry.bytes.start - log.base) as usize;
+    let ledger = ledger.unwrap_or_else(|| {
+        let mut ledger = Ledger::default();
+        ledger.enter(log.base, &log.bytes[..last]);
+        ledger
+    });
+    let mut encoder = Encoder::behind(ledger, log.base + last as u64)?;
+    let rest = log.parts.iter().filter(|part| part.at >= last && part.end <= log.stretch_end);
+    for record in rest.filter_map(|part| frame::next(&log.bytes, part.at)?.ok()) {
+        encoder.again(&log.bytes, &record)?;
+    }
+    let written = encoder.take();
+    let there = &log.bytes[last..log.stretch_end];
+    let same = written.iter().zip(there).take_while(|(written, there)| written == there).count();
+    if (same as u64) < entry.bytes.end - entry.bytes.start {
+        return Ok(None);
+    }
+    encoder.give_back(&written[same..]);
+    Ok(Some((encoder, log.base + (last + same) as u64)))
 }
 
 /// Takes away what a process left that died while it copied the log; the lock says that it is nobody's.

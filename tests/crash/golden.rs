@@ -62,11 +62,14 @@ fn every_log_gives_what_the_table_says() {
         assert_eq!(log.entries().len(), row.stages, "{name}");
         let last = log.last_commit().unwrap().chain_hash.to_string();
         assert!(last.starts_with(&row.last_chain_hash) && row.last_chain_hash.len() >= 16, "{name}: {last}");
-        for index in 0..row.stages {
+        for index in (0..row.stages).filter(|index| log.keeps_state(*index)) {
             log.state(index).unwrap_or_else(|error| panic!("{name}: {error}"));
         }
         let errors = verify_log(&log).iter().filter(|finding| finding.level == Level::Error).count();
         assert_eq!(errors > 0, found == "damaged", "{name}");
+        // Byte for byte what is written today, the summary too, which MCAP's own writer made in version 1.
+        let faultless = verify_log(&log).iter().all(|finding| finding.level == Level::Info);
+        assert_eq!(faultless, ["finished", "unfinished"].contains(&found), "{name}");
 
         let place = Place::new();
         let new = place.file("new.mcap");
@@ -87,7 +90,7 @@ fn every_log_gives_what_the_table_says() {
             assert_eq!(before.record, after.record, "{name}");
         }
     }
-    assert!(bytes < 500_000, "{bytes} bytes of golden logs");
+    assert!(bytes < 700_000, "{bytes} bytes of golden logs");
 }
 
 /// A scene that leaves the rule of quadrature out means the rule that was the default when its log was begun.

@@ -35,7 +35,7 @@ thickness_mm = 0.1
 
 [mesh]
 degree = [2, 2]
-elements = [2, 2]
+elements = [4, 2]
 
 [symmetry]
 part = "quarter"
