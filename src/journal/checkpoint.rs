@@ -75,12 +75,18 @@ pub(super) fn read_in_parts(
     ledger: &mut Ledger,
     mut see: impl FnMut(&Log, &mut Ledger) -> io::Result<()>,
 ) -> io::Result<Log> {
+    let mut at_most = FIRST_PART_BYTES;
     loop {
-        let log = Log::read_on(file, from.as_ref(), PART_BYTES)?;
+        let log = Log::read_on(file, from.as_ref(), at_most)?;
+        let is_last = log.closed || log.base + log.walked as u64 >= log.file_len;
+        if log.entries.len() < 2 && !is_last && at_most < PART_BYTES {
+            at_most = PART_BYTES;
+            continue;
+        }
+        at_most = PART_BYTES;
         let last = log.entries.last().map_or(0, |entry| (entry.bytes.start - log.base) as usize);
         ledger.enter(log.base, &log.bytes[..last]);
         see(&log, ledger)?;
-        let is_last = log.closed || log.base + log.walked as u64 >= log.file_len;
         let next = Checkpoint::at_the_end_of(&log, ledger).filter(|next| next.at > log.base);
         match next {
             Some(next) if !is_last && log.is_clean() => from = Some(next),
@@ -88,6 +94,9 @@ pub(super) fn read_in_parts(
         }
     }
 }
+
+/// Bytes that are read first: behind the mark of an index seldom more are left, and a summary may follow of many times that.
+const FIRST_PART_BYTES: usize = 4 << 20;
 
 /// Bytes that are read at once: room for the largest chunk.
 const PART_BYTES: usize = 56 << 20;
