@@ -62,7 +62,7 @@ enum Choice {
 impl Steps {
     fn has(&self, step: u64) -> bool {
         self.choices.iter().any(|choice| match choice {
-            Choice::Every(each) => step % each == 0,
+            Choice::Every(each) => step.is_multiple_of(*each),
             Choice::FromTo(from, to) => (*from..=*to).contains(&step),
         })
     }
