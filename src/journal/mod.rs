@@ -41,10 +41,10 @@
 //! From some four thousand commits on, `LOG.index` lies beside a log: where its commits are and the numbers of their
 //! reports, written as the run goes on. [`LongLog`] and [`Resume`] read the end of such a log alone, and through the index
 //! what they are asked for, and check the seals and hashes of what they read. The index is a cache: without it, or where it
-//! does not fit, the log is read through, in parts that fit in memory, and the index is written anew. [`verify`] reads all
+//! does not fit, the log is read through, in parts that fit in memory, and the index is written anew. [`verify()`] reads all
 //! of a log and none of its index.
 //!
-//! [`thin`] writes a log anew without the states between some load steps; commits and reports, and with them the chain,
+//! [`thin()`] writes a log anew without the states between some load steps; commits and reports, and with them the chain,
 //! stay.
 //!
 //! # Checking that other programs can read a log

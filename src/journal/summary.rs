@@ -1,6 +1,6 @@
 //! MCAP's end of a file: the summary that viewers go by, in pieces, so that a log of a million commits needs no memory for
 //! it. The MCAP project's own writer keeps some 350 bytes for each chunk until the end, this one what
-//! [`Ledger`](super::ledger::Ledger) takes. The data section's checksum is left out, as MCAP allows: it would have every
+//! [`Ledger`] takes. The data section's checksum is left out, as MCAP allows: it would have every
 //! byte of a log read that is gone on with.
 
 use super::format::log_time_ns;
