@@ -5,14 +5,16 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::log_file::{ReadLog, read_log, scene_at};
+use super::log_file::{ReadLog, ask_long, read_log, scene_at};
 use super::output::print;
 use super::replay::place;
 use super::stage_table::stage_table;
 use crate::history::{
-    Comparison, Condition, SnapReport, find_parting, find_snap, first_loss_of_stability, shown_value,
+    Comparison, Condition, ConditionError, SnapReport, find_parting, find_snap, first_loss_of_stability, first_where,
+    shown_value,
 };
-use crate::pipeline::Parameter;
+use crate::journal::{LongLog, LongLogError};
+use crate::pipeline::{Parameter, Record};
 use crate::units::{count, place as place_mm, unsigned_zero};
 
 /// Find where two logs part, where a log jumps (--snap), or where a condition first holds (--when)
@@ -38,6 +40,12 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Answers the question.
     pub(super) fn run(self) -> Result<u8, Failure> {
+        if let Some(condition) = &self.when
+            && let Some(found) = ask_long(&self.log, |long| first_of_long(long, condition))?
+        {
+            let never = || Failure::NeverHolds { log: self.log.clone(), condition: condition.clone() };
+            return print(&stage_table(&found?.ok_or_else(never)?)).map(|()| 0);
+        }
         let read = read_log(&self.log)?;
         match (&self.other, &self.when) {
             (Some(other), _) => self.part(&read, &read_log(other)?, other),
@@ -110,6 +118,16 @@ impl Arguments {
         let scene = jump.map_or(Ok(read.scene.clone()), |jump| scene_at(&read.log, &self.log, jump, &[]))?;
         let report = find_snap(&read.log, &scene, self.tolerance).map_err(Box::new)?;
         print(&told(&report, Parameter::of(&scene))).map(|()| 0)
+    }
+}
+
+/// The first stage of a long log that meets a condition, and the one before it.
+fn first_of_long(long: &LongLog, text: &str) -> Result<Result<Option<Vec<Record>>, ConditionError>, LongLogError> {
+    let records = long.tail().entries().iter().map(|entry| &entry.record);
+    let Some(sample) = records.max_by_key(|record| record.report.probes.len()) else { return Ok(Ok(None)) };
+    match Condition::parse(text, &sample.report) {
+        Ok(condition) => first_where(long, &condition).map(Ok),
+        Err(error) => Ok(Err(error)),
     }
 }
 

@@ -6,9 +6,11 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::json_line::json_line;
-use super::log_file::read_log;
+use super::log_file::{ask_long, read_log};
 use super::output::print;
 use super::stage_table::{stage_table, step_in_full};
+use crate::history::stages_of_step;
+use crate::journal::{LongLog, LongLogError};
 use crate::pipeline::Record;
 use crate::study::Summary;
 
@@ -30,6 +32,14 @@ impl Arguments {
     /// Reads the log and shows it.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, step, json } = self;
+        if let Some(step) = step
+            && let Some((found, known)) = ask_long(&log, |long| Ok((stages_of_step(long, step)?, steps_of(long)?)))?
+        {
+            return match found.is_empty() {
+                true => Err(Failure::NoSuchStep { known, step, log }),
+                false => show_step(&found, step, json),
+            };
+        }
         let read = read_log(&log)?;
         let records = read.records();
         let wanted: Vec<Record> =
@@ -37,16 +47,43 @@ impl Arguments {
         if let (Some(step), true) = (step, wanted.is_empty()) {
             return Err(Failure::NoSuchStep { known: read.steps(), step, log });
         }
-        if json {
-            return print(&wanted.iter().map(|record| json_line(record) + "\n").collect::<String>());
-        }
-        if let Some(step) = step {
-            return print(&step_in_full(&wanted, step));
+        match step {
+            Some(step) => return show_step(&wanted, step, json),
+            None if json => return print(&json_lines(&wanted)),
+            None => {}
         }
         let mut text = format!("{}\n{}", stage_table(&records), Summary::new(&read.scene, &records));
+        if let Some(kept) = read.log.thinned() {
+            let states: Vec<usize> = (0..records.len()).filter(|index| read.log.keeps_state(*index)).collect();
+            text.push_str(&format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states)));
+        }
         if !read.is_finished() {
             text.push_str(&format!("\nunfinished; go on with: foldline resume {}\n", log.display()));
         }
         print(&text)
     }
+}
+
+/// First and last load step of a long log.
+fn steps_of(long: &LongLog) -> Result<Option<(u64, u64)>, LongLogError> {
+    let last = long.tail().entries().last().map(|entry| entry.record.report.step);
+    Ok(Some(long.record(0)?.report.step).zip(last))
+}
+
+/// Numbers in order, those that follow on one another as ranges.
+fn ranges(numbers: &[usize]) -> String {
+    let runs = numbers.chunk_by(|before, after| before + 1 == *after);
+    let shown = runs.map(|run| match run {
+        [.., last] if run.len() > 1 => format!("{}–{last}", run[0]),
+        _ => run[0].to_string(),
+    });
+    shown.collect::<Vec<_>>().join(", ")
+}
+
+fn show_step(records: &[Record], step: u64, json: bool) -> Result<(), Failure> {
+    print(&if json { json_lines(records) } else { step_in_full(records, step) })
+}
+
+fn json_lines(records: &[Record]) -> String {
+    records.iter().map(|record| json_line(record) + "\n").collect()
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::failure::Failure;
 use super::output::say;
 use super::scene_file::checked;
-use crate::journal::{Completeness, Log, Manifest, ReadError};
+use crate::journal::{Completeness, Log, LongLog, LongLogError, Manifest, ReadError};
 use crate::pipeline::Record;
 use crate::scene::Scene;
 
@@ -41,6 +41,7 @@ impl ReadLog {
     pub(super) fn warnings_of(log: &Log) -> Vec<String> {
         let mut warnings: Vec<String> =
             log.notes().iter().map(|note| format!("at byte {}: {}", note.at, note.text)).collect();
+        warnings.extend(log.lost_manifests().iter().map(ToString::to_string));
         match log.completeness() {
             Completeness::Finished | Completeness::Unfinished => {}
             Completeness::Truncated { at, dropped } => warnings.push(format!(
@@ -53,6 +54,25 @@ impl ReadLog {
         }
         warnings
     }
+}
+
+/// Asks a long log, of which only the end is read, and says what is lost of that; `None` for one that is read whole. Where the
+/// index turns out not to fit, the log is read through and asked again.
+pub(super) fn ask_long<T>(
+    path: &Path,
+    ask: impl Fn(&LongLog) -> Result<T, LongLogError>,
+) -> Result<Option<T>, Failure> {
+    let unreadable = |source| Failure::Read { path: path.to_path_buf(), source };
+    let Some(long) = LongLog::open(path).map_err(unreadable)? else { return Ok(None) };
+    for warning in ReadLog::warnings_of(long.tail()) {
+        say(&format!("foldline: {}: {warning}", path.display()));
+    }
+    if let Ok(answer) = ask(&long) {
+        return Ok(Some(answer));
+    }
+    let Some(long) = LongLog::read_through(path).map_err(unreadable)? else { return Ok(None) };
+    let wrong = |source| Failure::WrongLog { log: path.to_path_buf(), source: Box::new(source) };
+    ask(&long).map(Some).map_err(wrong)
 }
 
 /// Reads a log and the scene of its last stretch, and says what of it is lost; where that is lost, an earlier one
@@ -76,7 +96,7 @@ pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
 
 /// The scene that the log was last gone on with.
 pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
-    let stages = log.entries().len();
+    let stages = log.commits();
     if log.last_manifest_is_lost() {
         return Err(Failure::SceneLost { log: path.to_path_buf(), ordinal: stages.saturating_sub(1) });
     }
@@ -91,8 +111,9 @@ pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
 /// The scene that stage `index` was run with, with settings laid over it: that of its stretch, and held against the
 /// hash in its commit, so that no other takes its place where it is lost.
 pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
-    let expected = log.entries()[index].record.commit.scene_hash;
-    for manifest in log.manifests().iter().rev().filter(|manifest| manifest.first_ordinal <= index as u64) {
+    let lost = || Failure::SceneLost { log: path.to_path_buf(), ordinal: index };
+    let expected = log.entry(index).ok_or_else(lost)?.record.commit.scene_hash;
+    for manifest in log.manifests_of(index) {
         for chosen in 0..1 << DEFAULTS_BEFORE.len() {
             let is_chosen = |index: usize| chosen >> index & 1 == 1;
             let defaults = DEFAULTS_BEFORE.iter().enumerate().filter(|(index, _)| is_chosen(*index));
@@ -102,7 +123,18 @@ pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]
             }
         }
     }
-    Err(Failure::SceneLost { log: path.to_path_buf(), ordinal: index })
+    Err(lost())
+}
+
+/// Says which stretches of a log another revision of the numerics or another kind of kernel wrote than this one: what they
+/// give now may differ in its last bits.
+pub(super) fn say_other_numerics(log: &Log) {
+    let here = Manifest::here(Path::new(""), "", 0);
+    for manifest in log.manifests() {
+        if let Some(otherwise) = here.rounds_otherwise(manifest) {
+            say(&format!("stages from {} on: {otherwise}", manifest.first_ordinal));
+        }
+    }
 }
 
 fn scene_in(manifest: &Manifest, path: &Path, settings: &[String]) -> Result<Scene, Failure> {

@@ -26,6 +26,7 @@ mod stability;
 mod stage_table;
 mod stress;
 mod study;
+mod thin;
 mod trace;
 mod verify;
 
@@ -59,6 +60,7 @@ enum Command {
     Stability(stability::Arguments),
     Verify(verify::Arguments),
     Recover(recover::Arguments),
+    Thin(thin::Arguments),
     Bench(bench::Arguments),
     Converge(converge::Arguments),
     Study(study::Arguments),
@@ -84,6 +86,7 @@ impl Command {
             Command::Stability(arguments) => arguments.run().map(|()| 0),
             Command::Verify(arguments) => arguments.run(),
             Command::Recover(arguments) => arguments.run(),
+            Command::Thin(arguments) => arguments.run().map(|()| 0),
             Command::Converge(arguments) => arguments.run().map(|()| 0),
             Command::Study(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::log_file::{ReadLog, read_log, scene_at};
+use super::log_file::{ReadLog, read_log, say_other_numerics, scene_at};
 use super::output::{file_name, print, refuse_what_is_there};
 use super::scene_file::stage_named;
 use super::session::use_threads;
@@ -49,6 +49,7 @@ impl Arguments {
             refuse_what_is_there(&trace::files(file))?;
         }
         let read = read_log(&self.log)?;
+        say_other_numerics(&read.log);
         let mut stages: Option<Stages> = None;
         let mut rows: Vec<TraceRow> = Vec::new();
         let mut worst = 0;

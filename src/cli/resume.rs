@@ -85,11 +85,15 @@ fn refused(path: &Path, error: ResumeError) -> Failure {
 }
 
 /// Goes on with a log as far as it stands for `scene`.
+///
+/// Of a long log only the end is read, which is enough where the scene is the same.
 pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &RunOptions) -> Result<(), Failure> {
     let raised = watch_signals()?;
     let path = &options.log;
     let unusable = |source: Box<dyn std::error::Error + Send + Sync>| Failure::Resume { log: path.clone(), source };
-    let log = old.claim.log();
+    let same_scene = scene_of(old.claim.log(), path).is_ok_and(|was| was.differences(&scene).is_empty());
+    let claim = if same_scene { old.claim } else { old.claim.whole().map_err(|source| unusable(Box::new(source)))? };
+    let log = claim.log();
     let mut restored = None;
     let was = match scene_of(log, path) {
         Err(lost @ (Failure::SceneLost { .. } | Failure::NoScene { .. })) => {
@@ -103,14 +107,19 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let plan = plan(log, &was, &scene).map_err(|source| unusable(Box::new(source)))??;
     // What is lost or changed is said however quiet the run is.
     let lost = ReadLog::warnings_of(log).into_iter().chain(restored).chain(plan.changes);
-    let mut findings: Vec<String> = other_machine(log, &manifest).into_iter().collect();
+    let mut findings = other_numerics(log, &manifest);
     if options.is_shown() {
         say(&found(log, plan.keep));
     }
     lost.for_each(|line| say(&line));
     let mut stages = Stages::new(scene.clone());
     let basis = basis(log, plan.keep, &stages).map_err(|source| unusable(Box::new(source)))?;
-    let mut before: Vec<Record> = log.entries()[..plan.keep].iter().map(|entry| entry.record.clone()).collect();
+    let (first, all) = (log.first(), log.commits());
+    let kept = log.entries().iter().take(plan.keep.saturating_sub(first));
+    let mut before: Vec<Record> = kept.map(|entry| entry.record.clone()).collect();
+    if first > 0 {
+        findings.push(format!("the summary is of the stages from {first} on; every stage: foldline inspect"));
+    }
     let new_probes = new_probes::names(&was, &scene);
     if !new_probes.is_empty() {
         read_probes(log, &mut stages, &mut before).map_err(|source| unusable(Box::new(source)))?;
@@ -128,13 +137,13 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     if options.is_shown() {
         findings.iter().for_each(|line| say(line));
     }
-    let finished = log.completeness() == Completeness::Finished && plan.keep == log.entries().len();
+    let finished = log.completeness() == Completeness::Finished && plan.keep == all;
     // One that lost its summary is closed anew.
     if next.is_none() && finished && log.has_summary() {
         return options.sum_up(&Summary::new(&scene, &before));
     }
     let resumed =
-        old.claim.start_after(plan.keep, &manifest, scene.output.sync).map_err(|source| unusable(Box::new(source)))?;
+        claim.start_after(plan.keep, &manifest, scene.output.sync).map_err(|source| unusable(Box::new(source)))?;
     if let Some(dropped) = &resumed.dropped {
         say(&format!("what was dropped is kept in {}", dropped.display()));
     }
@@ -144,16 +153,29 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
 
 /// What a log holds and what of it is used.
 fn found(log: &Log, keep: usize) -> String {
-    match log.entries().len() {
+    match log.commits() {
         0 => "the log holds no stage".to_string(),
+        all if keep == all && !log.lost_manifests().is_empty() => {
+            format!("the log holds {all} stages, and has lost a manifest")
+        }
         all if keep == all => format!("the log holds {all} stages, all good"),
         all => format!("the log holds {all} good stages; the first {keep} stand"),
     }
 }
 
-/// Another machine may round differently: it is allowed, said, and recorded in the log.
-fn other_machine(log: &Log, manifest: &Manifest) -> Option<String> {
-    let last = log.manifests().last()?;
+/// Another kernel, revision or program may round differently: it is allowed, said, and recorded in the log.
+fn other_numerics(log: &Log, manifest: &Manifest) -> Vec<String> {
+    let Some(last) = log.manifests().last() else { return Vec::new() };
+    let otherwise = manifest
+        .rounds_otherwise(last)
+        .map(|what| format!("{what}: stages from here on may differ in their last bits"));
+    let [was, is] = [last, manifest].map(|manifest| &manifest.program_version);
+    let program = (was != is).then(|| format!("written by foldline {was}, goes on with foldline {is}"));
+    otherwise.into_iter().chain(program).chain(other_machine(last, manifest)).collect()
+}
+
+/// Another machine, which rounds alike where the kernel is of one kind.
+fn other_machine(last: &Manifest, manifest: &Manifest) -> Option<String> {
     (!last.same_machine(manifest)).then(|| {
         let feature = |list: &[String]| list.join(" ");
         format!(

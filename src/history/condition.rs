@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-use crate::pipeline::{Outcome, Report};
+use crate::journal::word_number;
+use crate::pipeline::{Outcome, Report, as_number, fields_of};
 use crate::scene::Stage;
 
 /// Comparisons that must all hold.
@@ -109,17 +110,41 @@ impl Condition {
                     Operator::Equal => word == other,
                     _ => word != other,
                 },
-                (Some(value), Operand::Number(number)) => as_number(value).is_some_and(|found| match term.operator {
-                    Operator::Less => found < *number,
-                    Operator::LessOrEqual => found <= *number,
-                    Operator::Greater => found > *number,
-                    Operator::GreaterOrEqual => found >= *number,
-                    Operator::Equal => found == *number,
-                    Operator::NotEqual => found != *number,
-                }),
+                (Some(value), Operand::Number(number)) => {
+                    as_number(value).is_some_and(|found| term.operator.holds(found, *number))
+                }
                 _ => false,
             }
         })
+    }
+}
+
+impl Condition {
+    /// The fields that it asks for, one for each comparison.
+    pub fn fields(&self) -> Vec<&str> {
+        self.terms.iter().map(|term| term.field.as_str()).collect()
+    }
+
+    /// Whether it holds for numbers of an index, one for each comparison.
+    pub fn holds_for(&self, numbers: &[u64]) -> bool {
+        self.terms.iter().zip(numbers).all(|(term, number)| match &term.value {
+            Operand::Number(value) => term.operator.holds(f64::from_bits(*number), *value),
+            Operand::Word(word) => (*number == word_number(word)) == (term.operator == Operator::Equal),
+        })
+    }
+}
+
+impl Operator {
+    /// Whether a number compares so; one that is not there, or none, never does.
+    fn holds(self, found: f64, number: f64) -> bool {
+        match self {
+            Operator::Less => found < number,
+            Operator::LessOrEqual => found <= number,
+            Operator::Greater => found > number,
+            Operator::GreaterOrEqual => found >= number,
+            Operator::Equal => found == number,
+            Operator::NotEqual => found != number && !found.is_nan(),
+        }
     }
 }
 
@@ -169,38 +194,4 @@ fn words_of(field: &str) -> Vec<String> {
         }
         _ => Vec::new(),
     }
-}
-
-/// Fields of a report by name, pairs also one by one.
-fn fields_of(report: &Report) -> Vec<(String, Value)> {
-    let Ok(Value::Object(object)) = serde_json::to_value(report) else { return Vec::new() };
-    let mut fields = Vec::new();
-    for (name, value) in object {
-        // Probes are asked for by their own names, below.
-        if name == "probes" {
-            continue;
-        }
-        if let Value::Array(pair) = &value {
-            for (index, part) in pair.iter().enumerate() {
-                fields.push((format!("{name}_{}", index + 1), part.clone()));
-            }
-            let numbers: Vec<f64> = pair.iter().filter_map(as_number).collect();
-            let whole = match name.as_str() {
-                "elements" => numbers.iter().product(),
-                "marked" => numbers.iter().sum(),
-                _ => numbers.iter().copied().fold(f64::MIN, f64::max),
-            };
-            fields.push((name, Value::from(whole)));
-        } else {
-            fields.push((name, value));
-        }
-    }
-    for probe in &report.probes {
-        fields.push((probe.name.clone(), Value::from(probe.value)));
-    }
-    fields
-}
-
-fn as_number(value: &Value) -> Option<f64> {
-    value.as_f64().or_else(|| value.as_bool().map(|truth| if truth { 1.0 } else { 0.0 }))
 }

@@ -3,6 +3,7 @@
 mod bisection;
 mod compare;
 mod condition;
+mod long;
 mod part;
 mod probes;
 mod replay;
@@ -13,6 +14,7 @@ mod stability;
 pub use bisection::{IndexBisection, LoadBisection};
 pub use compare::{Comparison, Difference, compare};
 pub use condition::{Condition, ConditionError};
+pub use long::{first_where, stages_of_step};
 pub use part::{Parting, find_parting};
 pub use probes::{ProbeError, read_probes};
 pub use replay::{ReplayError, Replayed, Verdict, replay_stage, verdict};

@@ -42,6 +42,17 @@ pub enum ReplayError {
     /// The state that the log holds cannot be had.
     #[error("the stage's own state cannot be had")]
     Logged(#[from] StateError),
+    /// The log was thinned, and a state between comes out otherwise now.
+    #[error(
+        "the state before it was thinned out; made again from stage {from} on, stage {ordinal} comes out otherwise: with another revision \
+         of the numerics, kernel or scene only stages behind a kept state can be run again"
+    )]
+    Remade {
+        /// Ordinal of the stage that comes out otherwise.
+        ordinal: u64,
+        /// Ordinal of the first stage that was run again.
+        from: usize,
+    },
     /// The stage failed.
     #[error("the stage fails when it is run again")]
     Stage(#[from] StageError),
@@ -57,11 +68,33 @@ pub fn replay_stage(
     stages: &mut Stages,
     observer: &mut dyn FnMut(&Iterate),
 ) -> Result<Replayed, ReplayError> {
-    let logged = log.state(index)?;
-    let before = basis(log, index, stages)?;
-    let (state, report) = stages.run(log.entries()[index].record.report.stage, &before.state, observer)?;
-    let comparison = compare(&logged, &state);
+    let before = state_before(log, index, stages)?;
+    let entry = &log.entries()[index].record;
+    let (state, report) = stages.run(entry.report.stage, &before, observer)?;
+    let comparison = match log.keeps_state(index) {
+        true => compare(&log.state(index)?, &state),
+        false if state.hash() == entry.commit.state_hash => Comparison::Identical,
+        false => Comparison::Structure(
+            "it has another hash, and the log, which was thinned, holds no state to compare".into(),
+        ),
+    };
     Ok(Replayed { state, report, comparison })
+}
+
+/// The state before stage `index`. Of a log that was thinned it is made again from the last state that is there, and has to
+/// come out with the hash that the log has for it.
+fn state_before(log: &Log, index: usize, stages: &mut Stages) -> Result<State, ReplayError> {
+    let kept = (0..index).rev().find(|before| log.keeps_state(*before));
+    let start = kept.map_or(0, |kept| kept + 1);
+    let mut state = basis(log, start, stages)?.state;
+    for entry in &log.entries()[start..index] {
+        let commit = &entry.record.commit;
+        state = stages.run(commit.stage, &state, &mut |_| {})?.0;
+        if state.hash() != commit.state_hash {
+            return Err(ReplayError::Remade { ordinal: commit.ordinal, from: start });
+        }
+    }
+    Ok(state)
 }
 
 /// What a comparison means.

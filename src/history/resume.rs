@@ -45,7 +45,7 @@ pub enum BasisError {
 pub fn basis(log: &Log, keep: usize, stages: &Stages) -> Result<Basis, BasisError> {
     match keep.checked_sub(1) {
         None => Ok(Basis { state: stages.start()?, commit: None }),
-        Some(last) => Ok(Basis { state: log.state(last)?, commit: Some(log.entries()[last].record.commit) }),
+        Some(last) => Ok(Basis { state: log.state(last)?, commit: log.entry(last).map(|entry| entry.record.commit) }),
     }
 }
 
@@ -87,7 +87,7 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     if !fatal.is_empty() {
         return Ok(Err(NothingStands { changes: fatal }));
     }
-    let mut keep = log.entries().len();
+    let mut keep = log.commits();
     let mut changes = Vec::new();
     if old.load.target() != new.load.target() {
         keep = keep.min(before_clipped_step(log, old, new)?);
@@ -96,7 +96,11 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     if !steps.is_empty() {
         keep = complete_steps(log, keep, old)?;
     }
-    let done = log.entries()[..keep].iter().map(|entry| &entry.record.report).filter(|it| it.outcome == Outcome::Done);
+    while keep > 0 && !log.keeps_state(keep - 1) {
+        keep -= 1;
+    }
+    let kept = log.entries().iter().take(keep.saturating_sub(log.first()));
+    let done = kept.map(|entry| &entry.record.report).filter(|it| it.outcome == Outcome::Done);
     let last_step = done.map(|report| report.step).max().unwrap_or(0);
     for difference in &differences {
         let what = shown(difference);
@@ -105,7 +109,7 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
             Reach::Free if STARTS_HERE.contains(&difference.path.as_str()) => {
                 format!("{what}: every stage stands, and the {keep} in the log keep what they were written with")
             }
-            Reach::Free if keep == log.entries().len() || !TARGETS.contains(&difference.path.as_str()) => {
+            Reach::Free if keep == log.commits() || !TARGETS.contains(&difference.path.as_str()) => {
                 format!("{what}: every stage stands")
             }
             _ if last_step == 0 => format!("{what}: no complete step stands"),
@@ -134,6 +138,10 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
     for (index, entry) in log.entries().iter().enumerate().skip(1) {
         let report = &entry.record.report;
         if report.stage == Stage::Solve && is_beyond(old, report.attempted_parameter, nearer) {
+            // Whether it was cut short cannot be told of a stage whose start was thinned out.
+            if !log.keeps_state(index - 1) {
+                return Ok(index);
+            }
             let parent = log.state(index - 1)?;
             // A step along the path is as long as its memory says, but where it ends on the target.
             if parent.path.is_some() || next_attempt(old, &parent) != next_attempt(new, &parent) {
@@ -153,6 +161,9 @@ fn is_beyond(scene: &Scene, parameter: f64, target: f64) -> bool {
 /// Number of stages, of the first `keep`, up to the last one that ends a load step.
 fn complete_steps(log: &Log, keep: usize, scene: &Scene) -> Result<usize, StateError> {
     for index in (0..keep).rev() {
+        if !log.keeps_state(index) {
+            continue;
+        }
         let state = log.state(index)?;
         let ends_step =
             state.control.rejection.is_none() && matches!(next_stage(scene, &state), None | Some(Stage::Solve));

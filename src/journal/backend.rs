@@ -1,6 +1,6 @@
 //! Where the bytes of a log go: a file, or what a test puts in its place.
 
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
@@ -48,6 +48,16 @@ pub struct FileBackend {
     path: PathBuf,
     coming: Coming,
     folder_synced: bool,
+    cut_first: Option<Cut>,
+}
+
+/// What goes before the first byte is added.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    /// Bytes that stay.
+    length: u64,
+    /// Bytes that the file had when it was read.
+    found: u64,
 }
 
 /// How a file comes to its name.
@@ -78,7 +88,29 @@ impl FileBackend {
     pub fn create_new(path: &Path) -> io::Result<Self> {
         let whole = WholeFile::beside(path)?;
         let file = whole.file().try_clone()?;
-        Ok(Self { file, path: path.to_owned(), coming: Coming::New(whole), folder_synced: false })
+        Ok(Self { file, path: path.to_owned(), coming: Coming::New(whole), folder_synced: false, cut_first: None })
+    }
+
+    /// A log that is gone on with in place. Of the `found` bytes that it has, those behind the first `length` are cut off before
+    /// the first byte is added.
+    ///
+    /// # Errors
+    /// Where the file cannot be opened.
+    pub(super) fn behind(path: &Path, length: u64, found: u64) -> io::Result<Self> {
+        let file = OpenOptions::new().append(true).open(path)?;
+        let cut_first = Some(Cut { length, found });
+        Ok(Self { file, path: path.to_owned(), coming: Coming::Named, folder_synced: true, cut_first })
+    }
+
+    /// Cuts off what is not gone on with. That is durable before anything takes its place: half of the one and half of the other
+    /// would be neither.
+    fn cut_first(&mut self) -> io::Result<()> {
+        if let Some(Cut { length, .. }) = self.cut_first.filter(|cut| cut.found != cut.length) {
+            self.file.set_len(length)?;
+            self.file.sync_all()?;
+        }
+        self.cut_first = None;
+        Ok(())
     }
 
     /// A new, empty file in the folder of a log, for a copy of it that takes its place with [`Self::replace`].
@@ -88,7 +120,7 @@ impl FileBackend {
     pub(super) fn copy_of(log: &Path) -> io::Result<Self> {
         let copy = WholeFile::beside(log)?;
         let file = copy.file().try_clone()?;
-        Ok(Self { file, path: log.to_owned(), coming: Coming::Copy(copy), folder_synced: false })
+        Ok(Self { file, path: log.to_owned(), coming: Coming::Copy(copy), folder_synced: false, cut_first: None })
     }
 
     /// Lets this copy, once all of it is on disk, take the place of the log, of whose `original_len` bytes it was made. Until then
@@ -153,7 +185,10 @@ impl FileBackend {
 impl Backend for FileBackend {
     fn check(&self, length: u64, commits: u64) -> Result<(), Estranged> {
         match &self.coming {
-            Coming::Named => still_ours(&self.file, &self.path, length, commits),
+            Coming::Named => {
+                let length = self.cut_first.map_or(length, |cut| cut.found);
+                still_ours(&self.file, &self.path, length, commits)
+            }
             Coming::Replacing { original, original_len, .. } => {
                 still_ours(original, &self.path, *original_len, commits)
             }
@@ -164,6 +199,7 @@ impl Backend for FileBackend {
 
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.settle()?;
+        self.cut_first()?;
         self.file.write_all(bytes)?;
         self.publish()
     }

@@ -15,7 +15,7 @@ use super::frame::{self, Frame, PREFIX_LEN, op};
 use super::message::{CommitMessage, FinishedMessage, MessageHash, ReportMessage, unseal};
 
 /// Bytes of a message record in front of its data: channel, sequence and two times.
-const MESSAGE_HEADER_LEN: usize = 2 + 4 + 8 + 8;
+pub(super) const MESSAGE_HEADER_LEN: usize = 2 + 4 + 8 + 8;
 
 /// The channels that a log has described so far, by number.
 pub(super) type Channels = HashMap<u16, records::Channel>;
@@ -38,8 +38,8 @@ pub(super) enum Content {
 pub(super) struct CommitContent {
     pub commit: CommitMessage,
     pub report: ReportMessage,
-    /// Bytes of the state in the log.
-    pub state: Range<usize>,
+    /// Bytes of the state in the log, where that was not thinned out.
+    pub state: Option<Range<usize>>,
     /// Bytes of the mesh in the log, where this chunk holds one.
     pub mesh: Option<Range<usize>>,
     /// Bytes of the displacements in the log, where this chunk holds them; they have the hash that the commit names.
@@ -144,15 +144,11 @@ fn content(bytes: &[u8], messages: &[Message]) -> Result<Content, Damage> {
     }
     let commit: CommitMessage = unseal(data).map_err(Damage::Commit)?;
     known_format(commit.format)?;
-    if commit.messages.len() != before.len() {
-        return Err(Damage::MessageCount { expected: commit.messages.len(), found: before.len() });
+    named_messages(bytes, before, &commit.messages)?;
+    if !commit.messages.iter().any(|named| named.topic == STATE_TOPIC) {
+        return Err(missing(STATE_TOPIC));
     }
-    for (index, (message, named)) in before.iter().zip(&commit.messages).enumerate() {
-        if MessageHash::of(&message.topic, &bytes[message.data.clone()]) != *named {
-            return Err(Damage::OtherMessage { index, topic: message.topic.clone() });
-        }
-    }
-    let state = one(before, STATE_TOPIC, "exactly one")?.ok_or(missing(STATE_TOPIC))?;
+    let state = one(before, STATE_TOPIC, "exactly one")?;
     let report = one(before, REPORT_TOPIC, "exactly one")?.ok_or(missing(REPORT_TOPIC))?;
     let mesh = one(before, MESH_TOPIC, "at most one")?;
     let displacement = one(before, DISPLACEMENT_TOPIC, "at most one")?;
@@ -166,6 +162,30 @@ fn content(bytes: &[u8], messages: &[Message]) -> Result<Content, Damage> {
         return Err(Damage::OtherReport);
     }
     Ok(Content::Commit(Box::new(CommitContent { commit, report, state, mesh, displacement })))
+}
+
+/// Checks that the messages of a chunk are those that its commit names, in their order. States, meshes and displacements may
+/// be left out.
+fn named_messages(bytes: &[u8], messages: &[Message], named: &[MessageHash]) -> Result<(), Damage> {
+    let may_be_left_out = |topic: &str| [STATE_TOPIC, MESH_TOPIC, DISPLACEMENT_TOPIC].contains(&topic);
+    let mut expected = named.iter();
+    for (index, message) in messages.iter().enumerate() {
+        let found = MessageHash::of(&message.topic, &bytes[message.data.clone()]);
+        let other = || Damage::OtherMessage { index, topic: message.topic.clone() };
+        loop {
+            let next = expected.next().ok_or_else(other)?;
+            if *next == found {
+                break;
+            }
+            if next.topic == found.topic || !may_be_left_out(&next.topic) {
+                return Err(other());
+            }
+        }
+    }
+    match expected.all(|left| may_be_left_out(&left.topic)) {
+        true => Ok(()),
+        false => Err(Damage::MessageCount { expected: named.len(), found: messages.len() }),
+    }
 }
 
 fn known_format(found: u32) -> Result<(), Damage> {

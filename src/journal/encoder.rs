@@ -16,7 +16,11 @@ use super::format::{
     PROFILE, REPORT_TOPIC, STATE_TOPIC, log_time_ns, sequence,
 };
 use super::frame::{self, Frame};
-use super::message::{CommitMessage, FinishedMessage, MessageHash, ReportMessage, schema_of, seal};
+use super::index::{Mark, Piece};
+use super::ledger::{ChunkPlace, Ledger};
+use super::manifest::Manifest;
+use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, ReportMessage, schema_of, seal};
+use super::summary;
 use crate::pipeline::{Commit, Record};
 use crate::state::Hash;
 
@@ -98,7 +102,19 @@ impl Write for Outbox {
 pub(super) struct Encoder {
     writer: Writer<NoSeek<Outbox>>,
     outbox: Outbox,
+    /// Chunks that the ledger had when the writer was made.
+    writer_made_at: usize,
+    /// Hash of the manifest that began the stretch.
+    stretch: Hash,
+    ledger: Ledger,
+    /// Length of the log so far.
+    length: u64,
+    /// Bytes that the log lacks and the ledger has.
+    in_front: Vec<u8>,
 }
+
+/// Chunks after which MCAP's writer is replaced by a new one: it keeps some 350 bytes for each until the end.
+const CHUNKS_OF_ONE_WRITER: usize = 4096;
 
 /// The messages of one stage, encoded.
 pub(super) struct Parts<'a> {
@@ -119,24 +135,58 @@ pub(super) fn library() -> String {
 
 impl Encoder {
     pub(super) fn new(library: &str) -> Result<Self, McapError> {
-        let outbox = Outbox::default();
-        let options = WriteOptions::new()
-            .profile(PROFILE)
-            .library(library)
-            .compression(None)
-            .chunk_size(None)
-            .disable_seeking(true);
-        let writer = options.create(NoSeek::new(outbox.clone()))?;
-        Ok(Self { writer, outbox })
+        let (writer, outbox) = writer(library)?;
+        let stretch = Hash::from_bytes([0; 32]);
+        Ok(Self {
+            writer,
+            outbox,
+            writer_made_at: 0,
+            stretch,
+            ledger: Ledger::default(),
+            length: 0,
+            in_front: Vec::new(),
+        })
     }
 
-    /// The bytes made so far, which are then gone from here.
+    /// Goes on behind the first `length` bytes of a log, which `ledger` describes.
+    pub(super) fn behind(ledger: Ledger, length: u64) -> Result<Self, McapError> {
+        let (writer, outbox) = writer_that_knows(&ledger)?;
+        let stretch = Hash::from_bytes([0; 32]);
+        Ok(Self { writer, outbox, writer_made_at: ledger.chunks.len(), stretch, ledger, length, in_front: Vec::new() })
+    }
+
+    /// The bytes made so far, whole records, which are then gone from here.
     pub(super) fn take(&mut self) -> Vec<u8> {
-        std::mem::take(&mut *self.outbox.bytes())
+        let mut bytes = std::mem::take(&mut *self.outbox.bytes());
+        self.ledger.enter(self.length, &bytes);
+        self.length += bytes.len() as u64;
+        if !self.in_front.is_empty() {
+            bytes.splice(..0, std::mem::take(&mut self.in_front));
+        }
+        if self.ledger.chunks.len() - self.writer_made_at >= CHUNKS_OF_ONE_WRITER {
+            self.writer_made_at = self.ledger.chunks.len();
+            // The one there is does as well.
+            if let Ok((writer, outbox)) = writer_that_knows(&self.ledger) {
+                (self.writer, self.outbox) = (writer, outbox);
+            }
+        }
+        bytes
     }
 
-    pub(super) fn manifest(&mut self, record: &Metadata) -> Result<(), McapError> {
-        self.writer.write_metadata(record)
+    /// Gives back bytes that were taken: they go out in front of what is made next.
+    pub(super) fn give_back(&mut self, bytes: &[u8]) {
+        self.in_front = bytes.to_vec();
+    }
+
+    /// What the log holds.
+    pub(super) fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// Begins a stretch.
+    pub(super) fn manifest(&mut self, manifest: &Manifest) -> Result<(), McapError> {
+        self.stretch = manifest.hash();
+        self.writer.write_metadata(&manifest.to_record())
     }
 
     /// One stage as one chunk.
@@ -157,7 +207,7 @@ impl Encoder {
         }
         let named = messages.iter().map(|(topic, data)| MessageHash::of(&topic.topic, data)).collect();
         let (mesh, displacement) = (parts.mesh_hash, parts.state.displacement_hash);
-        let commit = seal(&CommitMessage::new(&parts.record.commit, mesh, displacement, named))?;
+        let commit = seal(&CommitMessage::new(&parts.record.commit, self.stretch, mesh, displacement, named))?;
         messages.push((&OWN.commit, &commit));
 
         const RECORD_OVERHEAD: usize = 256;
@@ -172,9 +222,27 @@ impl Encoder {
         Ok(self.writer.flush()?)
     }
 
+    /// Where the last chunk that was taken lies.
+    pub(super) fn last_chunk(&self) -> Option<ChunkPlace> {
+        self.ledger.chunks.last().copied()
+    }
+
+    /// What a block of the index says about the last commit that was taken.
+    pub(super) fn mark(&self, last: &Commit, mesh: Hash, displacement: Hash) -> Option<Mark> {
+        let piece = |topic, hash| Some(Piece { hash: HexHash(hash), place: self.ledger.last_message(topic)? });
+        Some(Mark {
+            chain_hash: HexHash(last.chain_hash),
+            patterns: self.ledger.patterns.clone(),
+            metadata: self.ledger.metadata.clone(),
+            described_at: self.ledger.described_at.clone(),
+            mesh: piece(MESH_TOPIC, mesh)?,
+            displacement: piece(DISPLACEMENT_TOPIC, displacement)?,
+        })
+    }
+
     /// The end of the run, as a chunk of its own.
     pub(super) fn finished(&mut self, last: &Commit) -> Result<(), EncodeError> {
-        let data = seal(&FinishedMessage::after(last))?;
+        let data = seal(&FinishedMessage::after(last, self.stretch))?;
         self.message(&OWN.finished, last.ordinal, &data)?;
         Ok(self.writer.flush()?)
     }
@@ -195,29 +263,95 @@ impl Encoder {
         self.writer.write_to_known_channel(&header, data)
     }
 
-    /// A chunk of another log again: the same records with the same numbers and times, so that the bytes are the same.
-    pub(super) fn again(&mut self, bytes: &[u8], chunk: &Frame) -> Result<(), McapError> {
-        for record in chunk::records(bytes, chunk).unwrap_or_default() {
+    /// A manifest or a chunk of another log again: the same records with the same numbers and times, so that the bytes are
+    /// the same.
+    pub(super) fn again(&mut self, bytes: &[u8], part: &Frame) -> Result<(), McapError> {
+        self.again_if(bytes, part, |_| true)
+    }
+
+    /// A record that says something about the log.
+    pub(super) fn metadata(&mut self, record: &Metadata) -> Result<(), McapError> {
+        self.writer.write_metadata(record)
+    }
+
+    /// The same without the messages whose data begins at a place that `keeps` does not take.
+    pub(super) fn again_if(
+        &mut self,
+        bytes: &[u8],
+        part: &Frame,
+        keeps: impl Fn(usize) -> bool,
+    ) -> Result<(), McapError> {
+        if part.opcode == frame::op::METADATA
+            && let McapRecord::Metadata(record) = frame::parse(part.opcode, &bytes[part.body.clone()])?
+        {
+            return self.writer.write_metadata(&record);
+        }
+        for record in chunk::records(bytes, part).unwrap_or_default() {
+            let data = record.body.start + chunk::MESSAGE_HEADER_LEN;
             match frame::parse(record.opcode, &bytes[record.body])? {
-                McapRecord::Schema { header, data } => {
-                    self.writer.add_schema_with_id(header.id, &header.name, &header.encoding, &data)?;
-                }
-                McapRecord::Channel(channel) => {
-                    let (topic, encoding) = (&channel.topic, &channel.message_encoding);
-                    let (id, schema) = (channel.id, channel.schema_id);
-                    self.writer.add_channel_with_id(id, schema, topic, encoding, &channel.metadata)?;
-                }
+                McapRecord::Message { .. } if !keeps(data) => {}
                 McapRecord::Message { header, data } => self.writer.write_to_known_channel(&header, &data)?,
-                _ => {}
+                record => describe(&mut self.writer, &record)?,
             }
         }
         self.writer.flush()
     }
 
-    /// MCAP's summary and end.
-    pub(super) fn close(&mut self) -> Result<(), McapError> {
-        self.writer.finish().map(drop)
+    /// MCAP's summary and end, behind all that was taken.
+    pub(super) fn close<E>(&self, commits: u64, emit: impl FnMut(Vec<u8>) -> Result<(), E>) -> Result<(), E> {
+        summary::write(&self.ledger, self.length, commits, 0, emit)
     }
+
+    /// The same, as it stood in version 1: with the checksum of all bytes before it.
+    pub(super) fn close_with_checksum<E>(
+        &self,
+        commits: u64,
+        checksum: u32,
+        emit: impl FnMut(Vec<u8>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        summary::write(&self.ledger, self.length, commits, checksum, emit)
+    }
+}
+
+/// MCAP's writer at the start of a log, and where its bytes go.
+fn writer(library: &str) -> Result<(Writer<NoSeek<Outbox>>, Outbox), McapError> {
+    let outbox = Outbox::default();
+    let options = WriteOptions::new()
+        .profile(PROFILE)
+        .library(library)
+        .compression(None)
+        .chunk_size(None)
+        .disable_seeking(true)
+        .calculate_data_section_crc(false);
+    Ok((options.create(NoSeek::new(outbox.clone()))?, outbox))
+}
+
+/// MCAP's writer in the middle of a log: it knows the schemas and channels, and makes the bytes that the one before it would
+/// have made.
+fn writer_that_knows(ledger: &Ledger) -> Result<(Writer<NoSeek<Outbox>>, Outbox), McapError> {
+    let (mut writer, outbox) = writer("")?;
+    for record in ledger.schemas.values().chain(ledger.channels.values()) {
+        let Some(Ok(found)) = frame::next(record, 0) else { continue };
+        describe(&mut writer, &frame::parse(found.opcode, &record[found.body])?)?;
+    }
+    writer.flush()?;
+    outbox.bytes().clear();
+    Ok((writer, outbox))
+}
+
+/// Puts a schema or a channel into a chunk under the number that it has.
+fn describe(writer: &mut Writer<NoSeek<Outbox>>, record: &McapRecord) -> Result<(), McapError> {
+    match record {
+        McapRecord::Schema { header, data } => {
+            writer.add_schema_with_id(header.id, &header.name, &header.encoding, data)?;
+        }
+        McapRecord::Channel(channel) => {
+            let (topic, encoding) = (&channel.topic, &channel.message_encoding);
+            writer.add_channel_with_id(channel.id, channel.schema_id, topic, encoding, &channel.metadata)?;
+        }
+        _ => {}
+    }
+    Ok(())
 }
 
 /// The log's own topics; their schemas are made once.

@@ -6,6 +6,8 @@ use std::ops::Range;
 
 pub(super) use mcap::records::op;
 
+use super::format::MANIFEST;
+
 /// Bytes in front of a record.
 pub(super) const PREFIX_LEN: usize = 1 + 8;
 
@@ -44,7 +46,7 @@ pub(super) fn next(bytes: &[u8], at: usize) -> Option<Result<Frame, Cut>> {
 }
 
 /// Chunk header of an uncompressed chunk: two times, size, checksum, an empty name, size.
-const CHUNK_HEADER_LEN: usize = 8 + 8 + 8 + 4 + 4 + 8;
+pub(super) const CHUNK_HEADER_LEN: usize = 8 + 8 + 8 + 4 + 4 + 8;
 
 /// Where the records of an uncompressed chunk lie, if the lengths in its header agree with its own.
 pub(super) fn chunk_records(bytes: &[u8], frame: &Frame) -> Option<Range<usize>> {
@@ -55,12 +57,21 @@ pub(super) fn chunk_records(bytes: &[u8], frame: &Frame) -> Option<Range<usize>>
     agree.then(|| frame.body.start + CHUNK_HEADER_LEN..frame.body.end)
 }
 
-/// The next place at or after `from` that looks like an uncompressed chunk: its three lengths agree.
-pub(super) fn find_chunk(bytes: &[u8], from: usize) -> Option<usize> {
-    let candidates = bytes.get(from..)?.iter().enumerate().filter(|(_, byte)| **byte == op::CHUNK);
-    candidates.map(|(offset, _)| from + offset).find(|&at| {
-        matches!(next(bytes, at), Some(Ok(frame)) if frame.opcode == op::CHUNK && chunk_records(bytes, &frame).is_some())
+/// The next place at or after `from` that looks like an uncompressed chunk, whose three lengths agree, or like a manifest.
+pub(super) fn find(bytes: &[u8], from: usize) -> Option<usize> {
+    let kinds = [op::CHUNK, op::METADATA];
+    let candidates = bytes.get(from..)?.iter().enumerate().filter(|(_, byte)| kinds.contains(*byte));
+    candidates.map(|(offset, _)| from + offset).find(|&at| match next(bytes, at) {
+        Some(Ok(frame)) if frame.opcode == op::CHUNK => chunk_records(bytes, &frame).is_some(),
+        Some(Ok(frame)) => name(&bytes[frame.body]) == Some(MANIFEST),
+        _ => false,
     })
+}
+
+/// The text that a record begins with.
+pub(super) fn name(mut body: &[u8]) -> Option<&str> {
+    let len = length(&mut body)?;
+    std::str::from_utf8(take(&mut body, len)?).ok()
 }
 
 /// A record parsed by MCAP, once no text in it claims to be longer than the record: the parser reserves what a length

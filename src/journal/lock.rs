@@ -3,7 +3,9 @@
 //! The operating system's lock on `LOG.lock` goes with the process, however it ends: a stale lock cannot be. Where a
 //! file system has no such locks, the lease in `LOG.lease` stands in: of several who claim it one gets it, and keeps it
 //! while its process lives. Where locks seem to work and another machine does not see them, whoever comes takes the
-//! lease over: a writer looks before every commit whether it is still its own, and stops where it is not.
+//! lease over: a writer looks before every commit whether it is still its own, and stops where it is not, or where the file is
+//! no longer the one of the length that it left. Under the system's lock a log is gone on with in place, and else in a copy
+//! that takes its place.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
@@ -107,6 +109,8 @@ pub struct LogLock {
     lock_path: PathBuf,
     /// Holds the lock as long as it is open.
     lock: File,
+    /// Whether the system keeps others out, and not the lease alone.
+    is_exclusive: bool,
 }
 
 impl LogLock {
@@ -157,7 +161,12 @@ impl LogLock {
                 return Err(LockError::Leased { log: name(), holder: holder.words, lease });
             }
         };
-        Ok(Self { log: log.to_owned(), lease, lock_path, lock })
+        Ok(Self { log: log.to_owned(), lease, lock_path, lock, is_exclusive: is_locked })
+    }
+
+    /// Whether the system keeps others out, and not the lease alone.
+    pub fn is_exclusive(&self) -> bool {
+        self.is_exclusive
     }
 
     /// Looks whether the right is still held. A lease that cannot be read is tried again for a while.

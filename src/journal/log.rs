@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::codec::{CodecError, decode_mesh, decode_state};
 use super::damage::{Completeness, LaterCommit, Problem};
 use super::manifest::Manifest;
+use super::stretch::{LostManifest, Stretches};
 use crate::pipeline::{Commit, Record};
 use crate::state::{Hash, Mesh, State};
 
@@ -21,7 +22,12 @@ pub struct Entry {
     pub(super) displacement_hash: Hash,
     /// Where its chunk lies in the log, bytes.
     pub bytes: Range<u64>,
-    pub(super) state: Range<usize>,
+    /// Where its state lies, if that was not thinned out.
+    pub(super) state: Option<Range<usize>>,
+    /// Place of its manifest among those of the log, where that is there.
+    pub(super) stretch: Option<usize>,
+    /// Whether its commit names the manifest, as from version 2 on.
+    pub(super) names_stretch: bool,
 }
 
 /// Something worth telling that costs no commit.
@@ -44,6 +50,14 @@ pub enum StateError {
         /// Stages in the log.
         len: usize,
     },
+    /// The log was thinned.
+    #[error("the state of commit {index} is not in the log, which was thinned; {}", kept_before(*before))]
+    NotKept {
+        /// Ordinal of the commit.
+        index: usize,
+        /// The last commit before it that has its state.
+        before: Option<usize>,
+    },
     /// The bytes are as written, but what they hold is not what was committed.
     #[error("the state of commit {index} cannot be used")]
     Content {
@@ -55,10 +69,19 @@ pub enum StateError {
     },
 }
 
+fn kept_before(before: Option<usize>) -> String {
+    match before {
+        Some(before) => format!("the last one before it is that of commit {before}, from which `foldline replay` goes"),
+        None => "none before it is".to_owned(),
+    }
+}
+
 /// What a good part of a log is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kept {
     Manifest,
+    /// That the log was thinned.
+    Marker,
     Commit,
     Finished,
 }
@@ -71,12 +94,22 @@ pub(super) struct Part {
     pub kept: Kept,
 }
 
-/// What is good of a log. Holds the file in memory; states are decoded, and held against their hashes, when asked for.
+/// What is good of a log, or of its last part. Holds the file, or that part, in memory; states are decoded, and held against
+/// their hashes, when asked for.
 #[derive(Debug)]
 pub struct Log {
+    /// Place in the file of the first byte in memory.
+    pub(super) base: u64,
+    /// Stages before the first that was read.
+    pub(super) first: usize,
+    pub(super) file_len: u64,
+    /// Bytes of the file in memory; what lies behind them are a mesh and displacements from before.
+    pub(super) walked: usize,
+    /// Where those begin, in memory and in the file.
+    pub(super) pieces: Vec<(usize, u64)>,
     pub(super) library: String,
-    pub(super) manifests: Vec<Manifest>,
-    pub(super) manifest_lost: bool,
+    pub(super) thinned: Option<String>,
+    pub(super) stretches: Stretches,
     pub(super) entries: Vec<Entry>,
     pub(super) meshes: HashMap<Hash, Range<usize>>,
     pub(super) displacements: HashMap<Hash, Range<usize>>,
@@ -84,6 +117,7 @@ pub struct Log {
     pub(super) finished: bool,
     pub(super) closed: bool,
     pub(super) good_end: usize,
+    pub(super) stretch_end: usize,
     pub(super) problems: Vec<Problem>,
     pub(super) later: Vec<LaterCommit>,
     pub(super) notes: Vec<Note>,
@@ -94,17 +128,50 @@ pub struct Log {
 impl Log {
     /// The manifests of the run's stretches, in order; one that is damaged is not among them.
     pub fn manifests(&self) -> &[Manifest] {
-        &self.manifests
+        &self.stretches.manifests
     }
 
-    /// Whether a damaged manifest stands behind the last good one: what the run last went on with is not known.
+    /// The manifests that stage `index` may have been made under, likeliest first: the one that its commit names, if the log
+    /// has it. Commits of version 1 name none.
+    pub fn manifests_of(&self, index: usize) -> impl Iterator<Item = &Manifest> {
+        let entry = self.entry(index);
+        let named = entry.filter(|entry| entry.names_stretch).map(|entry| entry.stretch);
+        let may = move |place: usize, manifest: &Manifest| match named {
+            Some(stretch) => stretch == Some(place),
+            None => manifest.first_ordinal <= index as u64,
+        };
+        let manifests = self.manifests().iter().enumerate().rev();
+        manifests.filter(move |(place, manifest)| may(*place, manifest)).map(|(_, manifest)| manifest)
+    }
+
+    /// Manifests that are lost, in the order of the file.
+    pub fn lost_manifests(&self) -> &[LostManifest] {
+        &self.stretches.lost
+    }
+
+    /// Whether the last of them is behind the last good one: what the run last went on with is not known.
     pub fn last_manifest_is_lost(&self) -> bool {
-        self.manifest_lost
+        self.stretches.last_is_lost
     }
 
-    /// The stages, in the order of the run; entry k has ordinal k.
+    /// The stages that were read, in the order of the run; entry k has ordinal k, counted from [`Log::first`].
     pub fn entries(&self) -> &[Entry] {
         &self.entries
+    }
+
+    /// Ordinal of the first stage that was read: 0, but where only the last part of a long log was.
+    pub fn first(&self) -> usize {
+        self.first
+    }
+
+    /// Stages of the run, whether they were read or not.
+    pub fn commits(&self) -> usize {
+        self.first + self.entries.len()
+    }
+
+    /// Stage `index` of the run, if it was read.
+    pub fn entry(&self, index: usize) -> Option<&Entry> {
+        self.entries.get(index.checked_sub(self.first)?)
     }
 
     /// The last good commit.
@@ -114,8 +181,8 @@ impl Log {
 
     /// What the log is worth.
     pub fn completeness(&self) -> Completeness {
-        let at = self.good_end as u64;
-        let dropped = self.bytes.len() as u64 - at;
+        let at = self.good_end();
+        let dropped = self.file_len - at;
         match self.loss() {
             _ if self.finished && self.later.is_empty() => Completeness::Finished,
             None => Completeness::Unfinished,
@@ -127,7 +194,7 @@ impl Log {
     /// The problem that ends the good part; `None` where nothing behind it is lost. Problems that the chain of commits
     /// reaches across cost nothing.
     pub fn loss(&self) -> Option<&Problem> {
-        self.problems.iter().find(|problem| problem.at >= self.good_end as u64)
+        self.problems.iter().find(|problem| problem.at >= self.good_end())
     }
 
     /// All that is not as it was written, in the order of the file.
@@ -145,14 +212,31 @@ impl Log {
         &self.notes
     }
 
+    /// Where bytes in memory lie in the file.
+    pub(super) fn place_of(&self, place: &Range<usize>) -> Option<u64> {
+        if place.end <= self.walked {
+            return Some(self.base + place.start as u64);
+        }
+        self.pieces.iter().find(|(start, _)| *start == place.start).map(|(_, at)| *at)
+    }
+
     /// Where the good bytes end.
     pub fn good_end(&self) -> u64 {
-        self.good_end as u64
+        self.base + self.good_end as u64
     }
 
     /// Length of the file, bytes.
     pub fn file_len(&self) -> u64 {
-        self.bytes.len() as u64
+        self.file_len
+    }
+
+    /// Whether every byte up to the end of the good part is as it was written, and no manifest is lost: a run may go on right
+    /// behind it.
+    pub(super) fn is_clean(&self) -> bool {
+        let good_end = self.good_end();
+        self.problems.iter().all(|problem| problem.at >= good_end)
+            && self.notes.is_empty()
+            && self.lost_manifests().is_empty()
     }
 
     /// Whether MCAP's summary, which viewers look for, is there to its end: a kill may meet the write that adds it.
@@ -162,7 +246,17 @@ impl Log {
 
     /// Bytes behind the good part that may be worth keeping; empty where they are only MCAP's summary.
     pub(super) fn tail(&self) -> &[u8] {
-        if self.loss().is_some() { &self.bytes[self.good_end..] } else { &[] }
+        if self.loss().is_some() { &self.bytes[self.good_end..self.walked] } else { &[] }
+    }
+
+    /// Whether the log holds the state that stage `index` made: all of them, but in a log that was thinned.
+    pub fn keeps_state(&self, index: usize) -> bool {
+        self.entry(index).is_some_and(|entry| entry.state.is_some())
+    }
+
+    /// Which states a thinned log holds, in the words that it was thinned with; `None` for any other.
+    pub fn thinned(&self) -> Option<&str> {
+        self.thinned.as_deref()
     }
 
     /// The state that stage `index` made. The mesh is shared with the state that was asked for before, where it is
@@ -171,11 +265,15 @@ impl Log {
     /// # Errors
     /// Where there is no such stage, or where what the log holds is not what was committed.
     pub fn state(&self, index: usize) -> Result<State, StateError> {
-        let Some(entry) = self.entries.get(index) else {
-            return Err(StateError::NoSuchStage { index, len: self.entries.len() });
+        let Some(entry) = self.entry(index) else {
+            return Err(StateError::NoSuchStage { index, len: self.commits() });
+        };
+        let Some(place) = entry.state.clone() else {
+            let before = (self.first..index).rev().find(|before| self.keeps_state(*before));
+            return Err(StateError::NotKept { index, before });
         };
         let mesh = self.mesh(index)?;
-        let bytes = &self.bytes[entry.state.clone()];
+        let bytes = &self.bytes[place];
         let displacement = |hash: Hash| self.displacements.get(&hash).map(|place| &self.bytes[place.clone()]);
         decode_state(bytes, displacement, mesh, entry.mesh_hash, entry.record.commit.state_hash)
             .map_err(|source| StateError::Content { index, source })
@@ -186,8 +284,8 @@ impl Log {
     /// # Errors
     /// Where there is no such stage, or where what the log holds is not what was committed.
     pub fn mesh(&self, index: usize) -> Result<Arc<Mesh>, StateError> {
-        let len = self.entries.len();
-        let hash = self.entries.get(index).ok_or(StateError::NoSuchStage { index, len })?.mesh_hash;
+        let len = self.commits();
+        let hash = self.entry(index).ok_or(StateError::NoSuchStage { index, len })?.mesh_hash;
         let mut last = self.last_mesh.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((known, mesh)) = &*last
             && *known == hash

@@ -1,13 +1,15 @@
 //! Who wrote this part of a log, with what and where: a metadata record at the start and at every resume.
 //!
 //! A metadata record lies outside the chunks and has no checksum in MCAP, so it carries one of its own over all its
-//! entries. A manifest that does not check is left out, never guessed at: states do not depend on it.
+//! entries. That hash is the name by which the commits of the stretch call their manifest. A manifest that does not check
+//! is lost, and never guessed at: states do not depend on it, but what the run was asked for does.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::format::{FORMAT_VERSION, MANIFEST};
+use crate::pipeline::NUMERICS_REVISION;
 use crate::state::Hash;
 
 /// What stood at the start of one stretch of a run.
@@ -28,6 +30,9 @@ pub struct Manifest {
     /// Build of the element kernel that ran; empty in logs that do not say. Those for AVX2 and AVX-512 give the same
     /// bits.
     pub kernel: String,
+    /// Revision of the numerics; 0 in logs that do not say. Stretches of one revision and one kind of kernel have the same
+    /// bits.
+    pub numerics: u32,
     /// Threads that the run used.
     pub threads: usize,
     /// Name of the machine; empty where it is not known.
@@ -36,6 +41,8 @@ pub struct Manifest {
     pub started_unix_s: u64,
     /// Ordinal of the first stage of this stretch.
     pub first_ordinal: u64,
+    /// Whether the scene reads as in the stretch before.
+    pub same_scene: bool,
 }
 
 /// Why a metadata record is not a manifest.
@@ -71,10 +78,12 @@ impl Manifest {
             cpu: std::env::consts::ARCH.to_owned(),
             cpu_features: cpu_features().iter().map(|&name| name.to_owned()).collect(),
             kernel: crate::equilibrium::kernel_name().to_owned(),
+            numerics: NUMERICS_REVISION,
             threads,
             host: host(),
             started_unix_s: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
             first_ordinal: 0,
+            same_scene: false,
         }
     }
 
@@ -83,17 +92,55 @@ impl Manifest {
         (&self.host, &self.cpu, &self.cpu_features) == (&other.host, &other.cpu, &other.cpu_features)
     }
 
+    /// Why this stretch may round otherwise than `before`, in words; `None` where both round alike, on whatever machines.
+    pub fn rounds_otherwise(&self, before: &Self) -> Option<String> {
+        let kernels = [before, self].map(|manifest| KernelClass::of(&manifest.kernel));
+        let [was, is] = [before, self].map(|manifest| {
+            let Self { kernel, cpu, .. } = manifest;
+            if kernel.is_empty() {
+                format!("a kernel for {cpu} that the log does not name")
+            } else {
+                format!("kernel {kernel}")
+            }
+        });
+        if kernels[0] != kernels[1] || (kernels[0] == KernelClass::Unknown && !self.same_machine(before)) {
+            return Some(format!("another kernel: {was} before, {is} now"));
+        }
+        match (before.numerics, self.numerics) {
+            (was, is) if was == is => None,
+            (0, is) => Some(format!(
+                "another revision of the numerics may have written it: the log does not say which, this is {is}"
+            )),
+            (was, is) => Some(format!("another revision of the numerics: {was} before, {is} now")),
+        }
+    }
+
+    /// The name of this manifest in the commits of its stretch.
+    pub(super) fn hash(&self) -> Hash {
+        check(&self.entries())
+    }
+
     pub(super) fn to_record(&self) -> mcap::records::Metadata {
+        let mut entries = self.entries();
+        let check = check(&entries);
+        entries.insert(CHECK.to_owned(), check.to_string());
+        mcap::records::Metadata { name: MANIFEST.to_owned(), metadata: entries }
+    }
+
+    /// All entries but the hash over them.
+    fn entries(&self) -> BTreeMap<String, String> {
         let mut entries = BTreeMap::from(
             [
                 ("format_version", self.format_version.to_string()),
                 ("program", "foldline".to_owned()),
                 ("program_version", self.program_version.clone()),
                 ("scene_file", self.scene_file.clone()),
+                (LIBRARY, super::encoder::library()),
                 ("scene", self.scene_text.clone()),
                 ("cpu", self.cpu.clone()),
                 ("cpu_features", self.cpu_features.join(" ")),
                 ("kernel", self.kernel.clone()),
+                ("numerics", self.numerics.to_string()),
                 ("threads", self.threads.to_string()),
                 ("host", self.host.clone()),
                 ("started_unix_s", self.started_unix_s.to_string()),
@@ -101,20 +148,24 @@ impl Manifest {
             ]
             .map(|(key, value)| (key.to_owned(), value)),
         );
-        let check = check(&entries);
-        entries.insert(CHECK.to_owned(), check.to_string());
-        mcap::records::Metadata { name: MANIFEST.to_owned(), metadata: entries }
+        if self.first_ordinal > 0 || self.same_scene {
+            let what = if self.same_scene { SAME_SCENE } else { "another scene" };
+            entries.insert(AGAIN.to_owned(), what.to_owned());
+        }
+        entries
     }
 
-    pub(super) fn from_record(record: &mcap::records::Metadata) -> Result<Self, ManifestError> {
+    /// The manifest that a record holds, and its name in the commits of its stretch.
+    pub(super) fn from_record(record: &mcap::records::Metadata) -> Result<(Self, Hash), ManifestError> {
         let text = |key: &'static str| record.metadata.get(key).cloned().ok_or(ManifestError::Missing { key });
         fn number<N: std::str::FromStr>(key: &'static str, value: String) -> Result<N, ManifestError> {
             value.parse().map_err(|_| ManifestError::NotANumber { key, value })
         }
-        if text(CHECK)? != check(&record.metadata).to_string() {
+        let name = check(&record.metadata);
+        if text(CHECK)? != name.to_string() {
             return Err(ManifestError::Check);
         }
-        Ok(Self {
+        let manifest = Self {
             format_version: number("format_version", text("format_version")?)?,
             program_version: text("program_version")?,
             scene_file: text("scene_file")?,
@@ -122,11 +173,59 @@ impl Manifest {
             cpu: text("cpu")?,
             cpu_features: text("cpu_features")?.split_whitespace().map(str::to_owned).collect(),
             kernel: record.metadata.get("kernel").cloned().unwrap_or_default(),
+            numerics: number("numerics", record.metadata.get("numerics").cloned().unwrap_or("0".to_owned()))?,
             threads: number("threads", text("threads")?)?,
             host: text("host")?,
             started_unix_s: number("started_unix_s", text("started_unix_s")?)?,
             first_ordinal: number("first_ordinal", text("first_ordinal")?)?,
-        })
+            same_scene: record.metadata.get(AGAIN).is_some_and(|what| what == SAME_SCENE),
+        };
+        Ok((manifest, name))
+    }
+}
+
+/// Fewer bytes than any manifest takes: its name and those of its entries, and the hash. A gap that is shorter held none.
+pub(super) const MANIFEST_LEN_AT_LEAST: usize = 256;
+
+/// Entry with what the program puts into the header of a log, which has no checksum of its own.
+pub(super) const LIBRARY: &str = "library";
+
+/// Entry of a stretch that is not the first. It comes first in the record, so that even a torn one says whether its scene was
+/// that of the stretch before.
+const AGAIN: &str = "again";
+const SAME_SCENE: &str = "same scene";
+
+/// Whether a torn manifest is one of a stretch with the scene of the stretch before: that it is lost costs nothing.
+pub(super) fn begins_with_same_scene(bytes: &[u8]) -> bool {
+    let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
+    let entry = [text(AGAIN), text(SAME_SCENE)].concat();
+    bytes
+        .get(..MANIFEST_LEN_AT_LEAST.min(bytes.len()))
+        .is_some_and(|head| head.windows(entry.len()).any(|it| it == entry))
+}
+
+/// Whether bytes that cannot be read hold a piece of a manifest: the name of an entry that nothing else in a log has.
+pub(super) fn has_piece_of_manifest(bytes: &[u8]) -> bool {
+    const NAMES: [&[u8]; 4] = [b"started_unix_s", b"cpu_features", b"first_ordinal", b"format_version"];
+    NAMES.iter().any(|name| bytes.windows(name.len()).any(|window| window == *name))
+}
+
+/// Kernels that give the same bits.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum KernelClass {
+    Portable,
+    /// Those with fused multiply-add, for AVX2 and AVX-512.
+    Fused,
+    Unknown,
+}
+
+impl KernelClass {
+    fn of(name: &str) -> Self {
+        match name {
+            "portable" => Self::Portable,
+            "avx2+fma" | "avx512" => Self::Fused,
+            _ => Self::Unknown,
+        }
     }
 }
 

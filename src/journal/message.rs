@@ -95,13 +95,22 @@ pub struct CommitMessage {
     pub displacement_hash: HexHash,
     /// The other messages of this chunk, in their order.
     pub messages: Vec<MessageHash>,
+    /// Hash of the manifest of the stretch that this commit belongs to; not there in version 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manifest_hash: Option<HexHash>,
     /// Hash of all bytes before this entry.
     check: HexHash,
 }
 
 impl CommitMessage {
-    /// The message for a commit whose chunk holds `messages`.
-    pub fn new(commit: &Commit, mesh_hash: Hash, displacement_hash: Hash, messages: Vec<MessageHash>) -> Self {
+    /// The message for a commit of the stretch that a manifest with the hash `manifest` begins, whose chunk holds `messages`.
+    pub fn new(
+        commit: &Commit,
+        manifest: Hash,
+        mesh_hash: Hash,
+        displacement_hash: Hash,
+        messages: Vec<MessageHash>,
+    ) -> Self {
         Self {
             format: FORMAT_VERSION,
             ordinal: commit.ordinal,
@@ -114,6 +123,7 @@ impl CommitMessage {
             mesh_hash: HexHash(mesh_hash),
             displacement_hash: HexHash(displacement_hash),
             messages,
+            manifest_hash: Some(HexHash(manifest)),
             check: UNSEALED,
         }
     }
@@ -141,17 +151,21 @@ pub struct FinishedMessage {
     pub commits: u64,
     /// Chain hash of the last commit.
     pub chain_hash: HexHash,
+    /// Hash of the manifest of the last stretch; not there in version 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manifest_hash: Option<HexHash>,
     /// Hash of all bytes before this entry.
     check: HexHash,
 }
 
 impl FinishedMessage {
-    /// The end of a run whose last commit is this.
-    pub fn after(last: &Commit) -> Self {
+    /// The end of a run whose last commit is this, in a stretch that a manifest with the hash `manifest` begins.
+    pub fn after(last: &Commit, manifest: Hash) -> Self {
         Self {
             format: FORMAT_VERSION,
             commits: last.ordinal + 1,
             chain_hash: HexHash(last.chain_hash),
+            manifest_hash: Some(HexHash(manifest)),
             check: UNSEALED,
         }
     }

@@ -6,7 +6,8 @@
 //!    the log does not have them yet), the stage's report, and at its end a commit message. It reaches the file in one
 //!    write. A process that dies loses the stage in flight and nothing else.
 //! 2. **Every commit vouches for its chunk.** The commit message is sealed with the hash of its own bytes and names the
-//!    hash of every other message in the chunk; its chain hash follows from the commit before it. A log that was cut or
+//!    hash of every other message in the chunk and of the manifest of its stretch; its chain hash follows from the commit
+//!    before it. A log that was cut or
 //!    changed anywhere is read up to the last commit for which all of that holds, and [`Log::completeness`] says what
 //!    lies behind. States are decoded only when they are asked for, and held against their content hash.
 //! 3. **The end is explicit.** MCAP's footer proves nothing (its writer adds one even while a panic unwinds), so a run
@@ -17,11 +18,13 @@
 //! | `format` | topics, encodings, versions, limits, times |
 //! | `codec`, `soundness` | states and meshes as bytes, and what they must satisfy |
 //! | `message`, `manifest` | reports, commits, the end, who wrote it |
-//! | `encoder`, `backend`, `writer` | from a stage to bytes in a file |
-//! | `frame`, `chunk`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
-//! | `recovery` | going on with a log, copying what is good of one |
+//! | `ledger`, `summary`, `encoder`, `backend`, `writer` | from a stage to bytes in a file |
+//! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
+//! | `checkpoint`, `index`, `index_keeper`, `long` | a long log, of which only the end is read |
+//! | `resume`, `recovery` | going on with a log, copying what is good of one |
+//! | `thin` | a log without some of its states |
 //! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
-//! | `verify` | all that can be checked, all of it |
+//! | `rewriting`, `verify` | all that can be checked, all of it |
 //!
 //! # Writing, stopping, going on
 //!
@@ -29,6 +32,20 @@
 //! hands it every stage. At the end [`JournalWriter::finish`]; where a run is stopped on purpose
 //! [`JournalWriter::close`], which leaves the end open but adds what viewers look for. [`Resume`] claims a log, reads
 //! it, and goes on behind its last good commit.
+//!
+//! A log that is as it was written is gone on with in place, under a lock that no other process can hold; any other is
+//! copied (`resume` says how both survive a kill and a power cut).
+//!
+//! # Long logs
+//!
+//! From some four thousand commits on, `LOG.index` lies beside a log: where its commits are and the numbers of their
+//! reports, written as the run goes on. [`LongLog`] and [`Resume`] read the end of such a log alone, and through the index
+//! what they are asked for, and check the seals and hashes of what they read. The index is a cache: without it, or where it
+//! does not fit, the log is read through, in parts that fit in memory, and the index is written anew. [`verify()`] reads all
+//! of a log and none of its index.
+//!
+//! [`thin()`] writes a log anew without the states between some load steps; commits and reports, and with them the chain,
+//! stay.
 //!
 //! # Checking that other programs can read a log
 //!
@@ -58,21 +75,32 @@
 //! the last program before the change, by the command that the `README.md` names, and add them with their rows. A
 //! golden log is never written again.
 mod backend;
+mod checkpoint;
 mod chunk;
 mod codec;
 mod damage;
 mod encoder;
 pub mod format;
 mod frame;
+mod index;
+mod index_keeper;
 mod lease;
+mod ledger;
 mod lock;
 mod log;
+mod long;
 mod manifest;
 pub mod message;
 mod reader;
 mod recovery;
+mod resume;
+mod rewriting;
+mod scan;
 mod soundness;
 mod still_ours;
+mod stretch;
+mod summary;
+mod thin;
 mod trace;
 mod verify;
 mod writer;
@@ -81,13 +109,18 @@ pub use backend::{Backend, FileBackend};
 pub use codec::{CODEC_VERSION, CodecError, EncodedState, decode_mesh, decode_state, encode_mesh, encode_state};
 pub use damage::{Completeness, Damage, LaterCommit, Problem};
 pub use encoder::{EncodeError, ViewerMessage, ViewerTopic};
+pub use index::word_number;
 pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
+pub use long::{LongLog, LongLogError};
 pub use manifest::{Manifest, ManifestError};
 pub use reader::ReadError;
-pub use recovery::{RecoverError, RecoverOutcome, Resume, ResumeError, Resumed, recover};
+pub use recovery::{RecoverError, RecoverOutcome, recover};
+pub use resume::{Resume, ResumeError, Resumed};
 pub use soundness::{Flaw, check_mesh, check_state};
 pub use still_ours::Estranged;
+pub use stretch::LostManifest;
+pub use thin::{ThinError, Thinned, thin};
 pub use trace::{ITERATE_TOPIC, TraceRow, trace_file};
 pub use verify::{Finding, Level, verify, verify_log};
 pub use writer::{JournalWriter, ViewerTopics, WriteError};

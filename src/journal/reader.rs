@@ -5,24 +5,14 @@
 //! index, or in a manifest) leaves the chain whole, and reading goes on past it. One that costs a commit breaks the
 //! chain: what stands behind it is looked through only to say what was lost.
 
-use std::collections::{HashMap, HashSet};
-use std::ops::Range;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
-use mcap::records::Record as McapRecord;
-
-use super::chunk::{self, Channels, CommitContent, Content};
-use super::damage::{Damage, LaterCommit, Problem};
-use super::format::{FORMAT_VERSION, MANIFEST, PROFILE};
-use super::frame::{self, Cut, Frame, PREFIX_LEN, op};
-use super::log::{Entry, Kept, Log, Note, Part};
-use super::manifest::Manifest;
-use super::message::FinishedMessage;
-use crate::pipeline::{Commit, Record};
-use crate::state::Hash;
-
-/// Problems that are listed one by one; a file of another kind under a log's name could have any number.
-const PROBLEMS_LIMIT: usize = 1000;
+use super::checkpoint::Checkpoint;
+use super::format::{FORMAT_VERSION, PROFILE};
+use super::log::Log;
+use super::scan::Scan;
 
 /// Why a file is refused as a log.
 #[derive(Debug, thiserror::Error)]
@@ -76,7 +66,7 @@ impl Log {
     /// Where they are not a log.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Log, ReadError> {
         let mut scan = Scan::default();
-        scan.run(&bytes);
+        scan.run(&bytes, false);
         if let Some(found) = scan.newer_format {
             return Err(ReadError::NewerFormat { found });
         }
@@ -92,10 +82,48 @@ impl Log {
             }
             _ => return Err(ReadError::NotMcap),
         }
-        Ok(Log {
+        let file_len = bytes.len() as u64;
+        Ok(Log { walked: bytes.len(), bytes, file_len, ..Log::of(scan) })
+    }
+
+    /// Reads `at_most` bytes of a log, from a commit in its middle on or from its start.
+    pub(super) fn read_on(file: &File, from: Option<&Checkpoint>, at_most: usize) -> std::io::Result<Log> {
+        let file_len = file.metadata()?.len();
+        let base = from.map_or(0, |from| from.at);
+        let mut bytes = Vec::new();
+        read_at(
+            file,
+            base,
+            at_most.min(usize::try_from(file_len.saturating_sub(base)).unwrap_or(usize::MAX)),
+            &mut bytes,
+        )?;
+        let walked = bytes.len();
+        let mut scan = from.map_or_else(Scan::default, Scan::from);
+        let mut pieces = Vec::new();
+        if let Some(from) = from {
+            for (places, (hash, at, piece)) in
+                [(&mut scan.meshes, &from.mesh), (&mut scan.displacements, &from.displacement)]
+            {
+                places.insert(*hash, bytes.len()..bytes.len() + piece.len());
+                pieces.push((bytes.len(), *at));
+                bytes.extend_from_slice(piece);
+            }
+        }
+        scan.run(&bytes[..walked], base + (walked as u64) < file_len);
+        let first = from.map_or(0, |from| from.ordinal as usize);
+        Ok(Log { base, first, walked, pieces, bytes, file_len, ..Log::of(scan) })
+    }
+
+    fn of(scan: Scan) -> Log {
+        Log {
+            base: 0,
+            first: 0,
+            file_len: 0,
+            walked: 0,
+            pieces: Vec::new(),
             library: scan.header.map(|(_, library)| library).unwrap_or_default(),
-            manifests: scan.manifests,
-            manifest_lost: scan.manifest_lost,
+            thinned: scan.thinned,
+            stretches: scan.stretches,
             entries: scan.entries,
             meshes: scan.meshes,
             displacements: scan.displacements,
@@ -103,215 +131,21 @@ impl Log {
             finished: scan.finished.is_some(),
             closed: scan.closed,
             good_end: scan.good_end,
+            stretch_end: scan.stretch_end,
             problems: scan.problems,
             later: scan.later,
             notes: scan.notes,
             last_mesh: Default::default(),
-            bytes,
-        })
+            bytes: Vec::new(),
+        }
     }
 }
 
-/// Reading under way.
-#[derive(Default)]
-struct Scan {
-    channels: Channels,
-    header: Option<(String, String)>,
-    manifests: Vec<Manifest>,
-    manifest_seen: bool,
-    manifest_lost: bool,
-    entries: Vec<Entry>,
-    meshes: HashMap<Hash, Range<usize>>,
-    displacements: HashMap<Hash, Range<usize>>,
-    parts: Vec<Part>,
-    finished: Option<FinishedMessage>,
-    closed: bool,
-    good_end: usize,
-    problems: Vec<Problem>,
-    later: Vec<LaterCommit>,
-    later_seen: HashSet<u64>,
-    notes: Vec<Note>,
-    newer_format: Option<u32>,
-}
-
-impl Scan {
-    fn run(&mut self, bytes: &[u8]) {
-        if !bytes.starts_with(mcap::MAGIC) {
-            self.notes.push(Note { at: 0, text: Damage::Magic.to_string() });
-        }
-        let mut at = mcap::MAGIC.len();
-        self.good_end = at.min(bytes.len());
-        while let Some(next) = frame::next(bytes, at) {
-            let outcome = match &next {
-                Ok(frame) => self.frame(bytes, frame),
-                Err(Cut { claim: None, left }) => Err(Damage::CutPrefix { left: *left as u64 }),
-                Err(Cut { claim: Some((opcode, claims)), left }) => {
-                    let left = left.saturating_sub(PREFIX_LEN) as u64;
-                    Err(Damage::CutRecord { opcode: *opcode, claims: *claims, left })
-                }
-            };
-            let following = match (outcome, next) {
-                (Ok(()), Ok(frame)) => {
-                    if !self.has_lost() {
-                        self.good_end = frame.body.end;
-                    }
-                    if self.closed { frame::find_chunk(bytes, frame.body.end) } else { Some(frame.body.end) }
-                }
-                (Err(damage), next) => {
-                    let only_zeros = bytes[at..].iter().all(|byte| *byte == 0);
-                    self.problem(
-                        at,
-                        if only_zeros { Damage::Zeros { left: (bytes.len() - at) as u64 } } else { damage },
-                    );
-                    // A chunk keeps its place even where its content is damaged; all else may have lost the step.
-                    match next {
-                        Ok(frame) if frame::chunk_records(bytes, &frame).is_some() => Some(frame.body.end),
-                        _ => frame::find_chunk(bytes, at + 1),
-                    }
-                }
-                (Ok(()), Err(_)) => None,
-            };
-            match following {
-                Some(following) => at = following,
-                None => break,
-            }
-        }
-        let good = self.entries.len() as u64;
-        self.later.retain(|commit| commit.ordinal >= good);
-    }
-
-    /// Whether something behind the last good record is not as it was written.
-    fn has_lost(&self) -> bool {
-        self.problems.last().is_some_and(|problem| problem.at >= self.good_end as u64)
-    }
-
-    fn problem(&mut self, at: usize, damage: Damage) {
-        // Beyond the limit the newest takes the place of the one before it, so that the last one is always there.
-        self.problems.truncate(PROBLEMS_LIMIT - 1);
-        self.problems.push(Problem { at: at as u64, damage });
-    }
-
-    fn frame(&mut self, bytes: &[u8], frame: &Frame) -> Result<(), Damage> {
-        let body = &bytes[frame.body.clone()];
-        let misplaced = || Err(Damage::Misplaced { opcode: frame.opcode, bytes: body.len() as u64 });
-        let parse = || {
-            let unreadable = |cause| Damage::Unreadable { opcode: frame.opcode, cause };
-            frame::parse(frame.opcode, body).map_err(unreadable)
-        };
-        match frame.opcode {
-            op::HEADER if frame.at == mcap::MAGIC.len() => {
-                if let McapRecord::Header(header) = parse()? {
-                    self.header = Some((header.profile, header.library));
-                }
-                Ok(())
-            }
-            op::METADATA => {
-                if let McapRecord::Metadata(record) = parse()? {
-                    self.metadata(frame, &record);
-                }
-                Ok(())
-            }
-            op::CHUNK => self.chunk(bytes, frame),
-            op::MESSAGE_INDEX => match parse()? {
-                McapRecord::MessageIndex(index) if body.len() == 2 + 4 + 16 * index.records.len() => Ok(()),
-                _ => misplaced(),
-            },
-            op::DATA_END if body.len() == 4 => {
-                self.closed = true;
-                Ok(())
-            }
-            _ => misplaced(),
-        }
-    }
-
-    fn metadata(&mut self, frame: &Frame, record: &mcap::records::Metadata) {
-        match Manifest::from_record(record) {
-            Ok(manifest) => {
-                if manifest.format_version > FORMAT_VERSION {
-                    self.newer_format = Some(manifest.format_version);
-                }
-                self.manifest_seen = true;
-                // Behind a loss it speaks of commits that are not used.
-                if manifest.first_ordinal == self.entries.len() as u64 {
-                    self.parts.push(Part { at: frame.at, end: frame.body.end, kept: Kept::Manifest });
-                    self.manifests.push(manifest);
-                    self.manifest_lost = false;
-                }
-            }
-            Err(error) if record.name == MANIFEST => {
-                self.manifest_lost = true;
-                self.notes.push(Note { at: frame.at as u64, text: format!("{error}; it is left out") });
-            }
-            Err(_) => {
-                let text = format!("metadata {:?} is not foldline's; it is left out", record.name);
-                self.notes.push(Note { at: frame.at as u64, text });
-            }
-        }
-    }
-
-    /// Takes a chunk if it follows from what was taken before, whatever lies in between.
-    fn chunk(&mut self, bytes: &[u8], frame: &Frame) -> Result<(), Damage> {
-        let kept = match chunk::open(bytes, frame, &mut self.channels)? {
-            Content::Commit(content) => {
-                let (ordinal, stage, step) = (content.commit.ordinal, content.commit.stage, content.commit.step);
-                if let Err(damage) = self.commit(frame, *content) {
-                    if self.later_seen.insert(ordinal) {
-                        self.later.push(LaterCommit { at: frame.at as u64, ordinal, stage, step });
-                    }
-                    // Behind a loss it goes without saying that the chain is broken.
-                    return if self.has_lost() { Ok(()) } else { Err(damage) };
-                }
-                Kept::Commit
-            }
-            Content::Finished(finished) => {
-                let last = self.entries.last().map(|entry| entry.record.commit.chain_hash);
-                let found = self.entries.len() as u64;
-                if finished.commits != found || Some(finished.chain_hash.0) != last {
-                    let damage = Damage::OtherEnd { claims: finished.commits, found };
-                    return if self.has_lost() { Ok(()) } else { Err(damage) };
-                }
-                self.finished = Some(finished);
-                Kept::Finished
-            }
-        };
-        self.good_end = frame.body.end;
-        self.parts.push(Part { at: frame.at, end: frame.body.end, kept });
-        Ok(())
-    }
-
-    /// Holds a commit against the one before it, and keeps it.
-    fn commit(&mut self, frame: &Frame, content: CommitContent) -> Result<(), Damage> {
-        if self.finished.is_some() {
-            return Err(Damage::AfterEnd);
-        }
-        let previous = self.entries.last().map(|entry| entry.record.commit);
-        let commit = content.commit.commit();
-        let ordinal = commit.ordinal;
-        let expected = previous.map_or(0, |previous| previous.ordinal + 1);
-        if ordinal != expected {
-            return Err(Damage::OutOfOrder { expected, found: ordinal });
-        }
-        let parent = previous.map_or(commit.parent_hash, |previous| previous.state_hash);
-        if commit.parent_hash != parent {
-            return Err(Damage::OtherParent { ordinal, expected: parent, found: commit.parent_hash });
-        }
-        let (stage, step, scene) = (commit.stage, commit.step, commit.scene_hash);
-        let expected = Commit::next(previous.as_ref(), stage, step, scene, parent, commit.state_hash).chain_hash;
-        if commit.chain_hash != expected {
-            return Err(Damage::BrokenChain { ordinal, expected, found: commit.chain_hash });
-        }
-        let (mesh_hash, displacement) = (content.commit.mesh_hash.0, content.commit.displacement_hash.0);
-        if content.mesh.is_none() && !self.meshes.contains_key(&mesh_hash) {
-            return Err(Damage::UnknownMesh { mesh: mesh_hash });
-        }
-        if content.displacement.is_none() && !self.displacements.contains_key(&displacement) {
-            return Err(Damage::UnknownDisplacement { displacement });
-        }
-        self.meshes.extend(content.mesh.map(|place| (mesh_hash, place)));
-        self.displacements.extend(content.displacement.map(|place| (displacement, place)));
-        let record = Record { wall_s: content.report.wall_s, report: content.report.report, commit };
-        let bytes = frame.at as u64..frame.body.end as u64;
-        self.entries.push(Entry { record, mesh_hash, displacement_hash: displacement, bytes, state: content.state });
-        Ok(())
-    }
+/// Appends `length` bytes of a file from `at` on to a buffer; fewer where the file ends before.
+pub(super) fn read_at(file: &File, at: u64, length: usize, into: &mut Vec<u8>) -> std::io::Result<()> {
+    use std::io::{Seek, SeekFrom};
+    let mut file = file;
+    file.seek(SeekFrom::Start(at))?;
+    into.reserve_exact(length);
+    file.take(length as u64).read_to_end(into).map(drop)
 }

@@ -1,182 +1,22 @@
-//! Going on with a log, and copying what is good of one.
+//! Copying what is good of a log.
 //!
-//! MCAP cannot append: its summary at the end of the file lists every chunk, and viewers read nothing else. So the good
-//! records of a log are put through a new writer, which then knows them all: same numbers, same times, same bytes. The
-//! copy grows without a name, is forced to disk while the run already goes on, and takes the log's place before the
-//! first new commit is added. Until then, and if the process dies meanwhile, the log is as it was.
-//!
-//! What a log loses when it is resumed is kept beside it as `LOG.dropped-N` wherever it might still be worth something:
-//! after damage always, after a cut only if whole commits lie behind it. The torn rest of the stage that was in flight
-//! is worth nothing, and goes.
+//! The good records are put through a new writer, which then knows them all: same numbers, same times, same bytes.
 
-use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::path::Path;
 
-use mcap::records::Record as McapRecord;
-
-use super::backend::{Backend, FileBackend, beside};
+use super::backend::Backend;
 use super::damage::Completeness;
-use super::encoder::{EncodeError, Encoder, library};
+use super::encoder::{EncodeError, Encoder};
 use super::frame;
-use super::lock::{LockError, LogLock};
 use super::log::{Kept, Log};
-use super::manifest::Manifest;
 use super::reader::ReadError;
-use super::writer::JournalWriter;
-use crate::scene::SyncPolicy;
-use crate::whole_file::{WholeFile, write_new};
+use crate::whole_file::WholeFile;
 
 /// Bytes that are collected before they go to the new file.
 const BATCH_BYTES: usize = 1 << 20;
 
-/// Why a run cannot go on from a log.
-#[derive(Debug, thiserror::Error)]
-pub enum ResumeError {
-    /// There is no such file.
-    #[error("cannot resume {log}: there is no such file")]
-    NoLog {
-        /// The log.
-        log: String,
-        /// What the system says.
-        #[source]
-        source: io::Error,
-    },
-    /// Another process writes it.
-    #[error(transparent)]
-    Lock(#[from] LockError),
-    /// It is not a log.
-    #[error("cannot resume {log}")]
-    Read {
-        /// The log.
-        log: String,
-        /// Why not.
-        #[source]
-        source: ReadError,
-    },
-    /// The copy cannot be made.
-    #[error("cannot resume {log}: {path} cannot be written. The log is as it was")]
-    Copy {
-        /// The log.
-        log: String,
-        /// The copy, or the part that is kept beside it.
-        path: String,
-        /// What the system says.
-        #[source]
-        source: io::Error,
-    },
-    /// The new stretch cannot be begun.
-    #[error("cannot resume {log}. The log is as it was")]
-    Begin {
-        /// The log.
-        log: String,
-        /// Why not.
-        #[source]
-        source: EncodeError,
-    },
-}
-
-/// A log that this process, and no other, may go on with.
-#[derive(Debug)]
-pub struct Resume {
-    path: PathBuf,
-    name: String,
-    lock: LogLock,
-    log: Log,
-}
-
-/// A log that is being gone on with.
-#[derive(Debug)]
-pub struct Resumed {
-    /// Takes the stages that follow.
-    pub writer: JournalWriter,
-    /// The log as it was, for the state to go on from. Holds the whole file in memory; drop it once that is taken.
-    pub log: Log,
-    /// Where the part that was dropped is kept, if it might still be worth something.
-    pub dropped: Option<PathBuf>,
-}
-
-impl Resume {
-    /// Claims a log and reads it. Changes nothing.
-    ///
-    /// # Errors
-    /// Where it is not there, not a log, or another process writes it.
-    pub fn open(path: &Path) -> Result<Self, ResumeError> {
-        let name = path.display().to_string();
-        // Through links, so that the file they lead to is replaced and not the link.
-        let path = path.canonicalize().map_err(|source| ResumeError::NoLog { log: name.clone(), source })?;
-        let lock = LogLock::take(&path)?;
-        let log = Log::read(&path).map_err(|source| ResumeError::Read { log: name.clone(), source })?;
-        Ok(Self { path, name, lock, log })
-    }
-
-    /// What the log holds.
-    pub fn log(&self) -> &Log {
-        &self.log
-    }
-
-    /// Begins a new stretch behind the last good commit. That the run was finished, where it was, is not carried over.
-    ///
-    /// # Errors
-    /// Where the copy cannot be made; the log is then as it was.
-    pub fn start(self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
-        let all = self.log.entries().len();
-        self.start_after(all, manifest, sync)
-    }
-
-    /// The same behind the first `keep` commits; those after them go.
-    ///
-    /// # Errors
-    /// Where the copy cannot be made; the log is then as it was.
-    pub fn start_after(self, keep: usize, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
-        let Self { path, name, lock, log } = self;
-        let begin = |source| ResumeError::Begin { log: name.clone(), source };
-        let keep = keep.min(log.entries().len());
-        let dropped = if keep < log.entries().len() { Some(keep_whole(&path)?) } else { keep_dropped(&path, &log)? };
-        let failed = |source| ResumeError::Copy { log: name.clone(), path: format!("a copy of {name}"), source };
-        let mut backend = FileBackend::copy_of(&path).map_err(failed)?;
-        let mut encoder = Encoder::new(&library()).map_err(|source| begin(source.into()))?;
-        let manifest = Manifest { first_ordinal: keep as u64, ..manifest.clone() };
-        let copied = copy(&log, Some(keep), &mut encoder, &mut backend).and_then(|length| {
-            encoder.manifest(&manifest.to_record()).map_err(EncodeError::Mcap)?;
-            let bytes = encoder.take();
-            backend.append(&bytes)?;
-            backend.replace(log.file_len())?;
-            Ok(length + bytes.len() as u64)
-        });
-        let length = copied.map_err(|error| match error {
-            CopyError::Io(source) => failed(source),
-            CopyError::Encode(source) => begin(source),
-        })?;
-        let writer = JournalWriter {
-            encoder,
-            backend: Box::new(backend),
-            lock: Some(lock),
-            log: name,
-            sync,
-            viewer: None,
-            known: log.entries()[..keep].iter().flat_map(|entry| [entry.mesh_hash, entry.displacement_hash]).collect(),
-            last: keep.checked_sub(1).map(|last| log.entries()[last].record.commit),
-            length,
-            synced: Instant::now(),
-            given_up: false,
-        };
-        Ok(Resumed { writer, log, dropped })
-    }
-}
-
-impl JournalWriter {
-    /// Goes on with a log: [`Resume::open`] and [`Resume::start`] in one, for callers who know the scene.
-    ///
-    /// # Errors
-    /// Those of both.
-    pub fn resume(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
-        Resume::open(path)?.start(manifest, sync)
-    }
-}
-
-enum CopyError {
+pub(super) enum CopyError {
     Io(io::Error),
     Encode(EncodeError),
 }
@@ -195,7 +35,7 @@ impl From<EncodeError> for CopyError {
 
 /// Puts the good records of a log through an encoder, all of them or those up to the first `keep` commits without the
 /// record of the end; `emit` gets the bytes in pieces of about a mebibyte.
-pub(super) fn again<E: From<EncodeError>>(
+fn again<E: From<EncodeError>>(
     log: &Log,
     keep: Option<usize>,
     encoder: &mut Encoder,
@@ -211,15 +51,7 @@ pub(super) fn again<E: From<EncodeError>>(
             _ => {}
         }
         let Some(Ok(frame)) = frame::next(&log.bytes, part.at) else { continue };
-        let made = match part.kept {
-            Kept::Manifest => match frame::parse(frame.opcode, &log.bytes[frame.body]) {
-                Ok(McapRecord::Metadata(record)) => encoder.manifest(&record),
-                Ok(_) => Ok(()),
-                Err(error) => Err(error),
-            },
-            Kept::Commit | Kept::Finished => encoder.again(&log.bytes, &frame),
-        };
-        made.map_err(EncodeError::Mcap)?;
+        encoder.again(&log.bytes, &frame).map_err(EncodeError::Mcap)?;
         pending += part.end - part.at;
         if pending >= BATCH_BYTES {
             emit(encoder.take())?;
@@ -229,53 +61,19 @@ pub(super) fn again<E: From<EncodeError>>(
     emit(encoder.take())
 }
 
-fn copy(log: &Log, keep: Option<usize>, encoder: &mut Encoder, backend: &mut dyn Backend) -> Result<u64, CopyError> {
+/// Puts the good records of a log through an encoder to a file; gives back how many bytes they take.
+pub(super) fn copy(
+    log: &Log,
+    keep: Option<usize>,
+    encoder: &mut Encoder,
+    backend: &mut dyn Backend,
+) -> Result<u64, CopyError> {
     let mut length = 0;
     again(log, keep, encoder, |bytes| {
         length += bytes.len() as u64;
         Ok::<(), CopyError>(backend.append(&bytes)?)
     })?;
     Ok(length)
-}
-
-/// Keeps a log that goes on from an earlier stage than its last as `LOG.replaced-N`.
-fn keep_whole(path: &Path) -> Result<PathBuf, ResumeError> {
-    for number in 1_u32.. {
-        let kept = beside(path, &format!(".replaced-{number}"));
-        // The log itself is replaced by renaming, so another name for it is as good as a copy, and costs nothing.
-        match fs::hard_link(path, &kept) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            Err(_) => {
-                let log = path.display().to_string();
-                let failed = |source| ResumeError::Copy { log, path: kept.display().to_string(), source };
-                return fs::read(path).and_then(|log| write_new(&kept, &log)).map(|()| kept.clone()).map_err(failed);
-            }
-            Ok(()) => return Ok(kept),
-        }
-    }
-    Ok(path.to_path_buf())
-}
-
-/// Writes what a damaged log loses to `LOG.dropped-N`, if it might still be worth something.
-fn keep_dropped(path: &Path, log: &Log) -> Result<Option<PathBuf>, ResumeError> {
-    if !matches!(log.completeness(), Completeness::Damaged { .. }) {
-        return Ok(None);
-    }
-    for number in 1_u32.. {
-        let beside = beside(path, &format!(".dropped-{number}"));
-        let written = match write_new(&beside, log.tail()) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            written => written,
-        };
-        return match written {
-            Ok(()) => Ok(Some(beside)),
-            Err(source) => {
-                let log = path.display().to_string();
-                Err(ResumeError::Copy { log, path: beside.display().to_string(), source })
-            }
-        };
-    }
-    Ok(None)
 }
 
 /// What became of a log that was recovered.
@@ -349,6 +147,7 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> 
     };
     let commits = log.entries().len() as u64;
     let finished = log.completeness() == Completeness::Finished;
+    let lost_manifest = log.lost_manifests().first().map(ToString::to_string);
     let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
     if let (0, Some(why)) = (commits, &loss) {
         return Ok(RecoverOutcome::Hopeless { why: why.clone() });
@@ -363,7 +162,7 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> 
     })?;
     let later_commits = log.later_commits().len() as u64;
     let dropped = log.file_len() - log.good_end();
-    Ok(match loss {
+    Ok(match loss.or(lost_manifest) {
         Some(why) => RecoverOutcome::Lossy { commits, dropped, later_commits, why },
         None => RecoverOutcome::Lossless { commits },
     })
@@ -379,7 +178,6 @@ fn write_good(log: &Log, finished: bool, new: &Path) -> Result<(), CopyError> {
     let mut encoder = Encoder::new(&log.library).map_err(EncodeError::Mcap)?;
     let keep = (!finished).then_some(log.entries().len());
     again(log, keep, &mut encoder, |bytes| Ok::<(), CopyError>(whole.file().write_all(&bytes)?))?;
-    encoder.close().map_err(EncodeError::Mcap)?;
-    whole.file().write_all(&encoder.take())?;
+    encoder.close(log.commits() as u64, |piece| whole.file().write_all(&piece))?;
     Ok(whole.keep_as(new)?)
 }

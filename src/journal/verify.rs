@@ -1,11 +1,18 @@
 //! Everything that can be checked about a log, all of it, not only up to the first flaw.
 
+use std::fs::File;
+use std::io;
+use std::ops::Range;
 use std::path::Path;
 
+use super::checkpoint::read_in_parts;
 use super::damage::Completeness;
-use super::encoder::{EncodeError, Encoder};
+use super::encoder::EncodeError;
+use super::index_keeper::LONG_BYTES;
+use super::ledger::Ledger;
 use super::log::{Entry, Log};
-use super::recovery::again;
+use super::reader::read_at;
+use super::rewriting::Rewriting;
 
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,7 +38,12 @@ pub struct Finding {
 
 /// Checks a log: framing, checksums, seals, the hash of every message, the chain, the content hash and soundness of
 /// every state and mesh, manifests, completeness, and that the bytes between are those that the writer would write.
+///
+/// A long log is checked part by part; one that is damaged before its end, or was thinned, is read whole.
 pub fn verify(path: &Path) -> Vec<Finding> {
+    if let Ok(Some(findings)) = verify_in_parts(path) {
+        return findings;
+    }
     match Log::read(path) {
         Ok(log) => verify_log(&log),
         Err(error) => {
@@ -40,8 +52,61 @@ pub fn verify(path: &Path) -> Vec<Finding> {
     }
 }
 
+/// Checks a long log without holding it in memory; `None` for one that has to be read whole.
+fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
+    let file = File::open(path)?;
+    if file.metadata()?.len() < LONG_BYTES {
+        return Ok(None);
+    }
+    let theirs = |at: u64, length: usize| {
+        let mut bytes = Vec::new();
+        // What cannot be read differs.
+        let _ = read_at(&file, at, length, &mut bytes);
+        bytes
+    };
+    let mut ledger = Ledger::default();
+    let mut found = Vec::new();
+    let mut rewriting: Option<Rewriting<_>> = None;
+    let tail = read_in_parts(&file, None, &mut ledger, |part, _| {
+        let last = part.entries.len().saturating_sub(1);
+        // The last commit of a part is the first of the next.
+        found.extend(states(part, 0..last));
+        let written = rewriting.take().map_or_else(|| Rewriting::new(&part.library, &theirs).ok(), Some);
+        rewriting = written.and_then(|mut written| {
+            let end = part.entries.last().map_or(0, |entry| (entry.bytes.start - part.base) as usize);
+            written.write(part, end).ok().map(|()| written)
+        });
+        Ok(())
+    })?;
+    let reaches_end = tail.closed || tail.base + tail.walked as u64 >= tail.file_len;
+    if tail.entries.is_empty() || !reaches_end || !tail.is_clean() || tail.thinned().is_some() {
+        return Ok(None);
+    }
+    let mut findings = of_the_whole(&tail);
+    findings.extend(found);
+    findings.extend(states(&tail, tail.entries.len() - 1..tail.entries.len()));
+    if let (true, Some(mut rewriting)) = (tail.problems().is_empty(), rewriting) {
+        let last = tail.entries.last().map_or(0, |entry| (entry.bytes.start - tail.base) as usize);
+        let rest = tail.parts.iter().filter(|place| place.at >= last).copied().collect();
+        let rest = Log { parts: rest, ..tail };
+        let outcome = rewriting.write(&rest, usize::MAX);
+        findings
+            .extend(outcome.map_or_else(|error| Some(not_written(&error)), |()| rewriting.end(&rest).map(other_byte)));
+    }
+    Ok(Some(findings))
+}
+
 /// Checks a log that was read; see [`verify`].
 pub fn verify_log(log: &Log) -> Vec<Finding> {
+    let mut findings = of_the_whole(log);
+    findings.extend(states_kept(log));
+    findings.extend(states(log, 0..log.entries().len()));
+    findings.extend(bytes_between(log));
+    findings
+}
+
+/// What is found of a log without looking into its states.
+fn of_the_whole(log: &Log) -> Vec<Finding> {
     let mut findings = vec![completeness(log)];
     for problem in log.problems() {
         // What the chain reaches across costs no commit, nor does anything behind the record of the end.
@@ -58,14 +123,22 @@ pub fn verify_log(log: &Log) -> Vec<Finding> {
         let text = format!("whole at byte {}, but what it follows on is lost: it is not used", commit.at);
         findings.push(finding(Level::Warning, place, text));
     }
-    findings.extend(manifests(log));
-    for index in 0..log.entries().len() {
-        if let Err(error) = log.state(index) {
-            findings.push(finding(Level::Error, place(&log.entries()[index]), with_causes(&error)));
-        }
+    for lost in log.lost_manifests() {
+        let way_out = "`foldline run SCENE -o LOG --resume` goes on with the scene's file";
+        findings.push(finding(Level::Error, format!("commit {}", lost.ordinal), format!("{lost}. {way_out}")));
     }
-    findings.extend(bytes_between(log));
+    findings.extend(manifests(log));
     findings
+}
+
+/// Decodes the states of some entries.
+fn states(log: &Log, entries: Range<usize>) -> Vec<Finding> {
+    let kept = entries.filter(|entry| log.keeps_state(log.first() + entry));
+    let checked = kept.filter_map(|entry| {
+        let error = log.state(log.first() + entry).err()?;
+        Some(finding(Level::Error, place(&log.entries()[entry]), with_causes(&error)))
+    });
+    checked.collect()
 }
 
 fn finding(level: Level, place: impl Into<String>, text: impl Into<String>) -> Finding {
@@ -86,7 +159,7 @@ fn place(entry: &Entry) -> String {
 }
 
 fn completeness(log: &Log) -> Finding {
-    let commits = log.entries().len();
+    let commits = log.commits();
     let (level, text) = match log.completeness() {
         Completeness::Finished => (Level::Info, format!("{commits} commits, finished")),
         Completeness::Unfinished => (Level::Info, format!("{commits} commits, not finished")),
@@ -104,15 +177,35 @@ fn completeness(log: &Log) -> Finding {
     finding(level, "log", text)
 }
 
+/// That states are missing: as it was meant, or not.
+fn states_kept(log: &Log) -> Option<Finding> {
+    let all = log.entries().len();
+    let states = (0..all).filter(|index| log.keeps_state(*index)).count();
+    match log.thinned() {
+        Some(kept) => {
+            Some(finding(Level::Info, "log", format!("thinned ({kept}): {states} of {all} stages have their state")))
+        }
+        None if states < all => {
+            let text = format!("{} of {all} stages have no state, and the log was not thinned", all - states);
+            Some(finding(Level::Error, "log", text))
+        }
+        None => None,
+    }
+}
+
 fn manifests(log: &Log) -> Vec<Finding> {
     let mut findings = Vec::new();
     let manifests = log.manifests();
-    if manifests.first().is_none_or(|first| first.first_ordinal != 0) {
+    let is_lost = log.lost_manifests().first().is_some_and(|lost| lost.ordinal == 0);
+    if manifests.first().is_none_or(|first| first.first_ordinal != 0) && !is_lost {
         let text = "no manifest of the beginning: the scene has to come from its file".to_owned();
         findings.push(finding(Level::Warning, "log", text));
     }
     for pair in manifests.windows(2) {
         let place = format!("commit {}", pair[1].first_ordinal);
+        if let Some(otherwise) = pair[1].rounds_otherwise(&pair[0]) {
+            findings.push(finding(Level::Info, place.clone(), format!("from here on {otherwise}: bits may differ")));
+        }
         if !pair[0].same_machine(&pair[1]) {
             let text = format!("from here on computed on another machine: {} after {}", pair[1].host, pair[0].host);
             findings.push(finding(Level::Info, place.clone(), text));
@@ -124,40 +217,28 @@ fn manifests(log: &Log) -> Vec<Finding> {
     findings
 }
 
-/// Writes the log again and compares: a byte that no hash covers (a time, an index, the summary) shows here.
 fn bytes_between(log: &Log) -> Option<Finding> {
     if !log.problems().is_empty() || !log.notes().is_empty() {
         return None;
     }
-    let mut written = 0;
-    let mut differs = None;
-    let mut compare = |ours: &[u8]| {
-        let theirs = log.bytes.get(written..).unwrap_or_default();
-        let same = ours.iter().zip(theirs).take_while(|(ours, theirs)| ours == theirs).count();
-        if same < ours.len() && differs.is_none() {
-            differs = Some(written + same);
-        }
-        written += ours.len();
+    let theirs = |at: u64, length: usize| {
+        let from = usize::try_from(at).unwrap_or(usize::MAX);
+        let rest = log.bytes.get(from..).unwrap_or_default();
+        rest[..length.min(rest.len())].to_vec()
     };
-    let outcome = write_again(log, &mut compare);
-    if let Err(error) = outcome {
-        return Some(finding(Level::Warning, "log", format!("it cannot be written again: {error}")));
-    }
-    let at = differs.or((written < log.bytes.len()).then_some(written))?;
-    let text = "not the byte that would be written here; no state depends on it, but viewers may. \
-                `foldline recover` writes the log anew";
-    Some(finding(Level::Warning, format!("byte {at}"), text))
+    let written = Rewriting::new(&log.library, theirs).and_then(|mut rewriting| {
+        rewriting.write(log, usize::MAX)?;
+        Ok(rewriting.end(log))
+    });
+    written.map_or_else(|error| Some(not_written(&error)), |differs| differs.map(other_byte))
 }
 
-fn write_again(log: &Log, compare: &mut impl FnMut(&[u8])) -> Result<(), EncodeError> {
-    let mut encoder = Encoder::new(&log.library)?;
-    again(log, None, &mut encoder, |bytes| {
-        compare(&bytes);
-        Ok::<(), EncodeError>(())
-    })?;
-    if log.closed {
-        encoder.close()?;
-        compare(&encoder.take());
-    }
-    Ok(())
+fn not_written(error: &EncodeError) -> Finding {
+    finding(Level::Warning, "log", format!("it cannot be written again: {error}"))
+}
+
+fn other_byte(at: u64) -> Finding {
+    let text = "not the byte that would be written here; no state depends on it, but viewers may. \
+                `foldline recover` writes the log anew";
+    finding(Level::Warning, format!("byte {at}"), text)
 }

@@ -1,14 +1,14 @@
 //! The sink that keeps a run: every stage a commit, every commit one write.
 
-use std::collections::HashSet;
 use std::fmt;
 use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::backend::{Backend, FileBackend};
+use super::backend::{Backend, FileBackend, beside};
 use super::codec::{encode_mesh, encode_state};
 use super::encoder::{EncodeError, Encoder, Parts, ViewerMessage, library};
+use super::index_keeper::IndexKeeper;
 use super::lock::{LockError, LogLock};
 use super::log::Log;
 use super::manifest::Manifest;
@@ -184,8 +184,10 @@ pub struct JournalWriter {
     pub(super) log: String,
     pub(super) sync: SyncPolicy,
     pub(super) viewer: Option<Box<dyn ViewerTopics>>,
-    /// Hashes of the meshes and displacements that the log holds.
-    pub(super) known: HashSet<Hash>,
+    /// The index of a log that is or becomes long.
+    pub(super) index: Option<IndexKeeper>,
+    /// Hashes of the mesh and the displacements of the last state: a stage that changes neither writes neither again.
+    pub(super) known: Vec<Hash>,
     pub(super) last: Option<Commit>,
     /// Bytes of the log that are good.
     pub(super) length: u64,
@@ -239,7 +241,10 @@ impl JournalWriter {
         let begin = |source| WriteError::Io { action: "begin", log: log.clone(), commits: 0, source };
         let backend = FileBackend::create_new(path).map_err(begin)?;
         match Self::on(Box::new(backend), &log, manifest, sync) {
-            Ok(writer) => Ok(Self { lock: Some(lock), ..writer }),
+            Ok(writer) => {
+                let index = Some(IndexKeeper::new(beside(path, ".index")));
+                Ok(Self { lock: Some(lock), index, ..writer })
+            }
             Err(WriteError::Io { source, .. }) if source.kind() == io::ErrorKind::AlreadyExists => {
                 Err(WriteError::Exists { log })
             }
@@ -267,13 +272,14 @@ impl JournalWriter {
             log: log.to_owned(),
             sync,
             viewer: None,
-            known: HashSet::new(),
+            index: None,
+            known: Vec::new(),
             last: None,
             length: 0,
             synced: Instant::now(),
             given_up: false,
         };
-        writer.encoder.manifest(&manifest.to_record()).map_err(encode)?;
+        writer.encoder.manifest(manifest).map_err(encode)?;
         writer.append()?;
         Ok(writer)
     }
@@ -337,9 +343,17 @@ impl JournalWriter {
         if self.given_up {
             return Err(WriteError::GivenUp { log: self.log.clone(), commits: self.commits() });
         }
-        let ordinal = self.commits();
-        self.encoder.close().map_err(|source| self.encode_error(ordinal, EncodeError::Mcap(source)))?;
+        // The record of the end, and the manifest of a stretch that has no stage.
         self.append()?;
+        let (commits, length) = (self.commits(), self.length);
+        let closed = self.encoder.close(commits, |piece| {
+            self.length += piece.len() as u64;
+            self.backend.append(&piece)
+        });
+        if let Err(source) = closed {
+            let _ = self.backend.cut(length);
+            return Err(self.io_error("write", self.length - length, source));
+        }
         self.backend.sync().map_err(|source| self.io_error("sync", 0, source))?;
         self.check()
     }
@@ -372,8 +386,11 @@ impl JournalWriter {
         })();
         let displacement_hash = encoded.map_err(|source| self.encode_error(ordinal, source))?;
         self.append()?;
-        self.known.extend([mesh_hash, displacement_hash]);
+        self.known = vec![mesh_hash, displacement_hash];
         self.last = Some(*commit);
+        let (encoder, place) = (&self.encoder, self.encoder.last_chunk());
+        let mark = || encoder.mark(commit, mesh_hash, displacement_hash);
+        self.index = self.index.take().zip(place).and_then(|(index, place)| index.take(place, record, mark));
         let due = match self.sync {
             SyncPolicy::EachStage => true,
             SyncPolicy::EachSecond => self.synced.elapsed() >= SYNC_INTERVAL,

@@ -1,11 +1,13 @@
 //! Stages, the loop that runs them, step control, and the sinks that see every stage.
 
+mod fields;
 mod load_solve;
 mod path_control;
 mod path_solve;
 mod probes;
 mod record;
 mod report;
+mod revision;
 mod ripple;
 mod run;
 mod sink;
@@ -14,9 +16,11 @@ mod stages;
 mod step_control;
 mod warning;
 
+pub use fields::{as_number, fields_of};
 pub use path_control::CriticalPoint;
 pub use record::{Commit, Record};
 pub use report::{Outcome, Parameter, Reading, Report, WrittenReport, released_in_words};
+pub use revision::NUMERICS_REVISION;
 pub use run::{Ending, Run, RunError};
 pub use sink::{MemorySink, Sink, SinkError};
 pub use stage_error::StageError;

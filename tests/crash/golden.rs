@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use foldline::journal::{
     Completeness, JournalWriter, Level, Log, Manifest, RecoverOutcome, format::FORMAT_VERSION, recover, verify_log,
 };
-use foldline::pipeline::{Ending, Run, Stages};
+use foldline::pipeline::{Ending, NUMERICS_REVISION, Run, Stages};
 use foldline::scene::{Scene, Stage, SyncPolicy};
 use foldline::state::{Rejection, State};
 
@@ -62,11 +62,14 @@ fn every_log_gives_what_the_table_says() {
         assert_eq!(log.entries().len(), row.stages, "{name}");
         let last = log.last_commit().unwrap().chain_hash.to_string();
         assert!(last.starts_with(&row.last_chain_hash) && row.last_chain_hash.len() >= 16, "{name}: {last}");
-        for index in 0..row.stages {
+        for index in (0..row.stages).filter(|index| log.keeps_state(*index)) {
             log.state(index).unwrap_or_else(|error| panic!("{name}: {error}"));
         }
         let errors = verify_log(&log).iter().filter(|finding| finding.level == Level::Error).count();
         assert_eq!(errors > 0, found == "damaged", "{name}");
+        // Byte for byte what is written today, the summary too, which MCAP's own writer made in version 1.
+        let faultless = verify_log(&log).iter().all(|finding| finding.level == Level::Info);
+        assert_eq!(faultless, ["finished", "unfinished"].contains(&found), "{name}");
 
         let place = Place::new();
         let new = place.file("new.mcap");
@@ -87,7 +90,7 @@ fn every_log_gives_what_the_table_says() {
             assert_eq!(before.record, after.record, "{name}");
         }
     }
-    assert!(bytes < 350_000, "{bytes} bytes of golden logs");
+    assert!(bytes < 700_000, "{bytes} bytes of golden logs");
 }
 
 /// A scene that leaves the rule of quadrature out means the rule that was the default when its log was begun.
@@ -162,10 +165,12 @@ fn read_scene(name: &str) -> (Scene, Manifest) {
         cpu: "x86_64".to_owned(),
         cpu_features: Vec::new(),
         kernel: String::new(),
+        numerics: NUMERICS_REVISION,
         threads: 1,
         host: "golden".to_owned(),
         started_unix_s: 0,
         first_ordinal: 0,
+        same_scene: false,
     };
     (scene, manifest)
 }
@@ -199,6 +204,29 @@ fn write_golden_logs_of_later_states() {
             Some(_) => writer.close().unwrap(),
         }
     }
+}
+
+/// Not a test: writes a log that was gone on with to a farther target, where it is not there yet.
+#[test]
+#[ignore = "writes to checkpoints/golden"]
+fn write_golden_log_of_two_stretches() {
+    let path = path_of("stretches");
+    if path.exists() {
+        return;
+    }
+    let (_, manifest) = read_scene("scene.toml");
+    let near = Manifest { scene_text: manifest.scene_text.replace("= 4.0", "= 2.0"), ..manifest.clone() };
+    let mut writer = JournalWriter::create(&path, &near, SyncPolicy::AtEnd).unwrap();
+    let stages = Stages::new(scene(&near.scene_text));
+    let start = stages.start().unwrap();
+    Run::new(stages, start, None).to_end(None, &|| false, &mut writer).unwrap();
+    writer.finish().unwrap();
+    let resumed = JournalWriter::resume(&path, &manifest, SyncPolicy::AtEnd).unwrap();
+    let (mut writer, log) = (resumed.writer, resumed.log);
+    let state = log.state(log.entries().len() - 1).unwrap();
+    let mut run = Run::new(Stages::new(scene(&manifest.scene_text)), state, log.last_commit().copied());
+    run.to_end(None, &|| false, &mut writer).unwrap();
+    writer.finish().unwrap();
 }
 
 /// Not a test: writes the logs of this version, where they are not there yet. The `README.md` says when.

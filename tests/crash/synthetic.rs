@@ -141,9 +141,11 @@ pub fn manifest() -> Manifest {
         cpu: "x86_64".to_owned(),
         cpu_features: vec!["avx2".to_owned(), "fma".to_owned()],
         kernel: "avx2+fma".to_owned(),
+        numerics: 1,
         threads: 2,
         host: "somewhere".to_owned(),
         started_unix_s: 1_700_000_000,
         first_ordinal: 0,
+        same_scene: false,
     }
 }

@@ -238,10 +238,11 @@ fn nonsense() -> impl Strategy<Value = Cow<'static, [u8]>> {
         &record.commit,
         record.commit.state_hash,
         record.commit.state_hash,
+        Hash::from_bytes([4; 32]),
         Vec::new(),
     ))
     .unwrap();
-    let end = message::seal(&message::FinishedMessage::after(&record.commit)).unwrap();
+    let end = message::seal(&message::FinishedMessage::after(&record.commit, Hash::from_bytes([4; 32]))).unwrap();
     prop_oneof![
         prop::collection::vec(any::<u8>(), 0..200).prop_map(Cow::Owned),
         Just(Cow::Owned(report)),

@@ -4,10 +4,12 @@ mod bisect;
 mod changed;
 mod cost;
 mod cuts;
+mod numerics;
 mod paths;
 mod program;
 mod reading;
 mod replay;
+mod thin;
 mod threads;
 
 #[path = "../verification/support.rs"]

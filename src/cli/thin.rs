@@ -1,0 +1,105 @@
+//! `foldline thin`: a log without the states between some load steps.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::output::{file_name, print};
+use crate::journal::{ThinError, thin};
+
+/// Write a smaller log that holds every stage and every report, but the states of some load steps alone
+///
+/// The chain of hashes stays as it is. `replay` goes from the last kept state before a stage, `resume` from the last one, which
+/// is always kept.
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Log to read (MCAP)
+    log: PathBuf,
+    /// Log to write; never over another file
+    #[arg(short, long, value_name = "NEW", value_parser = file_name)]
+    output: PathBuf,
+    /// Load steps whose last state is kept: every=10 for every tenth, 7 for one, 20..30 for those from 20 to 30; several with
+    /// commas between
+    #[arg(long, value_name = "STEPS")]
+    keep: Steps,
+}
+
+impl Arguments {
+    /// Thins, and says what became of it.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let Self { log, output, keep } = self;
+        let thinned = thin(&log, &output, &keep.text, |step| keep.has(step)).map_err(|source| match source {
+            ThinError::Read(crate::journal::ReadError::Io { source, .. }) => {
+                Failure::Read { path: log.clone(), source }
+            }
+            source => Failure::WrongLog { log: log.clone(), source: Box::new(source) },
+        })?;
+        let [before, after] = thinned.bytes.map(|bytes| bytes as f64 / 1e6);
+        print(&format!(
+            "{}: all {} stages, {} of them with their states; {after:.2} MB of {before:.2} MB\n",
+            output.display(),
+            thinned.commits,
+            thinned.states
+        ))
+    }
+}
+
+/// Some load steps.
+#[derive(Clone, Debug, PartialEq)]
+struct Steps {
+    text: String,
+    choices: Vec<Choice>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Choice {
+    Every(u64),
+    FromTo(u64, u64),
+}
+
+impl Steps {
+    fn has(&self, step: u64) -> bool {
+        self.choices.iter().any(|choice| match choice {
+            Choice::Every(each) => step.is_multiple_of(*each),
+            Choice::FromTo(from, to) => (*from..=*to).contains(&step),
+        })
+    }
+}
+
+impl FromStr for Steps {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.parse::<u64>().map_err(|_| format!("`{text}` is not the number of a load step"));
+        let choice = |text: &str| match (text.split_once("every="), text.split_once("..")) {
+            (Some(("", each)), _) => match number(each)? {
+                0 => Err("every=0 keeps nothing: every=1 keeps the end of each step".to_owned()),
+                each => Ok(Choice::Every(each)),
+            },
+            (_, Some((from, to))) => match (number(from)?, number(to)?) {
+                (from, to) if from <= to => Ok(Choice::FromTo(from, to)),
+                (from, to) => Err(format!("{from}..{to} has no load step in it: the smaller one comes first")),
+            },
+            _ => number(text).map(|step| Choice::FromTo(step, step)),
+        };
+        let choices = text.split(',').map(|part| choice(part.trim())).collect::<Result<_, _>>()?;
+        Ok(Self { text: text.to_owned(), choices })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_chosen_by_number_range_and_multiple() {
+        let steps: Steps = "every=10, 3,5..7".parse().unwrap();
+        let kept: Vec<u64> = (1..=20).filter(|step| steps.has(*step)).collect();
+        assert_eq!(kept, [3, 5, 6, 7, 10, 20]);
+        for wrong in ["", "every=0", "every=", "7..5", "-1", "one", "every=2;3"] {
+            assert!(wrong.parse::<Steps>().is_err(), "{wrong}");
+        }
+    }
+}

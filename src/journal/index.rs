@@ -1,0 +1,313 @@
+//! `LOG.index`: where the commits of a long log lie and the numbers of their reports, in blocks of a thousand or so.
+//!
+//! It is a cache. A block carries the hash of its head, and its head those of its columns; the head marks the block's last
+//! commit, which is read from the log and held against its own seal and chain hash before anything behind it is. Where a block
+//! is missing, torn or does not fit, the log is read instead, and the index written anew. No log is shorter for having none.
+//!
+//! A column holds eight bytes for each commit: where its chunk lies, or a field of its report ([`fields_of`]) as a number.
+
+use std::fs::File;
+use std::io;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::checkpoint::{Checkpoint, channels};
+use super::format::MANIFEST;
+use super::frame;
+use super::ledger::{ChunkPlace, Ledger, Pattern};
+use super::manifest::Manifest;
+use super::message::HexHash;
+use super::reader::read_at;
+use super::stretch::Stretches;
+use crate::pipeline::{Record, as_number, fields_of};
+use crate::state::Hash;
+
+/// In front of every block.
+pub(super) const INDEX_MAGIC: &[u8; 8] = b"FOLDINX1";
+
+/// Commits of a block at most, and bytes of the log that it is about.
+const BLOCK_COMMITS: usize = 1024;
+const BLOCK_BYTES: u64 = 32 << 20;
+
+/// The largest head that is read, bytes.
+const HEAD_LIMIT: usize = 4 << 20;
+
+/// Columns that say where chunks lie.
+const PLACES: [&str; 3] = ["#at", "#bytes", "#pattern"];
+
+/// What a block begins with.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Head {
+    /// Ordinal of its first commit.
+    pub first: u64,
+    /// How many it has.
+    pub commits: u64,
+    columns: Vec<Column>,
+    mark: Mark,
+    /// Where its columns lie in the index.
+    #[serde(skip)]
+    columns_at: u64,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Column {
+    name: String,
+    blake3: HexHash,
+}
+
+/// The last commit of a block, and what has to be known to read on from there.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Mark {
+    pub chain_hash: HexHash,
+    pub patterns: Vec<Pattern>,
+    pub metadata: Vec<(u64, u64, String)>,
+    pub described_at: Vec<u64>,
+    pub mesh: Piece,
+    pub displacement: Piece,
+}
+
+/// A message of the log.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Piece {
+    pub hash: HexHash,
+    /// Where its data lies, and its length, bytes.
+    pub place: [u64; 2],
+}
+
+/// Collects commits until they fill a block.
+#[derive(Debug, Default)]
+pub(super) struct Builder {
+    first: u64,
+    places: Vec<ChunkPlace>,
+    names: Vec<String>,
+    /// The numbers of each field, in the order of `names`.
+    fields: Vec<Vec<u64>>,
+}
+
+/// A number that is not there.
+const ABSENT: u64 = f64::NAN.to_bits();
+
+impl Builder {
+    /// The next commit is number `ordinal`.
+    pub fn at(ordinal: u64) -> Self {
+        Self { first: ordinal, ..Self::default() }
+    }
+
+    /// Ordinal of the next commit.
+    pub fn next(&self) -> u64 {
+        self.first + self.places.len() as u64
+    }
+
+    /// Takes a commit; gives a block where that fills one.
+    pub fn push(
+        &mut self,
+        place: ChunkPlace,
+        record: &Record,
+        mark: impl FnOnce() -> Option<Mark>,
+    ) -> Option<(Head, Vec<u8>)> {
+        let before = self.places.len();
+        self.places.push(place);
+        for (name, value) in fields_of(&record.report) {
+            let known = self.names.iter().position(|known| *known == name);
+            let column = known.unwrap_or_else(|| {
+                self.names.push(name);
+                self.fields.push(vec![ABSENT; before]);
+                self.names.len() - 1
+            });
+            self.fields[column].push(number(&value));
+        }
+        self.fields.iter_mut().for_each(|column| column.resize(before + 1, ABSENT));
+        let bytes = place.at - self.places[0].at;
+        let full = self.places.len() >= BLOCK_COMMITS || bytes >= BLOCK_BYTES;
+        let mark = if full { mark()? } else { return None };
+        Some(std::mem::replace(self, Self::at(self.next())).block(mark))
+    }
+
+    fn block(self, mark: Mark) -> (Head, Vec<u8>) {
+        let places = [
+            self.places.iter().map(|place| place.at).collect(),
+            self.places.iter().map(|place| u64::from(place.bytes)).collect(),
+            self.places.iter().map(|place| u64::from(place.pattern)).collect::<Vec<u64>>(),
+        ];
+        let names = PLACES.iter().map(|name| (*name).to_owned()).chain(self.names);
+        let (mut columns, mut data) = (Vec::new(), Vec::new());
+        for (name, column) in names.zip(places.into_iter().chain(self.fields)) {
+            let bytes: Vec<u8> = column.iter().flat_map(|number| number.to_le_bytes()).collect();
+            columns.push(Column { name, blake3: HexHash(blake3::hash(&bytes)) });
+            data.extend(bytes);
+        }
+        let head = Head { first: self.first, commits: self.places.len() as u64, columns, mark, columns_at: 0 };
+        let json = serde_json::to_vec(&head).unwrap_or_default();
+        let mut block = INDEX_MAGIC.to_vec();
+        block.extend((json.len() as u64).to_le_bytes());
+        block.extend(blake3::hash(&json).as_bytes());
+        block.extend(json);
+        block.extend(data);
+        (head, block)
+    }
+}
+
+/// Bytes of a block in front of its head: magic, length and hash.
+const BLOCK_START_LEN: usize = 8 + 8 + 32;
+
+/// A field of a report as eight bytes: numbers as they are, words by their hash.
+fn number(value: &serde_json::Value) -> u64 {
+    match value {
+        serde_json::Value::String(word) => word_number(word),
+        value => as_number(value).map_or(ABSENT, f64::to_bits),
+    }
+}
+
+/// What stands for a word.
+pub fn word_number(word: &str) -> u64 {
+    blake3::hash(word.as_bytes()).as_bytes().first_chunk().map_or(ABSENT, |bytes| u64::from_le_bytes(*bytes))
+}
+
+/// The blocks of an index that can be used.
+#[derive(Debug)]
+pub(super) struct Index {
+    file: File,
+    pub heads: Vec<Head>,
+    /// Bytes of them.
+    pub length: u64,
+}
+
+impl Index {
+    /// Reads the heads of an index; `None` where there is none.
+    pub fn read(path: &Path) -> Option<Self> {
+        let file = File::open(path).ok()?;
+        let mut index = Self { file, heads: Vec::new(), length: 0 };
+        while let Some(head) = index.head_at(index.length) {
+            let expected = index.heads.last().map_or(0, |before| before.first + before.commits);
+            if head.first != expected || head.commits == 0 {
+                break;
+            }
+            index.length = head.columns_at + head.commits * 8 * head.columns.len() as u64;
+            index.heads.push(head);
+        }
+        (!index.heads.is_empty()).then_some(index)
+    }
+
+    fn head_at(&self, at: u64) -> Option<Head> {
+        let mut start = Vec::new();
+        read_at(&self.file, at, BLOCK_START_LEN, &mut start).ok()?;
+        let rest = start.strip_prefix(INDEX_MAGIC)?;
+        let (length, hash) = rest.split_first_chunk::<8>()?;
+        let length = usize::try_from(u64::from_le_bytes(*length)).ok().filter(|length| *length <= HEAD_LIMIT)?;
+        let mut json = Vec::new();
+        read_at(&self.file, at + BLOCK_START_LEN as u64, length, &mut json).ok()?;
+        if blake3::hash(&json).as_bytes() != hash {
+            return None;
+        }
+        let mut head: Head = serde_json::from_slice(&json).ok()?;
+        head.columns_at = at + (BLOCK_START_LEN + length) as u64;
+        let columns = head.commits.checked_mul(8 * head.columns.len() as u64)?;
+        let is_whole = head.columns_at.checked_add(columns)? <= self.file.metadata().ok()?.len();
+        is_whole.then_some(head)
+    }
+
+    /// Takes in a block that was written behind the others.
+    pub fn add(&mut self, mut head: Head, block_len: usize) {
+        let columns = head.commits * 8 * head.columns.len() as u64;
+        head.columns_at = self.length + block_len as u64 - columns;
+        self.length += block_len as u64;
+        self.heads.push(head);
+    }
+
+    /// An index without blocks in a file.
+    pub fn empty(file: File) -> Self {
+        Self { file, heads: Vec::new(), length: 0 }
+    }
+
+    /// Commits that it knows.
+    pub fn commits(&self) -> u64 {
+        self.heads.last().map_or(0, |head| head.first + head.commits)
+    }
+
+    /// A column of a block, checked; where the block has none of that name, nothing is in it.
+    pub fn column(&self, head: &Head, name: &str) -> io::Result<Vec<u64>> {
+        let Some(place) = head.columns.iter().position(|column| column.name == name) else {
+            return Ok(vec![ABSENT; head.commits as usize]);
+        };
+        let length = head.commits as usize * 8;
+        let mut bytes = Vec::new();
+        read_at(&self.file, head.columns_at + (place * length) as u64, length, &mut bytes)?;
+        if blake3::hash(&bytes) != head.columns[place].blake3.0 {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "a column of the index has changed"));
+        }
+        Ok(bytes
+            .chunks_exact(8)
+            .filter_map(|number| number.first_chunk())
+            .map(|number| u64::from_le_bytes(*number))
+            .collect())
+    }
+
+    /// Reads what the last block marks from the log, and where all chunks before that commit lie.
+    pub fn checkpoint(&self, log: &File) -> io::Result<Option<(Checkpoint, Ledger)>> {
+        let Some(last) = self.heads.last() else { return Ok(None) };
+        let mut ledger = Ledger { patterns: last.mark.patterns.clone(), ..Ledger::default() };
+        for head in &self.heads {
+            let [at, bytes, pattern] = PLACES.map(|name| self.column(head, name));
+            for ((at, bytes), pattern) in at?.into_iter().zip(bytes?).zip(pattern?) {
+                if pattern as usize >= ledger.patterns.len() {
+                    return Ok(None);
+                }
+                ledger.chunks.push(ChunkPlace { at, bytes: bytes as u32, pattern: pattern as u32 });
+            }
+        }
+        let Some(here) = ledger.chunks.pop() else { return Ok(None) };
+        let Mark { chain_hash, metadata, described_at, mesh, displacement, .. } = &last.mark;
+        let piece = |piece: &Piece| -> io::Result<(Hash, u64, Vec<u8>)> {
+            let mut bytes = Vec::new();
+            let length = (piece.place[1] as usize).min(super::format::CHUNK_BYTES_LIMIT);
+            read_at(log, piece.place[0], length, &mut bytes)?;
+            Ok((piece.hash.0, piece.place[0], bytes))
+        };
+        for at in described_at {
+            if let Some((bytes, chunk)) = record_at(log, *at)? {
+                ledger.describe(*at, &bytes, &chunk);
+            }
+        }
+        let mut stretches = Stretches::default();
+        for (at, bytes, name) in metadata {
+            ledger.metadata.push((*at, *bytes, name.clone()));
+            if name != MANIFEST {
+                continue;
+            }
+            let Some((bytes, record)) = record_at(log, *at)?.filter(|(found, _)| found.len() as u64 == *bytes) else {
+                return Ok(None);
+            };
+            let Ok(mcap::records::Record::Metadata(parsed)) = frame::parse(record.opcode, &bytes[record.body.clone()])
+            else {
+                return Ok(None);
+            };
+            let Ok((manifest, hash)) = Manifest::from_record(&parsed) else { return Ok(None) };
+            stretches.begin(manifest, hash);
+        }
+        let checkpoint = Checkpoint {
+            at: here.at,
+            ordinal: last.first + last.commits - 1,
+            chain_hash: chain_hash.0,
+            library: super::encoder::library(),
+            channels: channels(&ledger),
+            stretches,
+            mesh: piece(mesh)?,
+            displacement: piece(displacement)?,
+        };
+        Ok(Some((checkpoint, ledger)))
+    }
+}
+
+/// The record at a place in a log, alone in a buffer.
+pub(super) fn record_at(log: &File, at: u64) -> io::Result<Option<(Vec<u8>, frame::Frame)>> {
+    let mut bytes = Vec::new();
+    read_at(log, at, frame::PREFIX_LEN, &mut bytes)?;
+    let Some(Err(frame::Cut { claim: Some((_, length)), .. })) = frame::next(&bytes, 0) else { return Ok(None) };
+    let limit = super::format::CHUNK_BYTES_LIMIT as u64;
+    if length > limit {
+        return Ok(None);
+    }
+    read_at(log, at + frame::PREFIX_LEN as u64, length as usize, &mut bytes)?;
+    Ok(frame::next(&bytes, 0).and_then(Result::ok).map(|found| (bytes, found)))
+}

@@ -1,0 +1,141 @@
+//! Where the chunks of a log lie, in a few bytes each: all that MCAP's summary at the end of a log is made of.
+
+use std::collections::BTreeMap;
+
+use super::chunk::{self, MESSAGE_HEADER_LEN};
+use super::frame::{self, Frame, op};
+
+/// One chunk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ChunkPlace {
+    /// First byte.
+    pub at: u64,
+    /// Length with the nine bytes in front.
+    pub bytes: u32,
+    /// Which of the ledger's patterns its message indexes have.
+    pub pattern: u32,
+}
+
+/// The message indexes behind a chunk: channel and messages of each, in their order.
+pub(super) type Pattern = Vec<(u16, u32)>;
+
+/// What a log holds, in the order of the file.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ledger {
+    pub chunks: Vec<ChunkPlace>,
+    /// Few: chunks of one kind share theirs.
+    pub patterns: Vec<Pattern>,
+    /// First byte, length and name of every metadata record.
+    pub metadata: Vec<(u64, u64, String)>,
+    /// Records of schemas, whole, by number.
+    pub schemas: BTreeMap<u16, Vec<u8>>,
+    /// Records of channels, whole, by number.
+    pub channels: BTreeMap<u16, Vec<u8>>,
+    /// First bytes of the chunks that describe schemas or channels which no chunk before them does.
+    pub described_at: Vec<u64>,
+    /// Where the data of the last message of each channel lies, and its length.
+    pub last_messages: BTreeMap<u16, [u64; 2]>,
+}
+
+impl Ledger {
+    /// Enters the records of `bytes`, which lie at `at` in the log: whole chunks with their indexes.
+    pub fn enter(&mut self, at: u64, bytes: &[u8]) {
+        let mut from = if at == 0 { mcap::MAGIC.len() } else { 0 };
+        let mut open: Option<(ChunkPlace, Pattern)> = None;
+        while let Some(Ok(record)) = frame::next(bytes, from) {
+            from = record.body.end;
+            if record.opcode == op::MESSAGE_INDEX {
+                let body = &bytes[record.body.clone()];
+                let messages = (body.len().saturating_sub(INDEX_HEAD_LEN) / INDEX_ENTRY_LEN) as u32;
+                if let (Some((_, pattern)), Some(channel)) = (&mut open, body.first_chunk()) {
+                    pattern.push((u16::from_le_bytes(*channel), messages));
+                }
+                continue;
+            }
+            self.close(open.take());
+            let place = at + record.at as u64;
+            match record.opcode {
+                op::CHUNK => {
+                    self.describe(place, bytes, &record);
+                    let bytes = (record.body.end - record.at) as u32;
+                    open = Some((ChunkPlace { at: place, bytes, pattern: 0 }, Pattern::new()));
+                }
+                op::METADATA => {
+                    let name = frame::name(&bytes[record.body.clone()]).unwrap_or_default();
+                    self.metadata.push((place, (record.body.end - record.at) as u64, name.to_owned()));
+                }
+                _ => {}
+            }
+        }
+        self.close(open);
+    }
+
+    /// Messages of each channel.
+    pub fn messages(&self) -> BTreeMap<u16, u64> {
+        let mut chunks = vec![0_u64; self.patterns.len()];
+        self.chunks.iter().for_each(|chunk| chunks[chunk.pattern as usize] += 1);
+        let mut messages = BTreeMap::new();
+        for (pattern, chunks) in self.patterns.iter().zip(chunks) {
+            for (channel, each) in pattern {
+                *messages.entry(*channel).or_insert(0) += u64::from(*each) * chunks;
+            }
+        }
+        messages
+    }
+
+    /// Where the data of the last message on a topic lies, and its length.
+    pub fn last_message(&self, topic: &str) -> Option<[u64; 2]> {
+        let mut channels = super::checkpoint::channels(self).into_iter();
+        channels.find_map(|(id, channel)| (channel.topic == topic).then(|| self.last_messages.get(&id).copied()))?
+    }
+
+    /// The number of a pattern.
+    pub fn number_of(&mut self, pattern: Pattern) -> u32 {
+        let known = self.patterns.iter().position(|known| *known == pattern);
+        known.unwrap_or_else(|| {
+            self.patterns.push(pattern);
+            self.patterns.len() - 1
+        }) as u32
+    }
+
+    fn close(&mut self, chunk: Option<(ChunkPlace, Pattern)>) {
+        if let Some((place, pattern)) = chunk {
+            let pattern = self.number_of(pattern);
+            self.chunks.push(ChunkPlace { pattern, ..place });
+        }
+    }
+
+    /// Keeps the schemas and channels that a chunk describes.
+    pub fn describe(&mut self, at: u64, bytes: &[u8], chunk: &Frame) {
+        let known = self.schemas.len() + self.channels.len();
+        for record in chunk::records(bytes, chunk).unwrap_or_default() {
+            let Some(number) = bytes[record.body.clone()].first_chunk() else { continue };
+            let kind = match record.opcode {
+                op::SCHEMA => &mut self.schemas,
+                op::CHANNEL => &mut self.channels,
+                op::MESSAGE => {
+                    let data = record.body.start + MESSAGE_HEADER_LEN;
+                    let place = [at + (data - chunk.at) as u64, record.body.end.saturating_sub(data) as u64];
+                    self.last_messages.insert(u16::from_le_bytes(*number), place);
+                    continue;
+                }
+                _ => continue,
+            };
+            let whole = &bytes[record.at..record.body.end];
+            kind.entry(u16::from_le_bytes(*number)).or_insert_with(|| whole.to_vec());
+        }
+        if self.schemas.len() + self.channels.len() > known {
+            self.described_at.push(at);
+        }
+    }
+}
+
+/// Bytes of a message index in front of its entries: channel, and the length of what follows.
+const INDEX_HEAD_LEN: usize = 2 + 4;
+/// Bytes of one entry: time and place.
+const INDEX_ENTRY_LEN: usize = 8 + 8;
+
+/// Length of a message index with so many messages, with the nine bytes in front.
+pub(super) fn message_index_len(messages: u32) -> u64 {
+    (frame::PREFIX_LEN + INDEX_HEAD_LEN + INDEX_ENTRY_LEN * messages as usize) as u64
+}

@@ -1,0 +1,174 @@
+//! A long log, of which only the end is read: where the rest lies says its index.
+
+use std::fs::File;
+use std::io;
+use std::path::Path;
+
+use super::backend::beside;
+use super::checkpoint::read_in_parts;
+use super::chunk::{self, Content};
+use super::index::{Builder, Head, Index, Mark, Piece, record_at};
+use super::index_keeper::{LONG_BYTES, Rewritten};
+use super::ledger::Ledger;
+use super::log::{Entry, Log};
+use super::message::HexHash;
+use crate::pipeline::Record;
+
+/// Why a long log cannot be asked.
+#[derive(Debug, thiserror::Error)]
+pub enum LongLogError {
+    /// The log or its index cannot be read.
+    #[error("the log or its index cannot be read")]
+    Io(#[from] io::Error),
+    /// A commit that is not what the index says: damaged, or of another log.
+    #[error(
+        "commit {ordinal} at byte {at} is not what it was when the index was written: `foldline verify` tells more"
+    )]
+    Changed {
+        /// Ordinal of the commit.
+        ordinal: u64,
+        /// First byte of its chunk.
+        at: u64,
+    },
+}
+
+/// A log that was opened by its index.
+#[derive(Debug)]
+pub struct LongLog {
+    file: File,
+    pub(super) index: Option<Index>,
+    pub(super) tail: Log,
+    /// All chunks before the last commit that was read.
+    pub(super) ledger: Ledger,
+    /// Behind the blocks of the index.
+    pub(super) builder: Builder,
+}
+
+impl LongLog {
+    /// Opens a log that is long enough to have an index; `None` for a shorter one, and for one that is damaged before its
+    /// end, which has to be read whole. Where the index is missing or does not fit, the log is read through, part by part.
+    ///
+    /// # Errors
+    /// Where the log cannot be read.
+    pub fn open(path: &Path) -> io::Result<Option<Self>> {
+        let file = File::open(path)?;
+        let index_path = beside(path, ".index");
+        let index = Index::read(&index_path);
+        if index.is_none() && file.metadata()?.len() < LONG_BYTES {
+            return Ok(None);
+        }
+        if let Some(index) = index
+            && let Ok(Some(opened)) = Self::read(path, &index_path, Some(index))
+        {
+            return Ok(Some(opened));
+        }
+        Self::read_through(path)
+    }
+
+    /// Opens it without the index that there is, which does not fit, and writes a new one.
+    ///
+    /// # Errors
+    /// Where the log cannot be read.
+    pub fn read_through(path: &Path) -> io::Result<Option<Self>> {
+        Self::read(path, &beside(path, ".index"), None)
+    }
+
+    fn read(path: &Path, index_path: &Path, index: Option<Index>) -> io::Result<Option<Self>> {
+        let file = File::open(path)?;
+        let (from, mut ledger) = match &index {
+            Some(index) => match index.checkpoint(&file)? {
+                Some((from, ledger)) => (Some(from), ledger),
+                None => return Ok(None),
+            },
+            None => (None, Ledger::default()),
+        };
+        let mut builder = Builder::at(index.as_ref().map_or(0, Index::commits));
+        let mut rewritten: Option<Rewritten> = None;
+        let tail = read_in_parts(&file, from, &mut ledger, |log, ledger| {
+            for entry in log.entries().iter().skip((builder.next() as usize).saturating_sub(log.first())) {
+                let Some(place) = ledger.chunks.get(builder.next() as usize) else { break };
+                if let Some((head, block)) = builder.push(*place, &entry.record, || mark(log, ledger, entry)) {
+                    let growing = rewritten.take().or_else(|| Rewritten::of(index_path, index.as_ref()));
+                    rewritten = growing.and_then(|mut growing| growing.add(head, &block).map(|()| growing));
+                }
+            }
+            Ok(())
+        })?;
+        let reaches_end = tail.closed || tail.base + tail.walked as u64 >= tail.file_len;
+        if tail.entries.is_empty() || !reaches_end {
+            return Ok(None);
+        }
+        let index = rewritten.map_or(index, |rewritten| Some(rewritten.done(index_path)));
+        Ok(Some(Self { file, index, tail, ledger, builder }))
+    }
+
+    /// The end of the log, as far as it was read.
+    pub fn tail(&self) -> &Log {
+        &self.tail
+    }
+
+    /// Stages of the run.
+    pub fn commits(&self) -> usize {
+        self.tail.commits()
+    }
+
+    /// Stage `ordinal`, its seal and the hashes of its messages checked.
+    ///
+    /// # Errors
+    /// Where it cannot be read or is not what it was.
+    pub fn record(&self, ordinal: usize) -> Result<Record, LongLogError> {
+        if let Some(entry) = self.tail.entry(ordinal) {
+            return Ok(entry.record.clone());
+        }
+        let at = self.ledger.chunks.get(ordinal).map_or(0, |place| place.at);
+        let changed = || LongLogError::Changed { ordinal: ordinal as u64, at };
+        let (bytes, record) = record_at(&self.file, at)?.ok_or_else(changed)?;
+        let mut channels = super::checkpoint::channels(&self.ledger);
+        match chunk::open(&bytes, &record, &mut channels) {
+            Ok(Content::Commit(content)) if content.commit.ordinal == ordinal as u64 => {
+                let commit = content.commit.commit();
+                Ok(Record { wall_s: content.report.wall_s, report: content.report.report, commit })
+            }
+            _ => Err(changed()),
+        }
+    }
+
+    /// Ordinals of the stages from `from` on, of those before the end that was read, whose reports hold numbers that `holds`
+    /// takes: those of `fields`, each in eight bytes.
+    ///
+    /// # Errors
+    /// Where the index cannot be read or has changed.
+    pub fn search(&self, from: usize, fields: &[&str], holds: impl Fn(&[u64]) -> bool) -> io::Result<Option<usize>> {
+        let Some(index) = &self.index else { return Ok(None) };
+        let behind = |head: &&Head| (head.first + head.commits) as usize > from;
+        for head in index.heads.iter().filter(behind) {
+            let columns = fields.iter().map(|name| index.column(head, name)).collect::<io::Result<Vec<_>>>()?;
+            let mut numbers = vec![0; fields.len()];
+            for row in from.saturating_sub(head.first as usize)..head.commits as usize {
+                numbers.iter_mut().zip(&columns).for_each(|(number, column)| *number = column[row]);
+                let ordinal = head.first as usize + row;
+                if ordinal < self.tail.first() && holds(&numbers) {
+                    return Ok(Some(ordinal));
+                }
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// What a block says about its last commit.
+pub(super) fn mark(log: &Log, ledger: &Ledger, entry: &Entry) -> Option<Mark> {
+    let at = entry.bytes.start;
+    let piece = |places: &std::collections::HashMap<_, std::ops::Range<usize>>, hash| {
+        let place = places.get(&hash)?;
+        Some(Piece { hash: HexHash(hash), place: [log.place_of(place)?, place.len() as u64] })
+    };
+    Some(Mark {
+        chain_hash: HexHash(entry.record.commit.chain_hash),
+        patterns: ledger.patterns.clone(),
+        metadata: ledger.metadata.iter().filter(|(place, ..)| *place < at).cloned().collect(),
+        described_at: ledger.described_at.iter().copied().filter(|place| *place <= at).collect(),
+        mesh: piece(&log.meshes, entry.mesh_hash)?,
+        displacement: piece(&log.displacements, entry.displacement_hash)?,
+    })
+}

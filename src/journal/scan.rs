@@ -1,0 +1,313 @@
+//! The walk over the bytes of a log: every record, every chunk opened, every commit held against the one before it.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+use mcap::records::Record as McapRecord;
+
+use super::checkpoint::Checkpoint;
+use super::chunk::{self, Channels, CommitContent, Content};
+use super::damage::{Damage, LaterCommit, Problem};
+use super::format::{FORMAT_VERSION, MANIFEST, PROFILE, THINNED};
+use super::frame::{self, Cut, Frame, PREFIX_LEN, op};
+use super::log::{Entry, Kept, Note, Part};
+use super::manifest::{LIBRARY, Manifest};
+use super::message::FinishedMessage;
+use super::stretch::Stretches;
+use crate::pipeline::{Commit, Record};
+use crate::state::Hash;
+
+/// Problems that are listed one by one; a file of another kind under a log's name could have any number.
+const PROBLEMS_LIMIT: usize = 1000;
+
+/// Reading under way. Places in `entries`, `parts`, `meshes` and `displacements` count from the first byte that is walked
+/// over, those that are told from the start of the file.
+#[derive(Default)]
+pub(super) struct Scan {
+    /// Place of the first byte in the file.
+    base: u64,
+    /// Where reading goes on from, other than the start of the file.
+    from: Option<(u64, Hash)>,
+    channels: Channels,
+    pub header: Option<(String, String)>,
+    pub thinned: Option<String>,
+    pub stretches: Stretches,
+    pub manifest_seen: bool,
+    pub entries: Vec<Entry>,
+    pub meshes: HashMap<Hash, Range<usize>>,
+    pub displacements: HashMap<Hash, Range<usize>>,
+    pub parts: Vec<Part>,
+    pub finished: Option<FinishedMessage>,
+    pub closed: bool,
+    pub good_end: usize,
+    /// Where a new stretch would begin: behind the last commit or manifest and its indexes.
+    pub stretch_end: usize,
+    pub problems: Vec<Problem>,
+    pub later: Vec<LaterCommit>,
+    later_seen: HashSet<u64>,
+    pub notes: Vec<Note>,
+    pub newer_format: Option<u32>,
+}
+
+impl Scan {
+    /// A walk that begins at a commit in the middle of a log; `bytes` are those from there on, and `meshes` and
+    /// `displacements` say where the ones before it lie beside them.
+    pub fn from(checkpoint: &Checkpoint) -> Self {
+        Self {
+            base: checkpoint.at,
+            from: Some((checkpoint.ordinal, checkpoint.chain_hash)),
+            channels: checkpoint.channels.clone(),
+            header: Some((PROFILE.to_owned(), checkpoint.library.clone())),
+            stretches: checkpoint.stretches.clone(),
+            ..Self::default()
+        }
+    }
+
+    /// Walks over the bytes. Where more of them follow in the file (`goes_on`), a record that they cut off is no damage.
+    pub fn run(&mut self, bytes: &[u8], goes_on: bool) {
+        let mut at = 0;
+        if self.from.is_none() {
+            if !bytes.starts_with(mcap::MAGIC) {
+                self.notes.push(Note { at: 0, text: Damage::Magic.to_string() });
+            }
+            at = mcap::MAGIC.len();
+        }
+        self.good_end = at.min(bytes.len());
+        self.stretch_end = self.good_end;
+        while let Some(next) = frame::next(bytes, at) {
+            if goes_on && next.is_err() {
+                break;
+            }
+            let outcome = match &next {
+                Ok(frame) => self.frame(bytes, frame),
+                Err(Cut { claim: None, left }) => Err(Damage::CutPrefix { left: *left as u64 }),
+                Err(Cut { claim: Some((opcode, claims)), left }) => {
+                    let left = left.saturating_sub(PREFIX_LEN) as u64;
+                    Err(Damage::CutRecord { opcode: *opcode, claims: *claims, left })
+                }
+            };
+            let following = match (outcome, next) {
+                (Ok(()), Ok(frame)) => {
+                    if !self.has_lost() {
+                        self.good_end = frame.body.end;
+                        if self.finished.is_none() && !self.closed {
+                            self.stretch_end = frame.body.end;
+                        }
+                    }
+                    match self.closed {
+                        true if goes_on => None,
+                        true => frame::find(bytes, frame.body.end),
+                        false => Some(frame.body.end),
+                    }
+                }
+                (Err(damage), next) => {
+                    let only_zeros = bytes[at..].iter().all(|byte| *byte == 0);
+                    let damage = if only_zeros { Damage::Zeros { left: (bytes.len() - at) as u64 } } else { damage };
+                    let is_cut = damage.is_cut();
+                    self.problem(at, damage);
+                    // A chunk keeps its place even where its content is damaged; all else may have lost the step.
+                    match next {
+                        Ok(frame) if frame::chunk_records(bytes, &frame).is_some() => Some(frame.body.end),
+                        _ => {
+                            let following = frame::find(bytes, at + 1);
+                            if !only_zeros && !self.closed {
+                                let place = self.place(at);
+                                self.stretches.gap(place, &bytes[at..following.unwrap_or(bytes.len())], is_cut);
+                            }
+                            following
+                        }
+                    }
+                }
+                (Ok(()), Err(_)) => None,
+            };
+            match following {
+                Some(following) => at = following,
+                None => break,
+            }
+        }
+        let good = self.commits();
+        if !goes_on || self.closed {
+            self.stretches.end(good);
+        }
+        self.later.retain(|commit| commit.ordinal >= good);
+    }
+
+    /// A place in the file.
+    fn place(&self, at: usize) -> u64 {
+        self.base + at as u64
+    }
+
+    /// Good commits so far, with those before the first that is read.
+    fn commits(&self) -> u64 {
+        self.from.map_or(0, |(ordinal, _)| ordinal) + self.entries.len() as u64
+    }
+
+    /// Whether something behind the last good record is not as it was written.
+    fn has_lost(&self) -> bool {
+        self.problems.last().is_some_and(|problem| problem.at >= self.place(self.good_end))
+    }
+
+    fn problem(&mut self, at: usize, damage: Damage) {
+        // Beyond the limit the newest takes the place of the one before it, so that the last one is always there.
+        self.problems.truncate(PROBLEMS_LIMIT - 1);
+        let at = self.place(at);
+        self.problems.push(Problem { at, damage });
+    }
+
+    fn frame(&mut self, bytes: &[u8], frame: &Frame) -> Result<(), Damage> {
+        let body = &bytes[frame.body.clone()];
+        let misplaced = || Err(Damage::Misplaced { opcode: frame.opcode, bytes: body.len() as u64 });
+        let parse = || {
+            let unreadable = |cause| Damage::Unreadable { opcode: frame.opcode, cause };
+            frame::parse(frame.opcode, body).map_err(unreadable)
+        };
+        match frame.opcode {
+            op::HEADER if self.base == 0 && frame.at == mcap::MAGIC.len() => {
+                if let McapRecord::Header(header) = parse()? {
+                    self.header = Some((header.profile, header.library));
+                }
+                Ok(())
+            }
+            op::METADATA if bytes[frame.body.end.saturating_sub(1)..].iter().all(|byte| *byte == 0) => {
+                let content = body.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
+                Err(Damage::CutRecord { opcode: frame.opcode, claims: body.len() as u64, left: content as u64 })
+            }
+            op::METADATA => {
+                if let McapRecord::Metadata(record) = parse()? {
+                    self.metadata(frame, &record);
+                }
+                Ok(())
+            }
+            op::CHUNK => self.chunk(bytes, frame),
+            op::MESSAGE_INDEX => match parse()? {
+                McapRecord::MessageIndex(index) if body.len() == 2 + 4 + 16 * index.records.len() => Ok(()),
+                _ => misplaced(),
+            },
+            op::DATA_END if body.len() == 4 => {
+                self.closed = true;
+                Ok(())
+            }
+            _ => misplaced(),
+        }
+    }
+
+    fn metadata(&mut self, frame: &Frame, record: &mcap::records::Metadata) {
+        match Manifest::from_record(record) {
+            Ok((manifest, hash)) => {
+                if manifest.format_version > FORMAT_VERSION {
+                    self.newer_format = Some(manifest.format_version);
+                }
+                self.manifest_seen = true;
+                let (header, named) = (self.header.as_ref().map(|(_, library)| library), record.metadata.get(LIBRARY));
+                if manifest.first_ordinal == 0 && named.is_some() && header != named {
+                    let text = "the header does not name the program that the manifest names";
+                    self.notes.push(Note { at: mcap::MAGIC.len() as u64, text: text.to_owned() });
+                }
+                // Behind a loss it speaks of commits that are not used.
+                if manifest.first_ordinal == self.commits() {
+                    self.parts.push(Part { at: frame.at, end: frame.body.end, kept: Kept::Manifest });
+                    self.stretches.begin(manifest, hash);
+                } else {
+                    self.stretches.begin_later(self.place(frame.at), manifest, hash);
+                }
+            }
+            Err(_) if record.name == THINNED => {
+                self.parts.push(Part { at: frame.at, end: frame.body.end, kept: Kept::Marker });
+                self.thinned = Some(record.metadata.get("kept").cloned().unwrap_or_default());
+            }
+            Err(error) if record.name == MANIFEST => {
+                self.stretches.suspect(self.place(frame.at));
+                self.notes.push(Note { at: self.place(frame.at), text: format!("{error}; it is left out") });
+            }
+            Err(_) => {
+                let text = format!("metadata {:?} is not foldline's; it is left out", record.name);
+                self.notes.push(Note { at: self.place(frame.at), text });
+            }
+        }
+    }
+
+    /// Takes a chunk if it follows from what was taken before, whatever lies in between.
+    fn chunk(&mut self, bytes: &[u8], frame: &Frame) -> Result<(), Damage> {
+        let kept = match chunk::open(bytes, frame, &mut self.channels)? {
+            Content::Commit(content) => {
+                let (ordinal, stage, step) = (content.commit.ordinal, content.commit.stage, content.commit.step);
+                let manifest = content.commit.manifest_hash.map(|hash| hash.0);
+                if let Err(damage) = self.commit(frame, *content) {
+                    self.stretches.of_later_commit(self.place(frame.at), manifest);
+                    if self.later_seen.insert(ordinal) {
+                        let at = self.place(frame.at);
+                        self.later.push(LaterCommit { at, ordinal, stage, step });
+                    }
+                    // Behind a loss it goes without saying that the chain is broken.
+                    return if self.has_lost() { Ok(()) } else { Err(damage) };
+                }
+                Kept::Commit
+            }
+            Content::Finished(finished) => {
+                let last = self.entries.last().map(|entry| entry.record.commit.chain_hash);
+                let found = self.commits();
+                if finished.commits != found || Some(finished.chain_hash.0) != last {
+                    let damage = Damage::OtherEnd { claims: finished.commits, found };
+                    return if self.has_lost() { Ok(()) } else { Err(damage) };
+                }
+                self.stretches.of_commit(self.place(frame.at), found, finished.manifest_hash.map(|hash| hash.0));
+                self.finished = Some(finished);
+                Kept::Finished
+            }
+        };
+        self.good_end = frame.body.end;
+        self.parts.push(Part { at: frame.at, end: frame.body.end, kept });
+        Ok(())
+    }
+
+    /// Holds a commit against the one before it, and keeps it.
+    fn commit(&mut self, frame: &Frame, content: CommitContent) -> Result<(), Damage> {
+        if self.finished.is_some() {
+            return Err(Damage::AfterEnd);
+        }
+        let previous = self.entries.last().map(|entry| entry.record.commit);
+        let commit = content.commit.commit();
+        let ordinal = commit.ordinal;
+        let expected = self.commits();
+        if ordinal != expected {
+            return Err(Damage::OutOfOrder { expected, found: ordinal });
+        }
+        let parent = previous.map_or(commit.parent_hash, |previous| previous.state_hash);
+        if commit.parent_hash != parent {
+            return Err(Damage::OtherParent { ordinal, expected: parent, found: commit.parent_hash });
+        }
+        let (stage, step, scene) = (commit.stage, commit.step, commit.scene_hash);
+        let expected = match (previous, self.from) {
+            (None, Some((_, chain_hash))) => chain_hash,
+            _ => Commit::next(previous.as_ref(), stage, step, scene, parent, commit.state_hash).chain_hash,
+        };
+        if commit.chain_hash != expected {
+            return Err(Damage::BrokenChain { ordinal, expected, found: commit.chain_hash });
+        }
+        let (mesh_hash, displacement) = (content.commit.mesh_hash.0, content.commit.displacement_hash.0);
+        let has_state = content.state.is_some();
+        if has_state && content.mesh.is_none() && !self.meshes.contains_key(&mesh_hash) {
+            return Err(Damage::UnknownMesh { mesh: mesh_hash });
+        }
+        if has_state && content.displacement.is_none() && !self.displacements.contains_key(&displacement) {
+            return Err(Damage::UnknownDisplacement { displacement });
+        }
+        self.meshes.extend(content.mesh.map(|place| (mesh_hash, place)));
+        self.displacements.extend(content.displacement.map(|place| (displacement, place)));
+        let stretch =
+            self.stretches.of_commit(self.place(frame.at), ordinal, content.commit.manifest_hash.map(|hash| hash.0));
+        let names_stretch = content.commit.manifest_hash.is_some();
+        let record = Record { wall_s: content.report.wall_s, report: content.report.report, commit };
+        let bytes = self.place(frame.at)..self.place(frame.body.end);
+        self.entries.push(Entry {
+            record,
+            mesh_hash,
+            displacement_hash: displacement,
+            bytes,
+            state: content.state,
+            stretch,
+            names_stretch,
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,189 @@
+//! Long logs: what they are asked takes the time and memory of the answer.
+//!
+//! A million commits, to be looked at with `/usr/bin/time -v foldline resume LOG --until 0.1` and the like:
+//!
+//! ```text
+//! FOLDLINE_LONG_LOG=/tmp/long.mcap FOLDLINE_COMMITS=1000000 \
+//!     cargo test --release --test crash long::write_a_long_log -- --ignored --nocapture
+//! ```
+
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use foldline::journal::{JournalWriter, Level, Log, LongLog, Manifest, Resume, verify};
+use foldline::pipeline::{Commit, MemorySink, Record, Run, Stages};
+use foldline::scene::SyncPolicy;
+use foldline::state::State;
+
+use crate::flips::{Random, seed};
+use crate::memory::peak;
+use crate::program::{Place, Said, scene};
+
+const SCENE: &str = r#"
+[geometry]
+kind = "tape-spring"
+length_mm = 300.0
+radius_mm = 10.0
+arc_deg = 110.0
+
+[material]
+kind = "isotropic"
+youngs_modulus_mpa = 131000.0
+poissons_ratio = 0.3
+thickness_mm = 0.1
+
+[mesh]
+degree = [2, 2]
+elements = [4, 2]
+
+[symmetry]
+part = "quarter"
+
+[load]
+kind = "end-rotation"
+sense = "opposite"
+rotation_deg = 4.0
+increment_deg = 0.01
+
+[pipeline]
+stages = ["solve"]
+"#;
+
+/// The moment of the stage that conditions look for.
+const LARGE_N_MM: f64 = 1.0e6;
+
+/// A log of so many commits: states near the third of a real run, and at the end that one itself, so that the program goes on
+/// from there. Three quarters on stands a large moment.
+fn write_long(path: &Path, commits: u64) {
+    let scene = scene(SCENE);
+    let stages = Stages::new(scene.clone());
+    let start = stages.start().unwrap();
+    let mut sink = MemorySink::default();
+    Run::new(stages, start.clone(), None).to_end(Some(0.03), &|| false, &mut sink).unwrap();
+    let (real, record) = sink.stages.pop().unwrap();
+    let manifest = Manifest::here(Path::new("long.toml"), SCENE, 1);
+    let mut writer = JournalWriter::create(path, &manifest, SyncPolicy::AtEnd).unwrap();
+    let (mut previous, mut parent): (Option<Commit>, _) = (None, start.hash());
+    for ordinal in 0..commits {
+        let mut state = State { step: ordinal + 1, ..real.clone() };
+        let mut report = record.report.clone();
+        report.step = ordinal + 1;
+        if ordinal + 1 < commits {
+            let share = ordinal as f64 / commits as f64;
+            state.displacement.iter_mut().for_each(|point| point[2] += share * 1e-3);
+            state.moment_n_mm *= 1.0 + share;
+        }
+        if ordinal == commits / 4 * 3 {
+            state.moment_n_mm = LARGE_N_MM;
+        }
+        report.moment_n_mm = state.moment_n_mm;
+        let hash = state.hash();
+        let commit = Commit::next(previous.as_ref(), report.stage, report.step, scene.hash(), parent, hash);
+        writer.commit(&state, &Record { report, commit, wall_s: 0.01 }).unwrap();
+        (previous, parent) = (Some(commit), hash);
+    }
+}
+
+/// Not a test: the log to measure.
+#[test]
+#[ignore = "writes the log that FOLDLINE_LONG_LOG names"]
+fn write_a_long_log() {
+    let path = std::env::var("FOLDLINE_LONG_LOG").unwrap();
+    let commits = std::env::var("FOLDLINE_COMMITS").map_or(1_000_000, |text| text.parse().unwrap());
+    let began = Instant::now();
+    write_long(Path::new(&path), commits);
+    let bytes = fs::metadata(&path).unwrap().len();
+    println!("{commits} commits, {bytes} bytes in {:?}", began.elapsed());
+}
+
+/// What the program answers about a long log is what it would answer having read all of it, whether there is an index, none, or
+/// a damaged one.
+#[test]
+fn an_index_changes_no_answer() {
+    const COMMITS: u64 = 20_000;
+    let place = Place::new();
+    let path = place.file("long.mcap");
+    write_long(&path, COMMITS);
+    assert_eq!(place.logs(), ["long.mcap", "long.mcap.index"]);
+    let index = place.read("long.mcap.index");
+    let whole = Log::read(&path).unwrap();
+    let faults: Vec<_> = verify(&path).into_iter().filter(|finding| finding.level > Level::Info).collect();
+    assert!(faults.is_empty(), "{faults:?}");
+
+    let (long, memory) = peak(|| LongLog::open(&path).unwrap().unwrap());
+    assert!(long.tail().entries().len() < 3000, "{} stages were read", long.tail().entries().len());
+    assert!(memory < 24 << 20, "{memory} bytes for a log of {}", whole.file_len());
+    for ordinal in [0, 1, 5000, 15_000, COMMITS as usize - 1] {
+        assert_eq!(long.record(ordinal).unwrap(), whole.entries()[ordinal].record);
+    }
+    let ask = || {
+        let step = place.foldline("inspect long.mcap --step 12345 --json").ends(0).out;
+        let condition = "moment_n_mm > 999999 and step > 3";
+        let first = place.command("bisect long.mcap --when").arg(condition).output().unwrap();
+        (step, Said::new("bisect", first).ends(0).out)
+    };
+    let (step, first) = ask();
+    assert!(step.contains("\"step\":12345"), "{step}");
+    assert!(first.contains("15000"), "{first}");
+    place.foldline("inspect long.mcap --step 20001").ends(2).says(&["it has 1 to 20000"]);
+    let mut random = Random::new(seed());
+    for round in 0..30 {
+        let mut damaged = index.clone();
+        match round {
+            0 => damaged.clear(),
+            1..5 => damaged.truncate(random.below(index.len())),
+            5..10 => damaged[..].fill(0),
+            _ => damaged[random.below(index.len())] ^= 1 << random.below(8),
+        }
+        place.write("long.mcap.index", damaged);
+        assert_eq!(ask(), (step.clone(), first.clone()), "round {round}");
+    }
+    fs::remove_file(place.file("long.mcap.index")).unwrap();
+    assert_eq!(ask(), (step, first));
+}
+
+/// A long log is gone on with from its end, in place, with the index or without; its index grows with it.
+#[test]
+fn a_long_log_goes_on() {
+    const COMMITS: u64 = 6000;
+    let place = Place::new();
+    let path = place.file("long.mcap");
+    write_long(&path, COMMITS);
+    let mut chains = Vec::new();
+    let before = place.read("long.mcap");
+    let index = place.read("long.mcap.index");
+    for with_index in [true, false] {
+        place.write("long.mcap", &before);
+        match with_index {
+            true => place.write("long.mcap.index", &index),
+            false => fs::remove_file(place.file("long.mcap.index")).unwrap(),
+        }
+        place.foldline("resume long.mcap --until 0.06 --quiet").ends(0);
+        let after = place.read("long.mcap");
+        assert_eq!(after[..before.len()], before);
+        let log = Log::read(&path).unwrap();
+        assert!(log.entries().len() as u64 >= COMMITS + 2);
+        let faults: Vec<_> = verify(&path).into_iter().filter(|finding| finding.level > Level::Info).collect();
+        assert!(faults.is_empty(), "{faults:?}");
+        chains.push(log.last_commit().unwrap().chain_hash);
+        // And again, behind its summary.
+        place.foldline("resume long.mcap --until 0.08 --quiet").ends(0);
+        assert!(Log::read(&path).unwrap().entries().len() > log.entries().len());
+        assert_eq!(Log::read(&path).unwrap().manifests().len(), 3);
+    }
+    assert_eq!(chains[0], chains[1]);
+    // Every reader of MCAP finds every chunk.
+    let bytes = place.read("long.mcap");
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let log = Log::read(&path).unwrap();
+    let entries = log.entries().iter().zip(&summary.chunk_indexes);
+    assert!(entries.clone().count() == log.entries().len());
+    for (entry, chunk) in entries {
+        let place = chunk.chunk_start_offset..chunk.chunk_start_offset + chunk.chunk_length;
+        assert_eq!(place, entry.bytes);
+    }
+    let messages = mcap::MessageStream::new(&bytes).unwrap().count() as u64;
+    assert_eq!(summary.stats.unwrap().message_count, messages);
+    assert!(Resume::open(&path).unwrap().log().first() > 0, "only the end is read");
+}
