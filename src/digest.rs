@@ -10,23 +10,24 @@ pub(crate) struct Feed {
     pending: Vec<u8>,
 }
 
-/// Bytes that are gathered before the hasher gets them.
-const BATCH: usize = 16 * 1024;
+/// Bytes that the hasher gets at a time: whole subtrees of its own, which it hashes side by side.
+const BATCH: usize = 64 * 1024;
 
 impl Feed {
     pub(crate) fn new(domain: &str) -> Self {
-        let mut feed = Self { hasher: blake3::Hasher::new(), pending: Vec::with_capacity(BATCH) };
+        let mut feed = Self { hasher: blake3::Hasher::new(), pending: Vec::with_capacity(2 * BATCH) };
         feed.integer(domain.len() as u64);
         feed.bytes(domain.as_bytes());
         feed
     }
 
     pub(crate) fn bytes(&mut self, bytes: &[u8]) {
-        if self.pending.len() + bytes.len() > BATCH {
-            self.hasher.update(&self.pending);
-            self.pending.clear();
-        }
         self.pending.extend_from_slice(bytes);
+        if self.pending.len() >= BATCH {
+            let whole = self.pending.len() / BATCH * BATCH;
+            self.hasher.update(&self.pending[..whole]);
+            self.pending.drain(..whole);
+        }
     }
 
     pub(crate) fn integer(&mut self, value: u64) {

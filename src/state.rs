@@ -127,6 +127,22 @@ pub enum Rejection {
     SharpTurn,
 }
 
+/// The hash of the mesh seen last: most stages keep theirs.
+#[derive(Debug, Default)]
+pub(crate) struct MeshHash {
+    last: Option<(Arc<Mesh>, Hash)>,
+}
+
+impl MeshHash {
+    /// The hash of a mesh.
+    pub(crate) fn of(&mut self, mesh: &Arc<Mesh>) -> Hash {
+        match &self.last {
+            Some((last, hash)) if Arc::ptr_eq(last, mesh) => *hash,
+            _ => self.last.insert((mesh.clone(), mesh.hash())).1,
+        }
+    }
+}
+
 impl State {
     /// Of an undeformed shell, before the first step.
     pub fn undeformed(mesh: Mesh) -> Self {
@@ -152,8 +168,13 @@ impl State {
 
     /// Content hash over everything that decides the future; independent of how a log encodes the state.
     pub fn hash(&self) -> Hash {
+        self.hash_on(self.mesh.hash())
+    }
+
+    /// The same where the hash of its mesh is known.
+    pub(crate) fn hash_on(&self, mesh: Hash) -> Hash {
         let mut feed = Feed::new("foldline state");
-        feed.bytes(self.mesh.hash().as_bytes());
+        feed.bytes(mesh.as_bytes());
         feed.integer(self.displacement.len() as u64);
         for vector in &self.displacement {
             vector.iter().for_each(|value| feed.number(*value));

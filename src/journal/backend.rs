@@ -34,6 +34,14 @@ pub trait Backend: Send {
     /// Where it is not certain that all of it is there.
     fn sync(&mut self) -> io::Result<()>;
 
+    /// Begins to force what was appended to durable storage, and goes on meanwhile: it takes as long as several commits.
+    ///
+    /// # Errors
+    /// Where that cannot be begun, or the one before has failed.
+    fn sync_meanwhile(&mut self) -> io::Result<()> {
+        self.sync()
+    }
+
     /// Takes off what a failed append may have left behind `length` bytes.
     ///
     /// # Errors
@@ -49,7 +57,12 @@ pub struct FileBackend {
     coming: Coming,
     folder_synced: bool,
     cut_first: Option<Cut>,
+    /// Forces what was appended to disk.
+    syncing: Option<Syncing>,
 }
+
+/// A thread that forces a file to disk.
+type Syncing = JoinHandle<io::Result<()>>;
 
 /// What goes before the first byte is added.
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +88,7 @@ enum Coming {
         original: File,
         original_len: u64,
         /// Forces the copy to disk while the run already goes on; a 40 MB log takes 70 ms and more for that.
-        synced: Option<JoinHandle<io::Result<()>>>,
+        synced: Option<Syncing>,
     },
 }
 
@@ -88,7 +101,14 @@ impl FileBackend {
     pub fn create_new(path: &Path) -> io::Result<Self> {
         let whole = WholeFile::beside(path)?;
         let file = whole.file().try_clone()?;
-        Ok(Self { file, path: path.to_owned(), coming: Coming::New(whole), folder_synced: false, cut_first: None })
+        Ok(Self {
+            file,
+            path: path.to_owned(),
+            coming: Coming::New(whole),
+            folder_synced: false,
+            cut_first: None,
+            syncing: None,
+        })
     }
 
     /// A log that is gone on with in place. Of the `found` bytes that it has, those behind the first `length` are cut off before
@@ -99,7 +119,7 @@ impl FileBackend {
     pub(super) fn behind(path: &Path, length: u64, found: u64) -> io::Result<Self> {
         let file = OpenOptions::new().append(true).open(path)?;
         let cut_first = Some(Cut { length, found });
-        Ok(Self { file, path: path.to_owned(), coming: Coming::Named, folder_synced: true, cut_first })
+        Ok(Self { file, path: path.to_owned(), coming: Coming::Named, folder_synced: true, cut_first, syncing: None })
     }
 
     /// Cuts off what is not gone on with. That is durable before anything takes its place: half of the one and half of the other
@@ -120,7 +140,14 @@ impl FileBackend {
     pub(super) fn copy_of(log: &Path) -> io::Result<Self> {
         let copy = WholeFile::beside(log)?;
         let file = copy.file().try_clone()?;
-        Ok(Self { file, path: log.to_owned(), coming: Coming::Copy(copy), folder_synced: false, cut_first: None })
+        Ok(Self {
+            file,
+            path: log.to_owned(),
+            coming: Coming::Copy(copy),
+            folder_synced: false,
+            cut_first: None,
+            syncing: None,
+        })
     }
 
     /// Lets this copy, once all of it is on disk, take the place of the log, of whose `original_len` bytes it was made. Until then
@@ -154,9 +181,7 @@ impl FileBackend {
             return Ok(());
         }
         if let Coming::Replacing { copy, synced, .. } = std::mem::replace(&mut self.coming, Coming::Named) {
-            if let Some(synced) = synced {
-                synced.join().unwrap_or_else(|_| Err(io::Error::other("the thread that synced the log died")))?;
-            }
+            ended(synced)?;
             copy.replace(&self.path)?;
         }
         self.sync_folder()
@@ -206,8 +231,21 @@ impl Backend for FileBackend {
 
     fn sync(&mut self) -> io::Result<()> {
         self.settle()?;
+        ended(self.syncing.take())?;
         self.file.sync_data()?;
         self.sync_folder()
+    }
+
+    fn sync_meanwhile(&mut self) -> io::Result<()> {
+        self.settle()?;
+        ended(self.syncing.take())?;
+        self.sync_folder()?;
+        let file = self.file.try_clone()?;
+        match std::thread::Builder::new().spawn(move || file.sync_data()) {
+            Ok(thread) => self.syncing = Some(thread),
+            Err(_) => self.file.sync_data()?,
+        }
+        Ok(())
     }
 
     fn cut(&mut self, length: u64) -> io::Result<()> {
@@ -217,11 +255,18 @@ impl Backend for FileBackend {
 
 impl Drop for FileBackend {
     fn drop(&mut self) {
+        let _ = ended(self.syncing.take());
         // Nothing was added: the log that was to be replaced has all that the copy has.
         if let Coming::Replacing { synced: Some(synced), .. } = std::mem::replace(&mut self.coming, Coming::Named) {
             let _ = synced.join();
         }
     }
+}
+
+/// How a sync ended.
+fn ended(syncing: Option<Syncing>) -> io::Result<()> {
+    let died = |_| Err(io::Error::other("the thread that synced the log died"));
+    syncing.map_or(Ok(()), |thread| thread.join().unwrap_or_else(died))
 }
 
 /// Whether the open file is still the one that the path names; where that cannot be told, it is not.

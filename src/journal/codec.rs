@@ -314,6 +314,11 @@ pub struct EncodedState {
 /// # Errors
 /// Where the state is unsound or larger than a log can hold.
 pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
+    encode_state_on(state, state.mesh.hash())
+}
+
+/// The same where the hash of its mesh is known.
+pub(super) fn encode_state_on(state: &State, mesh: Hash) -> Result<EncodedState, CodecError> {
     check_state(state)?;
     let displacements = match &state.previous {
         Some(previous) => Cow::from([&state.displacement[..], &previous.displacement].concat()),
@@ -322,7 +327,7 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
     let displacement = encode(1, &DisplacementV1(displacements))?;
     let displacement_hash = blake3::hash(&displacement);
     let base = StateV1 {
-        mesh: *state.mesh.hash().as_bytes(),
+        mesh: *mesh.as_bytes(),
         displacement: *displacement_hash.as_bytes(),
         marked: [0, 1].map(|way| Cow::from(&state.marked[way])),
         refined: state.refined.as_deref().map(MeshV1::of),

@@ -34,6 +34,7 @@ use super::reader::ReadError;
 use super::recovery::{CopyError, copy};
 use super::writer::JournalWriter;
 use crate::scene::SyncPolicy;
+use crate::state::MeshHash;
 use crate::whole_file::write_new;
 
 /// Why a run cannot go on from a log.
@@ -220,6 +221,7 @@ impl Resume {
             viewer: None,
             index,
             known: known(&log, log.commits()),
+            mesh_hash: MeshHash::default(),
             last: log.last_commit().copied(),
             length,
             synced: Instant::now(),
@@ -260,6 +262,7 @@ impl Resume {
             viewer: None,
             index: None,
             known: known(&log, keep),
+            mesh_hash: MeshHash::default(),
             last: keep.checked_sub(1).map(|last| log.entries()[last].record.commit),
             length,
             synced: Instant::now(),

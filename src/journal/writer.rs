@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::backend::{Backend, FileBackend, beside};
-use super::codec::{encode_mesh, encode_state};
+use super::codec::{encode_mesh, encode_state_on};
 use super::encoder::{EncodeError, Encoder, Parts, ViewerMessage, library};
 use super::index_keeper::IndexKeeper;
 use super::lock::{LockError, LogLock};
@@ -16,7 +16,7 @@ use super::reader::ReadError;
 use super::still_ours::Estranged;
 use crate::pipeline::{Commit, Record, Sink, SinkError};
 use crate::scene::SyncPolicy;
-use crate::state::{Hash, State};
+use crate::state::{Hash, MeshHash, State};
 use crate::whole_file::{room_for, shortage};
 
 /// How often [`SyncPolicy::EachSecond`] forces the log to disk at most.
@@ -188,6 +188,7 @@ pub struct JournalWriter {
     pub(super) index: Option<IndexKeeper>,
     /// Hashes of the mesh and the displacements of the last state: a stage that changes neither writes neither again.
     pub(super) known: Vec<Hash>,
+    pub(super) mesh_hash: MeshHash,
     pub(super) last: Option<Commit>,
     /// Bytes of the log that are good.
     pub(super) length: u64,
@@ -274,6 +275,7 @@ impl JournalWriter {
             viewer: None,
             index: None,
             known: Vec::new(),
+            mesh_hash: MeshHash::default(),
             last: None,
             length: 0,
             synced: Instant::now(),
@@ -370,15 +372,15 @@ impl JournalWriter {
         if *commit != Commit::next(self.last.as_ref(), stage, step, scene, parent, commit.state_hash) {
             return Err(WriteError::NotNext { found: ordinal, commits: self.commits(), log: self.log.clone() });
         }
-        let found = state.hash();
+        let mesh_hash = self.mesh_hash.of(&state.mesh);
+        let found = state.hash_on(mesh_hash);
         if found != commit.state_hash {
             return Err(WriteError::StateHash { ordinal, expected: commit.state_hash, found });
         }
-        let mesh_hash = state.mesh.hash();
         let viewer = self.viewer.as_mut().map(|topics| topics.messages(state, record)).unwrap_or_default();
         let encoded = (|| {
             let mesh = if self.known.contains(&mesh_hash) { None } else { Some(encode_mesh(&state.mesh)?) };
-            let state = encode_state(state)?;
+            let state = encode_state_on(state, mesh_hash)?;
             let displacement_hash = state.displacement_hash;
             let displacement_is_new = !self.known.contains(&displacement_hash);
             self.encoder.commit(&Parts { record, mesh_hash, mesh, state, displacement_is_new, viewer: &viewer })?;
@@ -391,16 +393,15 @@ impl JournalWriter {
         let (encoder, place) = (&self.encoder, self.encoder.last_chunk());
         let mark = || encoder.mark(commit, mesh_hash, displacement_hash);
         self.index = self.index.take().zip(place).and_then(|(index, place)| index.take(place, record, mark));
-        let due = match self.sync {
-            SyncPolicy::EachStage => true,
-            SyncPolicy::EachSecond => self.synced.elapsed() >= SYNC_INTERVAL,
-            SyncPolicy::AtEnd => false,
-        };
-        if due {
-            self.backend.sync().map_err(|source| self.io_error("sync", 0, source))?;
-            self.synced = Instant::now();
+        match self.sync {
+            SyncPolicy::EachStage => self.backend.sync(),
+            SyncPolicy::EachSecond if self.synced.elapsed() >= SYNC_INTERVAL => {
+                self.synced = Instant::now();
+                self.backend.sync_meanwhile()
+            }
+            SyncPolicy::EachSecond | SyncPolicy::AtEnd => Ok(()),
         }
-        Ok(())
+        .map_err(|source| self.io_error("sync", 0, source))
     }
 
     /// Hands on what the encoder has made, if the log is still ours.

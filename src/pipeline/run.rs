@@ -6,7 +6,7 @@ use crate::digest::Hash;
 use crate::pipeline::step_control::{has_reached, next_stage};
 use crate::pipeline::{Commit, Record, Sink, SinkError, StageError, Stages};
 use crate::scene::Stage;
-use crate::state::State;
+use crate::state::{MeshHash, State};
 
 /// Why a run stopped before its target. All stages that the sink took stand.
 #[derive(Debug, thiserror::Error)]
@@ -37,6 +37,7 @@ pub struct Run {
     state: State,
     state_hash: Hash,
     scene_hash: Hash,
+    mesh_hash: MeshHash,
     last: Option<Commit>,
 }
 
@@ -44,7 +45,9 @@ impl Run {
     /// A run that goes on from `state`, which the stage of `last` made (`None`: the scene's start).
     pub fn new(stages: Stages, state: State, last: Option<Commit>) -> Self {
         let scene_hash = stages.scene().hash();
-        Self { state_hash: state.hash(), scene_hash, stages, state, last }
+        let mut mesh_hash = MeshHash::default();
+        let state_hash = state.hash_on(mesh_hash.of(&state.mesh));
+        Self { state_hash, mesh_hash, scene_hash, stages, state, last }
     }
 
     /// The state in hand.
@@ -66,7 +69,7 @@ impl Run {
         let begin = Instant::now();
         let (state, report) = self.stages.run(stage, &self.state, &mut |_| {})?;
         let wall_s = begin.elapsed().as_secs_f64();
-        let state_hash = state.hash();
+        let state_hash = state.hash_on(self.mesh_hash.of(&state.mesh));
         let commit = Commit::next(self.last.as_ref(), stage, report.step, self.scene_hash, self.state_hash, state_hash);
         let record = Record { report, commit, wall_s };
         sink.take(&state, &record)?;
