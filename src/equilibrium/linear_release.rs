@@ -3,21 +3,32 @@
 use crate::equilibrium::descent::product;
 use crate::equilibrium::newton::{Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
+use crate::shell::norm;
+
+/// What the way to equilibrium comes to, to first order, with the residual r on the free unknowns and the stiffness K.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearRelease {
+    /// ½ rᵀK⁻¹r of the model, N·mm; negative where K is not positive definite and r mostly in its negative part.
+    pub energy: f64,
+    /// The largest motion of a control point in K⁻¹r, mm.
+    pub motion_mm: f64,
+}
 
 impl Workspace {
-    /// ½ rᵀK⁻¹r of the model with the residual r on the free unknowns and the stiffness K at a state, N·mm; negative where K
-    /// is not positive definite and r mostly in its negative part.
+    /// Of a state.
     ///
     /// # Errors
     /// Where the stiffness has no factor.
-    pub fn linear_release(&mut self, at: Standing) -> Result<f64, SolveError> {
+    pub fn linear_release(&mut self, at: Standing) -> Result<LinearRelease, SolveError> {
         self.factorize_at(at)?;
         let forces = self.forces(at);
         let unknowns = &self.discretization.unknowns;
         let free = unknowns.of_displacement(at.displacement, at.turns, at.parameter);
-        let residual = unknowns.place(&free, at.parameter).restrict(&forces);
+        let placement = unknowns.place(&free, at.parameter);
+        let residual = placement.restrict(&forces);
         let mut step = residual.clone();
         self.tangent.solver.solve(&mut step);
-        Ok(0.5 * product(&residual, &step))
+        let motion_mm = placement.velocity(&step, &[]).iter().map(|motion| norm(*motion)).fold(0.0, f64::max);
+        Ok(LinearRelease { energy: 0.5 * product(&residual, &step), motion_mm })
     }
 }

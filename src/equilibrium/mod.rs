@@ -25,6 +25,7 @@ pub use assembly::{Assembled, Want, strain_energy};
 pub use condition::Condition;
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};
 pub use force_scale::ForceScale;
+pub use linear_release::LinearRelease;
 pub use newton::{Effort, Equilibrium, Iterate, Observer, Solved, Standing, Workspace};
 pub use solve_error::{SolveError, WorkspaceError};
 pub use sparse::DenseProduct;

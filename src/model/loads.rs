@@ -25,6 +25,9 @@ use crate::scene::{Action, ActionKind, Edge, ForceVector, History, LoadedArea, P
 use crate::shell::{add, cross, dot, gauss_legendre, norm, scaled};
 use crate::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};
 
+/// No limit to the part of the surface.
+const EVERYWHERE: [f64; 2] = [f64::INFINITY; 2];
+
 /// The actions of a scene on a mesh.
 #[derive(Debug, Default)]
 pub struct Loads {
@@ -83,9 +86,17 @@ impl Loads {
     /// # Errors
     /// Where an action does not fit the surface.
     pub fn new(scene: &Scene, mesh: &Mesh) -> Result<Self, ModelError> {
+        Self::below(scene, mesh, EVERYWHERE)
+    }
+
+    /// Those on the part of the surface where both parameters are below `limits`.
+    ///
+    /// # Errors
+    /// Where an action does not fit the surface.
+    pub fn below(scene: &Scene, mesh: &Mesh, limits: [f64; 2]) -> Result<Self, ModelError> {
         let mut loads = Self::default();
         for action in &scene.actions {
-            loads.add(scene, mesh, action)?;
+            loads.add(scene, mesh, action, limits)?;
         }
         Ok(loads)
     }
@@ -100,19 +111,21 @@ impl Loads {
         !self.following.is_empty()
     }
 
-    fn add(&mut self, scene: &Scene, mesh: &Mesh, action: &Action) -> Result<(), ModelError> {
+    fn add(&mut self, scene: &Scene, mesh: &Mesh, action: &Action, limits: [f64; 2]) -> Result<(), ModelError> {
         let history = action.history.clone();
         match &action.kind {
             ActionKind::Force { on, force_n } => {
-                let point = LoadPoint::new(mesh, parameters_of(&scene.geometry, *on), 1.0);
-                self.push_dead(scene, mesh, history, &[point], *force_n);
+                let at = parameters_of(&scene.geometry, *on);
+                if at[0] < limits[0] && at[1] < limits[1] {
+                    self.push_dead(scene, mesh, history, &[LoadPoint::new(mesh, at, 1.0)], *force_n);
+                }
             }
             ActionKind::LineForce { on, force_n_per_mm } => {
                 let points = match on {
-                    Place::Edge(edge) => edge_points(mesh, *edge),
+                    Place::Edge(edge) => edge_points(mesh, *edge, limits),
                     Place::Line(direction, fraction) => {
                         let way = direction.index();
-                        line_points(mesh, way, parameters_of(&scene.geometry, [*fraction; 2])[way])
+                        line_points(mesh, way, parameters_of(&scene.geometry, [*fraction; 2])[way], limits)
                     }
                     Place::Point(_) | Place::Whole => {
                         return Err(ModelError::NotALine { action: action.name.clone() });
@@ -121,26 +134,26 @@ impl Loads {
                 self.push_dead(scene, mesh, history, &points, *force_n_per_mm);
             }
             ActionKind::AreaForce { force_n_per_mm2, per } => {
-                let mut points = area_points(scene, mesh);
+                let mut points = area_points(scene, mesh, limits);
                 points.iter_mut().for_each(|point| point.weight *= point.area(*per, *force_n_per_mm2));
                 self.push_dead(scene, mesh, history, &points, *force_n_per_mm2);
             }
             ActionKind::Gravity { acceleration_m_s2 } => {
                 // kg/mm² times m/s² is N/mm². A scene without density has no gravity.
                 let weight = scaled(scene.material.mass_kg_per_mm2().unwrap_or(0.0), *acceleration_m_s2);
-                let mut points = area_points(scene, mesh);
+                let mut points = area_points(scene, mesh, limits);
                 let force = ForceVector::Components(weight);
                 points.iter_mut().for_each(|point| point.weight *= point.area(LoadedArea::Undeformed, force));
                 self.push_dead(scene, mesh, history, &points, force);
             }
             ActionKind::EdgeMoment { on, moment_n } => {
-                let mut points = edge_points(mesh, *on);
+                let mut points = edge_points(mesh, *on, limits);
                 points.iter_mut().for_each(|point| point.weight *= moment_n);
                 let running = 1 - on.side().0.index();
                 self.following.push(Following { history, kind: Kind::Moment(running), points });
             }
             ActionKind::Pressure { pressure_mpa, follower } => {
-                let mut points = area_points(scene, mesh);
+                let mut points = area_points(scene, mesh, limits);
                 points.iter_mut().for_each(|point| point.weight *= pressure_mpa);
                 if *follower {
                     self.following.push(Following { history, kind: Kind::Pressure, points });
@@ -357,19 +370,22 @@ fn dead_forces(mesh: &Mesh, points: &[LoadPoint], force: impl Fn(&LoadPoint) -> 
     sums.into_iter().enumerate().filter(|(_, force)| *force != [0.0; 3]).collect()
 }
 
-fn edge_points(mesh: &Mesh, edge: Edge) -> Vec<LoadPoint> {
+fn edge_points(mesh: &Mesh, edge: Edge, limits: [f64; 2]) -> Vec<LoadPoint> {
     let (direction, at_end) = edge.side();
-    let mut points = line_points(mesh, direction.index(), if at_end { 1.0 } else { 0.0 });
+    let mut points = line_points(mesh, direction.index(), if at_end { 1.0 } else { 0.0 }, limits);
     points.iter_mut().for_each(|point| point.site.edge = Some(edge));
     points
 }
 
 /// Gauss points of a line on which parameter `way` is `at`; weights are undeformed lengths, mm.
-fn line_points(mesh: &Mesh, way: usize, at: f64) -> Vec<LoadPoint> {
+fn line_points(mesh: &Mesh, way: usize, at: f64, limits: [f64; 2]) -> Vec<LoadPoint> {
     let running = 1 - way;
     let mut points = Vec::new();
+    if at >= limits[way] {
+        return points;
+    }
     let spans = mesh.element_counts()[running];
-    for (parameter, weight) in gauss_points(mesh, running, &vec![0; spans]) {
+    for (parameter, weight) in gauss_points(mesh, running, &vec![0; spans], limits[running]) {
         let place = if way == 0 { [at, parameter] } else { [parameter, at] };
         let mut point = LoadPoint::new(mesh, place, weight);
         point.weight *= norm(point.site.tangents[running]);
@@ -382,26 +398,27 @@ fn line_points(mesh: &Mesh, way: usize, at: f64) -> Vec<LoadPoint> {
 /// stretching has: membrane forces carry a pressure, and where its forces are summed up less exactly than theirs, bending
 /// takes the difference (at R/t = 3000, on eight cubic elements a quarter turn and p + 2 points for stretching, a pressure on
 /// p − 1 points inside is 32 % off).
-fn area_points(scene: &Scene, mesh: &Mesh) -> Vec<LoadPoint> {
+fn area_points(scene: &Scene, mesh: &Mesh, limits: [f64; 2]) -> Vec<LoadPoint> {
     let least = PointCounts::of(scene, mesh);
-    let [along, across] = [0, 1].map(|way| gauss_points(mesh, way, &least.most()[way]));
+    let [along, across] = [0, 1].map(|way| gauss_points(mesh, way, &least.most()[way], limits[way]));
     let pairs = along.iter().flat_map(|one| across.iter().map(move |two| (one, two)));
     let mut points: Vec<_> = pairs.map(|((u, wu), (v, wv))| LoadPoint::new(mesh, [*u, *v], wu * wv)).collect();
     points.sort_by_key(|point| point.first);
     points
 }
 
-/// Parameters and weights of Gauss points in every span, at least `least` in each. A pressure integrates N x,₁ × x,₂, of degree
+/// Parameters and weights of Gauss points in every span or the part of it below `limit`, at least `least` in each. A pressure integrates N x,₁ × x,₂, of degree
 /// 3p − 1 each way: so many points are exact where the weights are equal, and only then is its tangent symmetric to rounding.
-fn gauss_points(mesh: &Mesh, way: usize, least: &[usize]) -> Vec<(f64, f64)> {
+fn gauss_points(mesh: &Mesh, way: usize, least: &[usize], limit: f64) -> Vec<(f64, f64)> {
     let count = (3 * mesh.degree[way]).div_ceil(2);
     let spans = Spans::of(&mesh.knots[way], mesh.degree[way]);
     let in_span = |([from, to], least): (&[f64; 2], &usize)| {
+        let to = to.min(limit);
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let rule = gauss_legendre(count.max(*least));
         rule.into_iter().map(move |[node, weight]| (middle + half * node, half * weight)).collect::<Vec<_>>()
     };
-    spans.bounds.iter().zip(least).flat_map(in_span).collect()
+    spans.bounds.iter().zip(least).filter(|([from, _], _)| *from < limit).flat_map(in_span).collect()
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub(crate) use expressions::control_expressions;
 pub use free_strains::{FreeStrains, NaturalState};
 pub use loads::Loads;
 pub use patch::{MOST_CONTROL_POINTS, starting_mesh};
-pub(crate) use place::{line_index, parameters_of};
+pub(crate) use place::{line_place, parameters_of};
 pub use placement::Placement;
 pub use reactions::{Exerted, PointForces};
 pub(crate) use remarks::remarks;

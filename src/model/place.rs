@@ -38,13 +38,25 @@ pub(super) fn sample_parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
     bounds.iter().flat_map(|[from, to]| [*from, 0.5 * (from + to)]).chain([1.0]).collect()
 }
 
-/// Direction (0 or 1) of a line or an edge, and the first control index whose function stands beyond it.
-pub fn line_index(scene: &Scene, mesh: &Mesh, on: Place) -> Option<(usize, usize)> {
+/// A line across the surface, or an edge.
+#[derive(Clone, Copy, Debug)]
+pub struct LinePlace {
+    /// Direction (0 or 1) whose parameter is constant on it.
+    pub way: usize,
+    /// That parameter.
+    pub parameter: f64,
+    /// The first control index of that direction whose function stands beyond it.
+    pub first_beyond: usize,
+}
+
+/// Where a line or an edge lies; `None` for other places.
+pub fn line_place(scene: &Scene, mesh: &Mesh, on: Place) -> Option<LinePlace> {
     let Place::Line(direction, fraction) = on else { return None };
     let way = direction.index();
     let parameter = parameters_of(&scene.geometry, [fraction; 2])[way];
     let degree = mesh.degree[way];
     let greville = |k: usize| mesh.knots[way][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;
     let count = mesh.control_counts()[way];
-    Some((way, (0..count).find(|k| greville(*k) > parameter).unwrap_or(count)))
+    let first_beyond = (0..count).find(|k| greville(*k) > parameter).unwrap_or(count);
+    Some(LinePlace { way, parameter, first_beyond })
 }

@@ -3,7 +3,7 @@
 use crate::adapt::element_strains;
 use crate::equilibrium::{Standing, Workspace};
 use crate::model::{
-    Discretization, Exerted, Placement, Site, control_expressions, direction_at, line_index, parameters_of,
+    Discretization, Exerted, Loads, Placement, Site, control_expressions, direction_at, line_place, parameters_of,
 };
 use crate::pipeline::Reading;
 use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene, SurfaceDirection};
@@ -106,13 +106,16 @@ impl Reader<'_> {
         })
     }
 
-    /// By equilibrium of the side of smaller u or v: the internal forces on its control points less those of joints, which
-    /// are loads and reactions there, are carried across the line. Where loads act within one element of the line, they
-    /// are shared out between the sides as the functions of the control points are.
+    /// By equilibrium of the side of smaller u or v: what supports and loads exert there is carried across the line. Loads are
+    /// summed up over just that side. Where supports hold within one element of the line, their forces are shared out between
+    /// the sides as the functions of the control points are.
     fn section_moment(&self, on: Place, component: Axis) -> f64 {
-        let discretization = self.discretization;
-        let mesh = &discretization.mesh;
-        let Some((way, first_beyond)) = line_index(self.scene, mesh, on) else { return f64::NAN };
+        let mesh = &self.discretization.mesh;
+        let Some(line) = line_place(self.scene, mesh, on) else { return f64::NAN };
+        let mut limits = [f64::INFINITY; 2];
+        limits[line.way] = line.parameter;
+        let Ok(loads) = Loads::below(self.scene, mesh, limits) else { return f64::NAN };
+        let loads = loads.forces(mesh, self.at.displacement, self.at.parameter);
         let places = control_expressions(self.scene, mesh, on).unwrap_or_default();
         let count = places.len() as f64;
         let middle = places
@@ -120,16 +123,15 @@ impl Reader<'_> {
             .flatten()
             .fold([0.0; 3], |sum, (point, factor)| add(sum, scaled(factor / count, self.position(*point))));
         let n2 = mesh.control_counts()[1];
-        let loads = discretization.loads.forces(mesh, self.at.displacement, self.at.parameter);
-        let side = (0..mesh.control_points.len()).filter(|point| [point / n2, point % n2][way] < first_beyond);
+        let side =
+            (0..mesh.control_points.len()).filter(|point| [point / n2, point % n2][line.way] < line.first_beyond);
         let Some(Exerted { by_joints, .. }) = &self.exerted else { return f64::NAN };
-        // Supports and loads push the side; the other side holds against them. A joint across the line pulls on control
-        // points of both sides: its part on this one is no push from outside.
-        let whole = side.map(|point| {
+        // A joint across the line pulls on control points of both sides: its part on this one is no push from outside.
+        let held = side.map(|point| {
             let joint = by_joints.get(&point).copied().unwrap_or_default();
-            (point, add(sub(self.forces[point], joint), loads[point]))
+            (point, sub(self.forces[point], joint))
         });
-        let [_, moment] = self.resultant(whole, middle);
+        let [_, moment] = self.resultant(held.chain(loads.into_iter().enumerate()), middle);
         -match component {
             Axis::X => moment[0],
             Axis::Y => moment[1],

@@ -148,7 +148,8 @@ impl Stages {
         if self.refining_has_shown(state) {
             return None;
         }
-        let energy_share = Halving::of(&self.scene, state)?.energy_share();
+        let halving = Halving::of(&self.scene, state).filter(|halving| !halving.is_still())?;
+        let energy_share = halving.energy_share();
         let (parameter, elements) = (state.parameter, state.mesh.element_counts());
         let is_said = energy_share.is_finite() && energy_share > LARGE;
         is_said.then_some(Warning::CoarseElements { parameter, elements, energy_share })
