@@ -383,6 +383,28 @@ fn a_section_moment_does_not_see_joints() {
     assert!(wrong.is_empty() && (root.abs() - 15.0).abs() < 0.2, "{root} {wrong:?}");
 }
 
+/// A cantilever under a load per area bends as statics says, whatever elements its lines cut: M = q b (L − x)²/2.
+#[test]
+fn a_section_moment_has_the_loads_of_its_side_alone() {
+    for (degree, elements) in [(3, 4), (5, 3)] {
+        let shell = Shell::plate(100.0, 10.0, degree, [elements, 2]);
+        let mut tables = support("root", "\"u-start\"", "kind = \"clamped\"");
+        tables += &action("kind = \"area-force\"\nforce_n_per_mm2 = [0.0, 0.0, -1e-9]");
+        let places: [f64; 4] = [0.3, 0.5, 0.75, 0.9];
+        for at in places {
+            tables += &format!(
+                "[[probe]]\nname = \"M{at}\"\nkind = \"section-moment\"\non = \"u={at}\"\ncomponent = \"y\"\n"
+            );
+        }
+        let found = solve(shell.scene(&tables, &["root"]));
+        for at in places {
+            let right = 1e-9 * 10.0 * (100.0 * (1.0 - at)).powi(2) / 2.0;
+            let moment = found.values[&format!("M{at}")];
+            assert!((moment / right - 1.0).abs() < 1e-6, "degree {degree}, {at}: {moment} for {right}");
+        }
+    }
+}
+
 /// A plane of symmetry one element away from an edge that moves would tie control points of two frames to each other.
 #[test]
 fn a_section_keeps_its_distance_from_ties() {
