@@ -10,10 +10,12 @@ use super::output::{file_name, print, refuse_what_is_there};
 use super::scene_file::stage_named;
 use super::session::use_threads;
 use super::trace;
+use crate::equilibrium::Iterate;
 use crate::history::{Comparison, ReplayError, Replayed, Verdict, replay_stage, verdict};
 use crate::journal::TraceRow;
 use crate::pipeline::Stages;
 use crate::scene::{Scene, Stage};
+use crate::spline::Mesh;
 
 /// Run stages of a log again, from the state before each; exit code 0 if every bit is the same, 1 if within tolerance,
 /// 2 if not
@@ -56,7 +58,6 @@ impl Arguments {
         for index in self.chosen(&read)? {
             let entry = &read.log.entries()[index];
             let commit = entry.record.commit;
-            let mesh = read.log.mesh(index).ok();
             // Each stretch of a log with the scene that it was run with.
             let scene = scene_at(&read.log, &self.log, index, &self.set)?;
             self.check_settings(&scene_at(&read.log, &self.log, index, &[])?, &scene)?;
@@ -64,8 +65,8 @@ impl Arguments {
                 Some(same) => stages.insert(same),
                 None => stages.insert(Stages::new(scene)),
             };
-            let mut observer = |iterate: &crate::equilibrium::Iterate| {
-                if let (true, Some(mesh)) = (self.trace.is_some(), &mesh) {
+            let mut observer = |mesh: &Mesh, iterate: &Iterate| {
+                if self.trace.is_some() {
                     rows.push(trace::row(&commit, mesh, iterate));
                 }
             };

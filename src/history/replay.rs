@@ -5,6 +5,7 @@ use crate::history::compare::{Comparison, Difference, compare};
 use crate::history::resume::{BasisError, basis};
 use crate::journal::{Log, StateError};
 use crate::pipeline::{Report, StageError, Stages};
+use crate::spline::Mesh;
 use crate::state::State;
 
 /// States that agree to this many bits are the same within what another processor or another kernel may do to
@@ -58,7 +59,8 @@ pub enum ReplayError {
     Stage(#[from] StageError),
 }
 
-/// Runs stage `index` of a log again with `stages`, whose scene may differ from the log's in settings.
+/// Runs stage `index` of a log again with `stages`, whose scene may differ from the log's in settings; `observer` is handed every
+/// iterate with the mesh that it lies on.
 ///
 /// # Errors
 /// Where a state cannot be read or the stage fails.
@@ -66,11 +68,11 @@ pub fn replay_stage(
     log: &Log,
     index: usize,
     stages: &mut Stages,
-    observer: &mut dyn FnMut(&Iterate),
+    observer: &mut dyn FnMut(&Mesh, &Iterate),
 ) -> Result<Replayed, ReplayError> {
     let before = state_before(log, index, stages)?;
     let entry = &log.entries()[index].record;
-    let (state, report) = stages.run(entry.report.stage, &before, observer)?;
+    let (state, report) = stages.run(entry.report.stage, &before, &mut |iterate| observer(&before.mesh, iterate))?;
     let comparison = match log.keeps_state(index) {
         true => compare(&log.state(index)?, &state),
         false if state.hash() == entry.commit.state_hash => Comparison::Identical,

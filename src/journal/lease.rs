@@ -13,12 +13,16 @@ use std::time::{Duration, Instant};
 
 use rustix::fs::OFlags;
 
+use super::lock::not_ours;
 use super::manifest::host;
 use super::still_ours::patiently;
 use crate::whole_file::{WholeFile, beside};
 
 /// A lease is far shorter, though it takes a block of this size on a disk; whatever is there instead is not read whole.
 pub(super) const LONGEST: u64 = 4096;
+
+/// Hexadecimal digits of a token.
+const TOKEN: usize = 32;
 
 /// A rival that takes longer to clear a lease away was killed over it.
 const LONGEST_CLEARING: Duration = Duration::from_secs(5);
@@ -46,6 +50,9 @@ impl Lease {
     /// Takes the lease from whoever has it: for the one who holds the system's lock, which says that it is nobody's.
     pub(super) fn put(path: &Path) -> io::Result<Self> {
         let (lease, whole) = Self::new(path)?;
+        if !may_be_replaced(path)? {
+            return Err(not_ours());
+        }
         whole.replace(path)?;
         Ok(lease)
     }
@@ -142,6 +149,20 @@ impl Holder {
         };
         (its_boot == boot && its_space == space).then(|| id.parse().ok())?
     }
+}
+
+/// Whether there is nothing of a lease's name, a lease, a link (which is replaced and not followed), or the empty file that a
+/// power cut may leave of one.
+fn may_be_replaced(path: &Path) -> io::Result<bool> {
+    let metadata = match path.symlink_metadata() {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(true),
+        metadata => metadata?,
+    };
+    if metadata.is_symlink() || metadata.is_file() && metadata.len() == 0 {
+        return Ok(true);
+    }
+    let is_token = |token: &str| token.len() == TOKEN && token.bytes().all(|byte| byte.is_ascii_hexdigit());
+    Ok(metadata.is_file() && holder(path)?.is_some_and(|holder| is_token(&holder.token)))
 }
 
 /// Who has a lease; `None` where there is none.

@@ -199,7 +199,21 @@ impl Drop for LogLock {
 /// Opens the file that is locked; not through a link of that name, and without waiting for a pipe.
 fn open_lock(path: &Path) -> io::Result<File> {
     let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
-    OpenOptions::new().write(true).create(true).truncate(false).custom_flags(flags.cast_signed()).open(path)
+    let lock =
+        OpenOptions::new().write(true).create(true).truncate(false).custom_flags(flags.cast_signed()).open(path)?;
+    let metadata = lock.metadata()?;
+    // It is removed in the end, and somebody's file must not be.
+    if !metadata.is_file() || metadata.len() > 0 {
+        return Err(not_ours());
+    }
+    Ok(lock)
+}
+
+/// There is a file of a lock's or lease's name that no run has put there.
+pub(super) fn not_ours() -> io::Error {
+    io::Error::other(
+        "there is something else of that name, which is left alone: move it away, or write elsewhere with `-o OTHER`",
+    )
 }
 
 /// Whether a file system, or the server behind it, has no locks, as network ones may.

@@ -90,7 +90,7 @@ fn every_stage_comes_out_again() {
         let log = whole.log();
         let mut stages = Stages::new(scene(text));
         for index in (0..log.entries().len()).rev() {
-            let replayed = replay_stage(&log, index, &mut stages, &mut |_| {}).unwrap();
+            let replayed = replay_stage(&log, index, &mut stages, &mut |_, _| {}).unwrap();
             assert_eq!(verdict(&replayed.comparison), Verdict::BitIdentical, "stage {index}");
             let reports = [&replayed.report, &log.entries()[index].record.report];
             assert_eq!(format!("{:?}", reports[0]), format!("{:?}", reports[1]), "stage {index}");
@@ -126,7 +126,7 @@ fn rounding_on_a_path_is_called_rounding() {
             if report.stage == Stage::SwitchBranch {
                 continue;
             }
-            let (state, _) = stages.run(report.stage, &before, &mut |_| {}).unwrap();
+            let (state, _) = stages.run(report.stage, &before, &mut |_, _| {}).unwrap();
             let verdict = verdict(&compare(&log.state(index).unwrap(), &state));
             rounded += usize::from(matches!(verdict, Verdict::WithinTolerance(_)));
             assert!(!matches!(verdict, Verdict::Different(_)), "stage {index}, {}: {verdict:?}", report.stage);

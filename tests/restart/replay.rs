@@ -19,7 +19,7 @@ fn every_stage_comes_out_again() {
     let log = Straight::small().log();
     let mut stages = Stages::new(scene(SMALL));
     for index in (0..log.entries().len()).rev() {
-        let replayed = replay_stage(&log, index, &mut stages, &mut |_| {}).unwrap();
+        let replayed = replay_stage(&log, index, &mut stages, &mut |_, _| {}).unwrap();
         assert_eq!(verdict(&replayed.comparison), Verdict::BitIdentical, "stage {index}");
         // Residuals of solves that found nothing are not numbers and not equal to themselves.
         let reports = [&replayed.report, &log.entries()[index].record.report];
