@@ -18,7 +18,7 @@ use super::format::{
 use super::frame::{self, Frame};
 use super::index::{Mark, Piece};
 use super::ledger::{ChunkPlace, Ledger};
-use super::manifest::Manifest;
+use super::manifest::{Manifest, SCENE_VALUES_LIMIT, has_too_many_values};
 use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, ReportMessage, schema_of, seal};
 use super::summary;
 use crate::pipeline::{Commit, Record};
@@ -201,7 +201,7 @@ impl Encoder {
     pub(super) fn manifest(&mut self, manifest: &Manifest) -> Result<(), EncodeError> {
         let record = manifest.to_record();
         let bytes: usize = record.metadata.iter().map(|(key, value)| key.len() + value.len() + 8).sum();
-        if bytes > MANIFEST_BYTES_LIMIT - 64 {
+        if bytes > MANIFEST_BYTES_LIMIT - 64 || has_too_many_values(&manifest.scene_text) {
             return Err(EncodeError::SceneTooLarge { bytes });
         }
         self.stretch = manifest.hash();

@@ -76,6 +76,9 @@ pub enum SceneInLogError {
         "the scene in the log names a file for its geometry: logs hold theirs whole, and no file is opened for one"
     )]
     NamesAFile,
+    /// More than a scene's text that a log holds may have.
+    #[error("the scene in the log has more values than any that is written, {SCENE_VALUES_LIMIT}")]
+    TooManyValues,
     /// It does not read.
     #[error("the scene in the log does not read")]
     Wrong(#[from] Box<SceneError>),
@@ -135,6 +138,9 @@ impl Manifest {
     /// # Errors
     /// Where it is no scene, in the words of the parser.
     pub fn scene(&self, settings: &[String]) -> Result<Scene, SceneInLogError> {
+        if has_too_many_values(&self.scene_text) {
+            return Err(SceneInLogError::TooManyValues);
+        }
         let names_a_file = |text: &str| {
             let scene = text.parse::<toml::Table>();
             scene.is_ok_and(|scene| scene.get("geometry").is_some_and(|geometry| geometry.get("file").is_some()))
@@ -213,6 +219,14 @@ impl Manifest {
         };
         Ok((manifest, name))
     }
+}
+
+/// Most values of a scene in a log: the parser takes 160 bytes for each, where two may stand for it in the text.
+pub(super) const SCENE_VALUES_LIMIT: usize = 350_000;
+
+/// Whether a scene has more values than are written or read: what may begin one is counted.
+pub(super) fn has_too_many_values(scene_text: &str) -> bool {
+    scene_text.bytes().filter(|byte| b",=[{".contains(byte)).nth(SCENE_VALUES_LIMIT).is_some()
 }
 
 /// Fewer bytes than any manifest takes: its name and those of its entries, and the hash. A gap that is shorter held none.

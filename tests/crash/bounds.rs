@@ -243,6 +243,12 @@ fn scenes_that_fill_a_log() {
     let mut crafted = crafted::Crafted::new(&comment);
     (0..12).for_each(|_| crafted.manifest(&[("scene", &comment)]));
     all_bounded("thirteen scenes of 7 MiB", &crafted.bytes);
+    for count in [300_000, 3_500_000] {
+        let mut crafted =
+            crafted::Crafted::new(&format!("{}\n[other]\nvalues = [{}]", ordinary.scene, "0,".repeat(count)));
+        crafted.commit(ordinary.stages[0], 1, ordinary.said_of(0, &ordinary.states[0]));
+        all_bounded("a scene of many values", &crafted.bytes);
+    }
 }
 
 /// Each of many beginnings of a manifest claims all bytes to the end, which are zeros: none is looked through again.
