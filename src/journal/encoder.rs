@@ -79,7 +79,7 @@ pub enum EncodeError {
     },
     /// A scene that no reader would take.
     #[error(
-        "the scene takes {bytes} bytes, and one in a log has no more than {MANIFEST_BYTES_LIMIT}: use a coarser net"
+        "the scene takes {bytes} bytes, and one in a log has no more than {MANIFEST_BYTES_LIMIT}, or {SCENE_VALUES_LIMIT} values: use a coarser net"
     )]
     SceneTooLarge {
         /// Bytes that it takes.
