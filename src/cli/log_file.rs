@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::failure::Failure;
 use super::output::say;
-use super::scene_file::checked;
-use crate::journal::{Completeness, Log, LongLog, LongLogError, Manifest, ReadError};
+use super::scene_file::rendered;
+use crate::journal::{Completeness, Log, LongLog, LongLogError, Manifest, ReadError, SceneInLogError};
 use crate::pipeline::Record;
 use crate::scene::Scene;
 
@@ -138,5 +138,8 @@ pub(super) fn say_other_numerics(log: &Log) {
 }
 
 fn scene_in(manifest: &Manifest, path: &Path, settings: &[String]) -> Result<Scene, Failure> {
-    checked(&manifest.scene_text, &format!("scene in {}", path.display()), settings)
+    manifest.scene(settings).map_err(|error| match error {
+        SceneInLogError::Wrong(error) => Failure::WrongScene { rendered: rendered(&error) },
+        source => Failure::WrongLog { log: path.to_path_buf(), source: Box::new(source) },
+    })
 }

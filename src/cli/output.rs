@@ -1,10 +1,11 @@
 //! Standard output that may be closed, text that no terminal obeys, and files that are whole or not there.
 
-use std::borrow::Cow;
 use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
 
 use super::failure::Failure;
+use crate::view::is_obeyed;
+pub(super) use crate::view::printable;
 use crate::whole_file::write_new;
 
 /// Writes to standard output. A reader that has closed its end (`| head`) has what it wanted: that is no failure.
@@ -40,25 +41,6 @@ pub(super) fn say(text: &str) {
 /// The same for text that was made for a terminal, colours and all.
 pub(super) fn say_rendered(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
-}
-
-/// Text without what a terminal obeys: names in logs and scenes, and of hosts, may hold anything. Such characters are
-/// shown by their pictures.
-pub(super) fn printable(text: &str) -> Cow<'_, str> {
-    if !text.chars().any(is_obeyed) {
-        return text.into();
-    }
-    let picture = |c| match c {
-        _ if !is_obeyed(c) => c,
-        '\u{7f}' => '␡',
-        '\0'..' ' => char::from_u32('␀' as u32 + c as u32).unwrap_or(char::REPLACEMENT_CHARACTER),
-        _ => char::REPLACEMENT_CHARACTER,
-    };
-    text.chars().map(picture).collect::<String>().into()
-}
-
-fn is_obeyed(c: char) -> bool {
-    c.is_control() && !matches!(c, '\n' | '\t')
 }
 
 /// JSON with the control characters escaped that JSON lets stand.

@@ -1,6 +1,6 @@
 //! Scene files.
 
-use std::io::IsTerminal;
+use std::io::{self, IsTerminal};
 use std::path::Path;
 
 use super::failure::Failure;
@@ -14,7 +14,7 @@ pub(super) struct SceneFile {
 
 /// Reads and checks a scene file.
 pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
-    let bytes = std::fs::read(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
+    let bytes = bytes_of(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
     let text = text_of(bytes).map_err(|reason| Failure::NotText { path: path.to_path_buf(), reason })?;
     let scene = checked(&text, &path.display().to_string(), &[])?;
     // A log stands for itself: a surface from a file of its own goes into the text that the log keeps.
@@ -23,6 +23,22 @@ pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
         _ => text,
     };
     Ok(SceneFile { scene, text })
+}
+
+/// Largest scene file, bytes.
+const SCENE_BYTES_LIMIT: u64 = 64 << 20;
+
+/// What a scene file holds. A pipe would hang, and a device never end.
+fn bytes_of(path: &Path) -> io::Result<Vec<u8>> {
+    let wrong = |problem: String| Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+    let found = std::fs::metadata(path)?;
+    match found.len() {
+        _ if !found.is_file() => wrong("it is no regular file".to_owned()),
+        bytes if bytes > SCENE_BYTES_LIMIT => {
+            wrong(format!("it has {bytes} bytes, and a scene has no more than {SCENE_BYTES_LIMIT}"))
+        }
+        _ => std::fs::read(path),
+    }
 }
 
 /// The text of a scene, without a byte-order mark; or else what the bytes are most likely, and the way out.
@@ -53,7 +69,8 @@ pub(super) fn checked(text: &str, name: &str, settings: &[String]) -> Result<Sce
     parse_with_settings(text, name, &settings).map_err(|error| Failure::WrongScene { rendered: rendered(&error) })
 }
 
-fn rendered(error: &SceneError) -> String {
+/// An error of a scene as the terminal shows it.
+pub(super) fn rendered(error: &SceneError) -> String {
     if std::io::stderr().is_terminal() { error.coloured() } else { error.plain() }
 }
 

@@ -1,18 +1,18 @@
-//! One chunk, opened: MCAP's checksum first, then the seal of the commit in it, then the hash of every message.
+//! One chunk, opened: MCAP's checksum first, then the seal of the commit in it, then the hash of every message. Nothing is
+//! copied, and nothing is listed by its number: what a chunk says costs no more memory than the chunk.
 
 use std::collections::HashMap;
 use std::ops::Range;
 
 use mcap::records::{self, Record as McapRecord};
-use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use super::damage::Damage;
 use super::format::{
-    CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, FORMAT_VERSION, MESH_TOPIC, REPORT_TOPIC,
-    STATE_TOPIC,
+    CHANNEL_BYTES_LIMIT, CHANNELS_LIMIT, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC,
+    FORMAT_VERSION, MESH_TOPIC, REPORT_BYTES_LIMIT, REPORT_TOPIC, SCHEMA_BYTES_LIMIT, SCHEMAS_LIMIT, STATE_TOPIC,
 };
-use super::frame::{self, Frame, PREFIX_LEN, op};
-use super::message::{CommitMessage, FinishedMessage, MessageHash, ReportMessage, unseal};
+use super::frame::{self, CHUNK_HEADER_LEN, Frame, op};
+use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, ReportMessage, unseal};
 
 /// Bytes of a message record in front of its data: channel, sequence and two times.
 pub(super) const MESSAGE_HEADER_LEN: usize = 2 + 4 + 8 + 8;
@@ -21,8 +21,8 @@ pub(super) const MESSAGE_HEADER_LEN: usize = 2 + 4 + 8 + 8;
 pub(super) type Channels = HashMap<u16, records::Channel>;
 
 /// A message where it lies.
-struct Message {
-    topic: String,
+struct Message<'c> {
+    topic: &'c str,
     data: Range<usize>,
 }
 
@@ -46,17 +46,20 @@ pub(super) struct CommitContent {
     pub displacement: Option<Range<usize>>,
 }
 
-/// The records of a chunk, one after the other, once they were found to fill it exactly.
-pub(super) fn records(bytes: &[u8], chunk: &Frame) -> Result<Vec<Frame>, Damage> {
+/// The records of a chunk, one after the other, once they were found to fill it exactly. They are walked over, not listed: a
+/// chunk can hold five million empty ones.
+pub(super) fn records<'b>(bytes: &'b [u8], chunk: &Frame) -> Result<impl Iterator<Item = Frame> + Clone + 'b, Damage> {
     let within = frame::chunk_records(bytes, chunk).ok_or(Damage::ChunkHeader)?;
-    let mut found = Vec::new();
     let mut at = within.start;
     while let Some(record) = frame::next(&bytes[..within.end], at) {
-        let record = record.map_err(|_| Damage::ChunkHeader)?;
-        at = record.body.end;
-        found.push(record);
+        at = record.map_err(|_| Damage::ChunkHeader)?.body.end;
     }
-    Ok(found)
+    let mut at = within.start;
+    Ok(std::iter::from_fn(move || {
+        let record = frame::next(&bytes[..within.end], at)?.ok()?;
+        at = record.body.end;
+        Some(record)
+    }))
 }
 
 /// Opens a chunk and checks all that can be checked without its neighbours. `channels` gains those it describes.
@@ -64,97 +67,107 @@ pub(super) fn open(bytes: &[u8], chunk: &Frame, channels: &mut Channels) -> Resu
     if chunk.body.len() > CHUNK_BYTES_LIMIT {
         return Err(Damage::ChunkTooLarge { bytes: chunk.body.len() as u64 });
     }
-    // MCAP's reader subtracts the records' lengths from the chunk's without a look, so that they fill it comes first.
-    let places = records(bytes, chunk)?;
+    let records = records(bytes, chunk)?;
+    check_crc(&bytes[chunk.body.clone()])?;
     let mut described = Channels::new();
-    let mut messages = Vec::new();
-    let mut places = places.into_iter();
-    for_each_record(&bytes[chunk.at..chunk.body.end], |opcode, data| {
-        let unreadable = |cause| Damage::Unreadable { opcode, cause };
-        let place = places.next().ok_or(Damage::ChunkHeader)?;
-        match opcode {
-            op::SCHEMA => drop(frame::parse(opcode, data).map_err(unreadable)?),
-            op::CHANNEL => {
-                if let McapRecord::Channel(channel) = frame::parse(opcode, data).map_err(unreadable)? {
-                    let known = described.get(&channel.id).or_else(|| channels.get(&channel.id));
+    for record in records.clone() {
+        let body = &bytes[record.body.clone()];
+        let number = body.first_chunk().map(|number| u16::from_le_bytes(*number));
+        match (record.opcode, number) {
+            (op::SCHEMA, Some(id)) => {
+                bounded("schema", id, SCHEMAS_LIMIT, body.len(), SCHEMA_BYTES_LIMIT)?;
+                frame::parse(op::SCHEMA, body).map_err(unreadable(op::SCHEMA))?;
+            }
+            (op::CHANNEL, Some(id)) => {
+                bounded("channel", id, CHANNELS_LIMIT, body.len(), CHANNEL_BYTES_LIMIT)?;
+                if let McapRecord::Channel(channel) =
+                    frame::parse(op::CHANNEL, body).map_err(unreadable(op::CHANNEL))?
+                {
+                    let known = described.get(&id).or_else(|| channels.get(&id));
                     if known.is_some_and(|known| *known != channel) {
-                        return Err(Damage::ChannelChanged { channel: channel.id });
+                        return Err(Damage::ChannelChanged { channel: id });
                     }
-                    described.insert(channel.id, channel);
+                    described.insert(id, channel);
                 }
             }
-            op::MESSAGE => {
-                if let McapRecord::Message { header, .. } = frame::parse(opcode, data).map_err(unreadable)? {
-                    let id = header.channel_id;
-                    let channel = described.get(&id).or_else(|| channels.get(&id));
-                    let topic = channel.ok_or(Damage::UnknownChannel { channel: id })?.topic.clone();
-                    let start = place.at + PREFIX_LEN + MESSAGE_HEADER_LEN;
-                    messages.push(Message { topic, data: start..place.body.end });
+            (op::MESSAGE, Some(id)) if body.len() >= MESSAGE_HEADER_LEN => {
+                if !described.contains_key(&id) && !channels.contains_key(&id) {
+                    return Err(Damage::UnknownChannel { channel: id });
                 }
             }
-            opcode => return Err(Damage::Misplaced { opcode, bytes: data.len() as u64 }),
+            (opcode, _) => return Err(Damage::Misplaced { opcode, bytes: body.len() as u64 }),
         }
-        Ok(())
-    })?;
-    let content = content(bytes, &messages)?;
+    }
+    let topic = |id: u16| described.get(&id).or_else(|| channels.get(&id)).map_or("", |channel| &channel.topic[..]);
+    let messages = records.filter(|record| record.opcode == op::MESSAGE).map(|record| {
+        let [low, high] = [0, 1].map(|byte| bytes[record.body.start + byte]);
+        let data = record.body.start + MESSAGE_HEADER_LEN..record.body.end;
+        Message { topic: topic(u16::from_le_bytes([low, high])), data }
+    });
+    let content = content(bytes, messages)?;
     channels.extend(described);
     Ok(content)
 }
 
-/// Runs MCAP's reader over one chunk, its checksum checked before the first record is seen.
-fn for_each_record(mut left: &[u8], mut see: impl FnMut(u8, &[u8]) -> Result<(), Damage>) -> Result<(), Damage> {
-    let options = LinearReaderOptions::default()
-        .with_skip_start_magic(true)
-        .with_skip_end_magic(true)
-        .with_prevalidate_chunk_crcs(true)
-        .with_record_length_limit(CHUNK_BYTES_LIMIT);
-    let mut reader = LinearReader::new_with_options(options);
-    while let Some(event) = reader.next_event() {
-        match event.map_err(|cause| Damage::Unreadable { opcode: op::CHUNK, cause })? {
-            LinearReadEvent::ReadRequest(asked) => {
-                let (given, rest) = left.split_at(asked.min(left.len()));
-                reader.insert(given.len()).copy_from_slice(given);
-                reader.notify_read(given.len());
-                left = rest;
-            }
-            LinearReadEvent::Record { data, opcode } => see(opcode, data)?,
-        }
+fn unreadable(opcode: u8) -> impl Fn(mcap::McapError) -> Damage {
+    move |cause| Damage::Unreadable { opcode, cause }
+}
+
+/// Holds the number and length of a description against the most that any log of this program has: what is described is kept
+/// as long as the log is read.
+fn bounded(what: &'static str, id: u16, ids: u16, bytes: usize, limit: usize) -> Result<(), Damage> {
+    match id <= ids && bytes <= limit {
+        true => Ok(()),
+        false => Err(Damage::Description { what, id, ids, bytes, limit }),
     }
-    Ok(())
+}
+
+/// Checks the checksum in the header of a chunk, where there is one.
+fn check_crc(body: &[u8]) -> Result<(), Damage> {
+    let (header, records) = body.split_at(CHUNK_HEADER_LEN);
+    let saved = u32::from_le_bytes([24, 25, 26, 27].map(|at| header[at]));
+    let calculated = crc32fast::hash(records);
+    match saved == 0 || saved == calculated {
+        true => Ok(()),
+        false => Err(unreadable(op::CHUNK)(mcap::McapError::BadChunkCrc { saved, calculated })),
+    }
 }
 
 /// Checks the messages of a chunk against the commit in it.
-fn content(bytes: &[u8], messages: &[Message]) -> Result<Content, Damage> {
+fn content<'c>(bytes: &[u8], messages: impl Iterator<Item = Message<'c>> + Clone) -> Result<Content, Damage> {
     let sealed = |message: &Message| message.topic == COMMIT_TOPIC || message.topic == FINISHED_TOPIC;
-    let Some(index) = messages.iter().position(sealed) else {
-        return Err(Damage::NoCommit { messages: messages.len() });
+    let Some((index, last)) = messages.clone().enumerate().find(|(_, message)| sealed(message)) else {
+        return Err(Damage::NoCommit { messages: messages.count() });
     };
-    if index + 1 != messages.len() {
+    if messages.clone().nth(index + 1).is_some() {
         return Err(Damage::AfterCommit);
     }
-    let (before, last) = (&messages[..index], &messages[index]);
+    let before = messages.take(index);
     let data = &bytes[last.data.clone()];
     if last.topic == FINISHED_TOPIC {
         let finished: FinishedMessage = unseal(data).map_err(Damage::Finished)?;
         known_format(finished.format)?;
-        if !before.is_empty() {
-            return Err(Damage::MessageCount { expected: 0, found: before.len() });
+        if index > 0 {
+            return Err(Damage::MessageCount { expected: 0, found: index });
         }
         return Ok(Content::Finished(finished));
     }
     let commit: CommitMessage = unseal(data).map_err(Damage::Commit)?;
     known_format(commit.format)?;
-    named_messages(bytes, before, &commit.messages)?;
+    named_messages(bytes, before.clone(), &commit.messages)?;
     if !commit.messages.iter().any(|named| named.topic == STATE_TOPIC) {
         return Err(missing(STATE_TOPIC));
     }
-    let state = one(before, STATE_TOPIC, "exactly one")?;
-    let report = one(before, REPORT_TOPIC, "exactly one")?.ok_or(missing(REPORT_TOPIC))?;
-    let mesh = one(before, MESH_TOPIC, "at most one")?;
+    let state = one(before.clone(), STATE_TOPIC, "exactly one")?;
+    let report = one(before.clone(), REPORT_TOPIC, "exactly one")?.ok_or(missing(REPORT_TOPIC))?;
+    let mesh = one(before.clone(), MESH_TOPIC, "at most one")?;
     let displacement = one(before, DISPLACEMENT_TOPIC, "at most one")?;
     let named = commit.messages.iter().find(|message| message.topic == DISPLACEMENT_TOPIC);
     if named.is_some_and(|named| named.blake3 != commit.displacement_hash) {
         return Err(Damage::OtherDisplacement);
+    }
+    if report.len() > REPORT_BYTES_LIMIT {
+        return Err(Damage::ReportTooLarge { bytes: report.len() as u64 });
     }
     let report = ReportMessage::from_json(&bytes[report]).map_err(Damage::Report)?;
     let same_stage = (report.report.stage, report.report.step) == (commit.stage, commit.step);
@@ -166,25 +179,31 @@ fn content(bytes: &[u8], messages: &[Message]) -> Result<Content, Damage> {
 
 /// Checks that the messages of a chunk are those that its commit names, in their order. States, meshes and displacements may
 /// be left out.
-fn named_messages(bytes: &[u8], messages: &[Message], named: &[MessageHash]) -> Result<(), Damage> {
+fn named_messages<'c>(
+    bytes: &[u8],
+    messages: impl Iterator<Item = Message<'c>>,
+    named: &[MessageHash],
+) -> Result<(), Damage> {
     let may_be_left_out = |topic: &str| [STATE_TOPIC, MESH_TOPIC, DISPLACEMENT_TOPIC].contains(&topic);
     let mut expected = named.iter();
-    for (index, message) in messages.iter().enumerate() {
-        let found = MessageHash::of(&message.topic, &bytes[message.data.clone()]);
-        let other = || Damage::OtherMessage { index, topic: message.topic.clone() };
+    let mut found = 0;
+    for (index, Message { topic, data }) in messages.enumerate() {
+        found += 1;
+        let hash = HexHash(blake3::hash(&bytes[data.clone()]));
+        let other = || Damage::OtherMessage { index, topic: topic.to_owned() };
         loop {
             let next = expected.next().ok_or_else(other)?;
-            if *next == found {
+            if next.topic == topic && next.bytes == data.len() as u64 && next.blake3 == hash {
                 break;
             }
-            if next.topic == found.topic || !may_be_left_out(&next.topic) {
+            if next.topic == topic || !may_be_left_out(&next.topic) {
                 return Err(other());
             }
         }
     }
     match expected.all(|left| may_be_left_out(&left.topic)) {
         true => Ok(()),
-        false => Err(Damage::MessageCount { expected: named.len(), found: messages.len() }),
+        false => Err(Damage::MessageCount { expected: named.len(), found }),
     }
 }
 
@@ -197,9 +216,13 @@ fn missing(topic: &'static str) -> Damage {
 }
 
 /// The data of the only message on a topic.
-fn one(messages: &[Message], topic: &'static str, expected: &'static str) -> Result<Option<Range<usize>>, Damage> {
-    let mut found = messages.iter().filter(|message| message.topic == topic);
-    let first = found.next().map(|message| message.data.clone());
+fn one<'c>(
+    messages: impl Iterator<Item = Message<'c>>,
+    topic: &'static str,
+    expected: &'static str,
+) -> Result<Option<Range<usize>>, Damage> {
+    let mut found = messages.filter(|message| message.topic == topic);
+    let first = found.next().map(|message| message.data);
     match found.count() {
         0 => Ok(first),
         more => Err(Damage::TopicCount { topic, expected, found: more + 1 }),

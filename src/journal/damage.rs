@@ -2,7 +2,7 @@
 //!
 //! Each of these errors says all there is to say in one line, its cause with it, because they come in lists.
 
-use super::format::CHUNK_BYTES_LIMIT;
+use super::format::{CHUNK_BYTES_LIMIT, MANIFEST_BYTES_LIMIT, MANIFESTS_BYTES_LIMIT, REPORT_BYTES_LIMIT};
 use super::frame::Kind;
 use super::message::SealError;
 use crate::scene::Stage;
@@ -69,6 +69,34 @@ pub enum Damage {
     #[error("the chunk has {bytes} bytes, and no chunk has more than {CHUNK_BYTES_LIMIT}")]
     ChunkTooLarge {
         /// Length of the chunk.
+        bytes: u64,
+    },
+    /// A schema or channel unlike any that is written.
+    #[error("{what} {id} takes {bytes} bytes; they are numbered up to {ids}, and none has more than {limit}")]
+    Description {
+        /// "schema" or "channel".
+        what: &'static str,
+        /// Its number.
+        id: u16,
+        /// Largest number.
+        ids: u16,
+        /// Its length.
+        bytes: usize,
+        /// Largest length.
+        limit: usize,
+    },
+    /// A manifest larger than any that is written, or more of them than are kept.
+    #[error(
+        "the manifest has {bytes} bytes; none has more than {MANIFEST_BYTES_LIMIT}, and all together have no more than {MANIFESTS_BYTES_LIMIT}"
+    )]
+    ManifestTooLarge {
+        /// Length of the manifest.
+        bytes: u64,
+    },
+    /// A report larger than any that is written.
+    #[error("the report has {bytes} bytes, and no report has more than {REPORT_BYTES_LIMIT}")]
+    ReportTooLarge {
+        /// Length of the report.
         bytes: u64,
     },
     /// A message of a channel that nothing before it describes.

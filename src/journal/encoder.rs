@@ -12,13 +12,13 @@ use mcap::{McapError, WriteOptions, Writer};
 use super::chunk;
 use super::codec::{CodecError, EncodedState};
 use super::format::{
-    BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, OWN_TOPICS,
-    PROFILE, REPORT_TOPIC, STATE_TOPIC, log_time_ns, sequence,
+    BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, MANIFEST_BYTES_LIMIT,
+    MESH_TOPIC, OWN_TOPICS, PROFILE, REPORT_BYTES_LIMIT, REPORT_TOPIC, STATE_TOPIC, log_time_ns, sequence,
 };
 use super::frame::{self, Frame};
 use super::index::{Mark, Piece};
 use super::ledger::{ChunkPlace, Ledger};
-use super::manifest::Manifest;
+use super::manifest::{Manifest, SCENE_VALUES_LIMIT, has_too_many_values};
 use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, ReportMessage, schema_of, seal};
 use super::summary;
 use crate::pipeline::{Commit, Record};
@@ -71,6 +71,20 @@ pub enum EncodeError {
     /// JSON failed.
     #[error("a report cannot be written as JSON")]
     Json(#[from] serde_json::Error),
+    /// A report that no reader would take.
+    #[error("the report takes {bytes} bytes, and one in a log has no more than {REPORT_BYTES_LIMIT}: use fewer probes")]
+    ReportTooLarge {
+        /// Bytes that it takes.
+        bytes: usize,
+    },
+    /// A scene that no reader would take.
+    #[error(
+        "the scene takes {bytes} bytes, and one in a log has no more than {MANIFEST_BYTES_LIMIT}, or {SCENE_VALUES_LIMIT} values: use a coarser net"
+    )]
+    SceneTooLarge {
+        /// Bytes that it takes.
+        bytes: usize,
+    },
     /// MCAP refused.
     #[error("MCAP refused a record")]
     Mcap(#[from] McapError),
@@ -184,14 +198,22 @@ impl Encoder {
     }
 
     /// Begins a stretch.
-    pub(super) fn manifest(&mut self, manifest: &Manifest) -> Result<(), McapError> {
+    pub(super) fn manifest(&mut self, manifest: &Manifest) -> Result<(), EncodeError> {
+        let record = manifest.to_record();
+        let bytes: usize = record.metadata.iter().map(|(key, value)| key.len() + value.len() + 8).sum();
+        if bytes > MANIFEST_BYTES_LIMIT - 64 || has_too_many_values(&manifest.scene_text) {
+            return Err(EncodeError::SceneTooLarge { bytes });
+        }
         self.stretch = manifest.hash();
-        self.writer.write_metadata(&manifest.to_record())
+        Ok(self.writer.write_metadata(&record)?)
     }
 
     /// One stage as one chunk.
     pub(super) fn commit(&mut self, parts: &Parts) -> Result<(), EncodeError> {
         let report = ReportMessage::new(parts.record).to_json()?;
+        if report.len() > REPORT_BYTES_LIMIT {
+            return Err(EncodeError::ReportTooLarge { bytes: report.len() });
+        }
         let mut messages: Vec<(&ViewerTopic, &[u8])> = Vec::new();
         messages.extend(parts.mesh.as_deref().map(|mesh| (&OWN.mesh, mesh)));
         if parts.displacement_is_new {
@@ -286,7 +308,7 @@ impl Encoder {
         {
             return self.writer.write_metadata(&record);
         }
-        for record in chunk::records(bytes, part).unwrap_or_default() {
+        for record in chunk::records(bytes, part).into_iter().flatten() {
             let data = record.body.start + chunk::MESSAGE_HEADER_LEN;
             match frame::parse(record.opcode, &bytes[record.body])? {
                 McapRecord::Message { .. } if !keeps(data) => {}

@@ -75,6 +75,25 @@ pub const OWN_TOPICS: [&str; 6] =
 /// of them.
 pub const CHUNK_BYTES_LIMIT: usize = 48 << 20;
 
+/// Largest report that is written or read, bytes: room for some ten thousand probes. A report is kept as long as its log is
+/// read, and takes up to three times its length.
+pub const REPORT_BYTES_LIMIT: usize = 1 << 20;
+
+/// Largest manifest that is written or read, bytes: room for the net of a hundred thousand control points.
+pub const MANIFEST_BYTES_LIMIT: usize = 8 << 20;
+
+/// Most bytes of manifests that are kept of one log.
+pub(super) const MANIFESTS_BYTES_LIMIT: usize = 24 << 20;
+
+/// Largest number of a schema, and largest schema, bytes. A log has three, and one for each viewers' topic; that of Foxglove's
+/// scenes takes 24 kB.
+pub(super) const SCHEMAS_LIMIT: u16 = 64;
+pub(super) const SCHEMA_BYTES_LIMIT: usize = 128 << 10;
+
+/// Largest number of a channel, and largest description of one, bytes. A log has six, and one for each viewers' topic.
+pub(super) const CHANNELS_LIMIT: u16 = 256;
+pub(super) const CHANNEL_BYTES_LIMIT: usize = 4 << 10;
+
 /// Distance of two stages in `log_time`.
 const NANOSECONDS_PER_STAGE: u64 = 100_000_000;
 

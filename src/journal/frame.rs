@@ -63,9 +63,14 @@ pub(super) fn find(bytes: &[u8], from: usize) -> Option<usize> {
     let candidates = bytes.get(from..)?.iter().enumerate().filter(|(_, byte)| kinds.contains(*byte));
     candidates.map(|(offset, _)| from + offset).find(|&at| match next(bytes, at) {
         Some(Ok(frame)) if frame.opcode == op::CHUNK => chunk_records(bytes, &frame).is_some(),
-        Some(Ok(frame)) => name(&bytes[frame.body]) == Some(MANIFEST),
+        Some(Ok(frame)) => is_named(&bytes[frame.body], MANIFEST),
         _ => false,
     })
+}
+
+/// Whether a record begins with this text; looks at no more of it.
+fn is_named(mut body: &[u8], name: &str) -> bool {
+    length(&mut body) == Some(name.len()) && body.starts_with(name.as_bytes())
 }
 
 /// The text that a record begins with.
@@ -113,14 +118,18 @@ fn text(rest: &mut &[u8]) -> Option<()> {
     take(rest, len).map(drop)
 }
 
-/// Passes over a map of texts: its length in bytes, then names and values.
+/// Passes over a map of texts: its length in bytes, then names and values. The parser takes ten times the length of a map of
+/// many short ones.
 fn texts(rest: &mut &[u8]) -> Option<()> {
+    const MOST: usize = 1000;
     let len = length(rest)?;
     let mut map = take(rest, len)?;
-    while !map.is_empty() {
+    let mut count = 0;
+    while !map.is_empty() && count <= MOST {
         text(&mut map)?;
+        count += 1;
     }
-    Some(())
+    (count <= MOST).then_some(())
 }
 
 /// A kind of record, in words.

@@ -108,7 +108,7 @@ impl Ledger {
     /// Keeps the schemas and channels that a chunk describes.
     pub fn describe(&mut self, at: u64, bytes: &[u8], chunk: &Frame) {
         let known = self.schemas.len() + self.channels.len();
-        for record in chunk::records(bytes, chunk).unwrap_or_default() {
+        for record in chunk::records(bytes, chunk).into_iter().flatten() {
             let Some(number) = bytes[record.body.clone()].first_chunk() else { continue };
             let kind = match record.opcode {
                 op::SCHEMA => &mut self.schemas,

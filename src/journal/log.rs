@@ -2,13 +2,15 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::codec::{CodecError, decode_mesh, decode_state};
 use super::damage::{Completeness, LaterCommit, Problem};
 use super::manifest::Manifest;
+use super::soundness::check_made_by;
 use super::stretch::{LostManifest, Stretches};
 use crate::pipeline::{Commit, Record};
+use crate::scene::Scene;
 use crate::state::{Hash, Mesh, State};
 
 /// A stage in a log. Its bytes have the hashes that its commit names, and its commit follows from the one before it.
@@ -122,6 +124,8 @@ pub struct Log {
     pub(super) later: Vec<LaterCommit>,
     pub(super) notes: Vec<Note>,
     pub(super) last_mesh: Mutex<Option<(Hash, Arc<Mesh>)>>,
+    /// The scenes of the manifests, once a state was held against them; `None` for one that does not read.
+    pub(super) scenes: OnceLock<Vec<Option<Scene>>>,
     pub(super) bytes: Vec<u8>,
 }
 
@@ -275,8 +279,20 @@ impl Log {
         let mesh = self.mesh(index)?;
         let bytes = &self.bytes[place];
         let displacement = |hash: Hash| self.displacements.get(&hash).map(|place| &self.bytes[place.clone()]);
-        decode_state(bytes, displacement, mesh, entry.mesh_hash, entry.record.commit.state_hash)
-            .map_err(|source| StateError::Content { index, source })
+        let state = decode_state(bytes, displacement, mesh, entry.mesh_hash, entry.record.commit.state_hash);
+        let unusable = |source| StateError::Content { index, source };
+        let state = state.map_err(unusable)?;
+        check_made_by(&state, &self.scenes_up_to(entry.stretch)).map_err(|flaw| unusable(flaw.into()))?;
+        Ok(state)
+    }
+
+    /// The scenes of the stretches up to this one; none where its own is not known.
+    fn scenes_up_to(&self, stretch: Option<usize>) -> Vec<&Scene> {
+        let scenes = self.scenes.get_or_init(|| self.manifests().iter().map(|it| it.scene(&[]).ok()).collect());
+        match stretch.and_then(|stretch| scenes.get(..=stretch)) {
+            Some([before @ .., Some(own)]) => before.iter().flatten().chain([own]).collect(),
+            _ => Vec::new(),
+        }
     }
 
     /// The mesh that the state of stage `index` stands on.

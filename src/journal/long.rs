@@ -12,6 +12,7 @@ use super::index_keeper::{LONG_BYTES, Rewritten};
 use super::ledger::Ledger;
 use super::log::{Entry, Log};
 use super::message::HexHash;
+use super::reader::open_regular;
 use crate::pipeline::Record;
 
 /// Why a long log cannot be asked.
@@ -51,7 +52,7 @@ impl LongLog {
     /// # Errors
     /// Where the log cannot be read.
     pub fn open(path: &Path) -> io::Result<Option<Self>> {
-        let file = File::open(path)?;
+        let file = open_regular(path)?;
         let index_path = beside(path, ".index");
         let index = Index::read(&index_path);
         if index.is_none() && file.metadata()?.len() < LONG_BYTES {
@@ -74,7 +75,7 @@ impl LongLog {
     }
 
     fn read(path: &Path, index_path: &Path, index: Option<Index>) -> io::Result<Option<Self>> {
-        let file = File::open(path)?;
+        let file = open_regular(path)?;
         let (from, mut ledger) = match &index {
             Some(index) => match index.checkpoint(&file)? {
                 Some((from, ledger)) => (Some(from), ledger),

@@ -10,6 +10,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::format::{FORMAT_VERSION, MANIFEST};
 use crate::pipeline::NUMERICS_REVISION;
+use crate::scene::{Scene, SceneError, parse_with_settings};
 use crate::state::Hash;
 
 /// What stood at the start of one stretch of a run.
@@ -67,6 +68,22 @@ pub enum ManifestError {
     Check,
 }
 
+/// Why the scene in a log is none.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneInLogError {
+    /// It does not stand for itself.
+    #[error(
+        "the scene in the log names a file for its geometry: logs hold theirs whole, and no file is opened for one"
+    )]
+    NamesAFile,
+    /// More than a scene's text that a log holds may have.
+    #[error("the scene in the log has more values than any that is written, {SCENE_VALUES_LIMIT}")]
+    TooManyValues,
+    /// It does not read.
+    #[error("the scene in the log does not read")]
+    Wrong(#[from] Box<SceneError>),
+}
+
 impl Manifest {
     /// A manifest of this program on this machine, now.
     pub fn here(scene_file: &Path, scene_text: &str, threads: usize) -> Self {
@@ -113,6 +130,26 @@ impl Manifest {
             )),
             (was, is) => Some(format!("another revision of the numerics: {was} before, {is} now")),
         }
+    }
+
+    /// The scene, with settings laid over it. It stands for itself: one that names a file is none that this program wrote, and
+    /// no file is opened.
+    ///
+    /// # Errors
+    /// Where it is no scene, in the words of the parser.
+    pub fn scene(&self, settings: &[String]) -> Result<Scene, SceneInLogError> {
+        if has_too_many_values(&self.scene_text) {
+            return Err(SceneInLogError::TooManyValues);
+        }
+        let names_a_file = |text: &str| {
+            let scene = text.parse::<toml::Table>();
+            scene.is_ok_and(|scene| scene.get("geometry").is_some_and(|geometry| geometry.get("file").is_some()))
+        };
+        // Most have no such word; they are not parsed twice.
+        if self.scene_text.contains("file") && names_a_file(&self.scene_text) {
+            return Err(SceneInLogError::NamesAFile);
+        }
+        Ok(parse_with_settings(&self.scene_text, "the scene in the log", settings).map_err(Box::new)?)
     }
 
     /// The name of this manifest in the commits of its stretch.
@@ -182,6 +219,14 @@ impl Manifest {
         };
         Ok((manifest, name))
     }
+}
+
+/// Most values of a scene in a log: the parser takes 160 bytes for each, where two may stand for it in the text.
+pub(super) const SCENE_VALUES_LIMIT: usize = 350_000;
+
+/// Whether a scene has more values than are written or read: what may begin one is counted.
+pub(super) fn has_too_many_values(scene_text: &str) -> bool {
+    scene_text.bytes().filter(|byte| b",=[{".contains(byte)).nth(SCENE_VALUES_LIMIT).is_some()
 }
 
 /// Fewer bytes than any manifest takes: its name and those of its entries, and the hash. A gap that is shorter held none.

@@ -3,6 +3,7 @@
 //! Commit and end carry a *seal*: their last entry is the hash of every byte before it. The commit in turn holds the
 //! hash of every other message of its chunk, so one good seal vouches for the whole chunk, byte for byte.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -246,18 +247,31 @@ impl ReportMessage {
         serde_json::to_vec(self)
     }
 
-    /// The message that the JSON holds, bit for bit as it was.
+    /// The message that the JSON holds, bit for bit as it was. Entries that a report does not have are passed over and not
+    /// kept, however much they hold.
     ///
     /// # Errors
     /// Where the JSON is not a report.
     pub fn from_json(json: &[u8]) -> Result<Self, serde_json::Error> {
-        let mut value: Value = serde_json::from_slice(json)?;
-        if value.get("not_finite").is_some() {
-            fill_nulls(&mut value);
+        #[derive(Deserialize)]
+        struct Spelt {
+            #[serde(default)]
+            not_finite: Vec<NotFinite>,
         }
-        let mut message: Self = serde_json::from_value(value)?;
+        #[derive(Deserialize)]
+        struct Bound {
+            state_hash: HexHash,
+            chain_hash: HexHash,
+            wall_s: f64,
+        }
+        let Spelt { not_finite } = parsed(json)?;
+        let json = if not_finite.is_empty() { Cow::from(json) } else { Cow::from(without_nulls(json)) };
+        // One after the other and not as one: serde would hold all entries in memory to hand them on.
+        let Bound { state_hash, chain_hash, wall_s } = parsed(&json)?;
+        let report = parsed::<WrittenReport>(&json)?.into();
+        let mut message = Self { report, state_hash, chain_hash, wall_s, not_finite };
         for NotFinite { entry, value } in message.not_finite.clone() {
-            let number: f64 = value.parse().map_err(|_| serde_json::Error::custom(format!("{entry}: {value}")))?;
+            let number: f64 = value.parse().map_err(|_| brief(format!("{entry}: {value}")))?;
             if let Some((_, place)) = message.numbers().into_iter().find(|(name, _)| *name == entry) {
                 *place = number;
             }
@@ -266,13 +280,38 @@ impl ReportMessage {
     }
 }
 
-/// Puts a number where `null` stands for one that JSON cannot hold; the caller then sets the right one.
-fn fill_nulls(value: &mut Value) {
-    match value {
-        Value::Null => *value = Value::from(0.0),
-        Value::Array(items) => items.iter_mut().for_each(fill_nulls),
-        Value::Object(entries) => entries.values_mut().for_each(fill_nulls),
-        _ => {}
+/// JSON with 0 where `null` stands for a number that JSON cannot hold; the caller then sets the right one.
+fn without_nulls(json: &[u8]) -> Vec<u8> {
+    let mut filled = json.to_vec();
+    let (mut at, mut in_text) = (0, false);
+    while at < filled.len() {
+        match filled[at] {
+            b'\\' if in_text => at += 1,
+            b'"' => in_text = !in_text,
+            b'n' if !in_text && filled[at..].starts_with(b"null") => filled[at..at + 4].copy_from_slice(b"0.00"),
+            _ => {}
+        }
+        at += 1;
+    }
+    filled
+}
+
+/// What JSON holds, or what is wrong with it in a line.
+fn parsed<'j, T: Deserialize<'j>>(json: &'j [u8]) -> Result<T, serde_json::Error> {
+    serde_json::from_slice(json).map_err(|error| brief(error.to_string()))
+}
+
+/// An error that quotes no more of a log than fits a line.
+fn brief(text: String) -> serde_json::Error {
+    serde_json::Error::custom(in_brief(text))
+}
+
+/// The beginning of a text: as much as fits a line.
+pub(super) fn in_brief(text: String) -> String {
+    const LONGEST: usize = 300;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} …", &text[..end]),
+        None => text,
     }
 }
 
@@ -331,7 +370,7 @@ pub fn unseal<M: Sealed>(json: &[u8]) -> Result<M, SealError> {
     if &seal[..64] != found.to_hex().as_bytes() || &seal[64..] != b"\"}" {
         return Err(SealError::Broken { found });
     }
-    Ok(serde_json::from_slice(json)?)
+    Ok(parsed(json)?)
 }
 
 /// A message whose last entry is its seal.

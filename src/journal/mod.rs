@@ -24,7 +24,7 @@
 //! | `resume`, `recovery` | going on with a log, copying what is good of one |
 //! | `thin` | a log without some of its states |
 //! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
-//! | `rewriting`, `verify` | all that can be checked, all of it |
+//! | `rewriting`, `agreement`, `verify` | all that can be checked, all of it |
 //!
 //! # Writing, stopping, going on
 //!
@@ -74,6 +74,7 @@
 //! [`CODEC_VERSION`], where only states or meshes change); keep the old structs and decode both; write the logs with
 //! the last program before the change, by the command that the `README.md` names, and add them with their rows. A
 //! golden log is never written again.
+mod agreement;
 mod backend;
 mod checkpoint;
 mod chunk;
@@ -105,6 +106,7 @@ mod trace;
 mod verify;
 mod writer;
 
+pub use agreement::Disagreement;
 pub use backend::{Backend, FileBackend};
 pub use codec::{CODEC_VERSION, CodecError, EncodedState, decode_mesh, decode_state, encode_mesh, encode_state};
 pub use damage::{Completeness, Damage, LaterCommit, Problem};
@@ -113,7 +115,7 @@ pub use index::word_number;
 pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
 pub use long::{LongLog, LongLogError};
-pub use manifest::{Manifest, ManifestError};
+pub use manifest::{Manifest, ManifestError, SceneInLogError};
 pub use reader::ReadError;
 pub use recovery::{RecoverError, RecoverOutcome, recover};
 pub use resume::{Resume, ResumeError, Resumed};

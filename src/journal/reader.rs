@@ -56,7 +56,12 @@ impl Log {
     /// Where the file cannot be read or is not a log. A damaged log is no error: what is good of it is returned, and
     /// [`Log::completeness`] says what is not.
     pub fn read(path: &Path) -> Result<Log, ReadError> {
-        let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.display().to_string(), source })?;
+        let mut bytes = Vec::new();
+        let read = open_regular(path).and_then(|file| {
+            let length = usize::try_from(file.metadata()?.len()).unwrap_or(usize::MAX);
+            read_at(&file, 0, length, &mut bytes)
+        });
+        read.map_err(|source| ReadError::Io { path: path.display().to_string(), source })?;
         Log::from_bytes(bytes)
     }
 
@@ -136,8 +141,18 @@ impl Log {
             later: scan.later,
             notes: scan.notes,
             last_mesh: Default::default(),
+            scenes: Default::default(),
             bytes: Vec::new(),
         }
+    }
+}
+
+/// Opens a regular file: a pipe would hang, and a device never end.
+pub(super) fn open_regular(path: &Path) -> std::io::Result<File> {
+    if std::fs::metadata(path)?.is_file() {
+        File::open(path)
+    } else {
+        Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, "it is no regular file"))
     }
 }
 
@@ -146,6 +161,6 @@ pub(super) fn read_at(file: &File, at: u64, length: usize, into: &mut Vec<u8>) -
     use std::io::{Seek, SeekFrom};
     let mut file = file;
     file.seek(SeekFrom::Start(at))?;
-    into.reserve_exact(length);
+    into.try_reserve_exact(length)?;
     file.take(length as u64).read_to_end(into).map(drop)
 }

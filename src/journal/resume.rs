@@ -180,10 +180,9 @@ impl Resume {
     }
 
     fn in_place(mut self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
-        let begin =
-            |name: &str, source: mcap::McapError| ResumeError::Begin { log: name.to_owned(), source: source.into() };
+        let begin = |name: &str, source| ResumeError::Begin { log: name.to_owned(), source };
         let ledger = self.before.as_mut().map(|before| std::mem::take(&mut before.ledger));
-        let behind = encoder_behind(&self.log, ledger).map_err(|source| begin(&self.name, source))?;
+        let behind = encoder_behind(&self.log, ledger).map_err(|source| begin(&self.name, source.into()))?;
         let Some((mut encoder, length)) = behind else {
             let all = self.log.commits();
             return self.whole()?.copied(all, manifest, sync);
@@ -238,7 +237,7 @@ impl Resume {
         let mut backend = FileBackend::copy_of(&path).map_err(failed)?;
         let mut encoder = Encoder::new(&library()).map_err(|source| begin(source.into()))?;
         let copied = copy(&log, Some(keep), &mut encoder, &mut backend).and_then(|length| {
-            encoder.manifest(manifest).map_err(EncodeError::Mcap)?;
+            encoder.manifest(manifest)?;
             let bytes = encoder.take();
             backend.append(&bytes)?;
             backend.replace(log.file_len())?;

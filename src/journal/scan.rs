@@ -8,17 +8,24 @@ use mcap::records::Record as McapRecord;
 use super::checkpoint::Checkpoint;
 use super::chunk::{self, Channels, CommitContent, Content};
 use super::damage::{Damage, LaterCommit, Problem};
-use super::format::{FORMAT_VERSION, MANIFEST, PROFILE, THINNED};
+use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT, MANIFESTS_BYTES_LIMIT, PROFILE, THINNED};
 use super::frame::{self, Cut, Frame, PREFIX_LEN, op};
 use super::log::{Entry, Kept, Note, Part};
 use super::manifest::{LIBRARY, Manifest};
-use super::message::FinishedMessage;
+use super::message::{FinishedMessage, in_brief};
 use super::stretch::Stretches;
 use crate::pipeline::{Commit, Record};
 use crate::state::Hash;
 
-/// Problems that are listed one by one; a file of another kind under a log's name could have any number.
+/// Problems and notes that are listed one by one; a file of another kind under a log's name could have any number.
 const PROBLEMS_LIMIT: usize = 1000;
+
+/// Times its length that a log is parsed at most for manifests that turn out to be none: what looks like one may lie in
+/// another, and that in a third.
+const PARSED_IN_VAIN: usize = 4;
+
+/// Largest header, bytes: it names a profile and a program.
+const HEADER_BYTES_LIMIT: usize = 4 << 10;
 
 /// Reading under way. Places in `entries`, `parts`, `meshes` and `displacements` count from the first byte that is walked
 /// over, those that are told from the start of the file.
@@ -47,6 +54,12 @@ pub(super) struct Scan {
     later_seen: HashSet<u64>,
     pub notes: Vec<Note>,
     pub newer_format: Option<u32>,
+    /// Where the zeros begin that the bytes end with.
+    content_end: usize,
+    /// Bytes of records that were parsed in vain.
+    in_vain: usize,
+    /// Bytes of the manifests that are kept.
+    manifests_bytes: usize,
 }
 
 impl Scan {
@@ -66,9 +79,10 @@ impl Scan {
     /// Walks over the bytes. Where more of them follow in the file (`goes_on`), a record that they cut off is no damage.
     pub fn run(&mut self, bytes: &[u8], goes_on: bool) {
         let mut at = 0;
+        self.content_end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
         if self.from.is_none() {
             if !bytes.starts_with(mcap::MAGIC) {
-                self.notes.push(Note { at: 0, text: Damage::Magic.to_string() });
+                self.note(0, Damage::Magic.to_string());
             }
             at = mcap::MAGIC.len();
         }
@@ -101,7 +115,7 @@ impl Scan {
                     }
                 }
                 (Err(damage), next) => {
-                    let only_zeros = bytes[at..].iter().all(|byte| *byte == 0);
+                    let only_zeros = at >= self.content_end;
                     let damage = if only_zeros { Damage::Zeros { left: (bytes.len() - at) as u64 } } else { damage };
                     let is_cut = damage.is_cut();
                     self.problem(at, damage);
@@ -154,6 +168,11 @@ impl Scan {
         self.problems.push(Problem { at, damage });
     }
 
+    fn note(&mut self, at: u64, text: String) {
+        self.notes.truncate(PROBLEMS_LIMIT - 1);
+        self.notes.push(Note { at, text });
+    }
+
     fn frame(&mut self, bytes: &[u8], frame: &Frame) -> Result<(), Damage> {
         let body = &bytes[frame.body.clone()];
         let misplaced = || Err(Damage::Misplaced { opcode: frame.opcode, bytes: body.len() as u64 });
@@ -162,27 +181,32 @@ impl Scan {
             frame::parse(frame.opcode, body).map_err(unreadable)
         };
         match frame.opcode {
-            op::HEADER if self.base == 0 && frame.at == mcap::MAGIC.len() => {
+            op::HEADER if self.base == 0 && frame.at == mcap::MAGIC.len() && body.len() <= HEADER_BYTES_LIMIT => {
                 if let McapRecord::Header(header) = parse()? {
                     self.header = Some((header.profile, header.library));
                 }
                 Ok(())
             }
-            op::METADATA if bytes[frame.body.end.saturating_sub(1)..].iter().all(|byte| *byte == 0) => {
-                let content = body.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
-                Err(Damage::CutRecord { opcode: frame.opcode, claims: body.len() as u64, left: content as u64 })
+            op::METADATA if frame.body.end > self.content_end => {
+                let left = self.content_end.saturating_sub(frame.body.start) as u64;
+                Err(Damage::CutRecord { opcode: frame.opcode, claims: body.len() as u64, left })
             }
             op::METADATA => {
+                if body.len() > MANIFEST_BYTES_LIMIT || self.manifests_bytes + body.len() > MANIFESTS_BYTES_LIMIT {
+                    return Err(Damage::ManifestTooLarge { bytes: body.len() as u64 });
+                }
+                if self.in_vain > PARSED_IN_VAIN * bytes.len() {
+                    return misplaced();
+                }
+                self.in_vain += body.len();
                 if let McapRecord::Metadata(record) = parse()? {
+                    self.in_vain -= body.len();
                     self.metadata(frame, &record);
                 }
                 Ok(())
             }
             op::CHUNK => self.chunk(bytes, frame),
-            op::MESSAGE_INDEX => match parse()? {
-                McapRecord::MessageIndex(index) if body.len() == 2 + 4 + 16 * index.records.len() => Ok(()),
-                _ => misplaced(),
-            },
+            op::MESSAGE_INDEX if is_message_index(body) => Ok(()),
             op::DATA_END if body.len() == 4 => {
                 self.closed = true;
                 Ok(())
@@ -194,6 +218,7 @@ impl Scan {
     fn metadata(&mut self, frame: &Frame, record: &mcap::records::Metadata) {
         match Manifest::from_record(record) {
             Ok((manifest, hash)) => {
+                self.manifests_bytes += frame.body.len();
                 if manifest.format_version > FORMAT_VERSION {
                     self.newer_format = Some(manifest.format_version);
                 }
@@ -201,7 +226,7 @@ impl Scan {
                 let (header, named) = (self.header.as_ref().map(|(_, library)| library), record.metadata.get(LIBRARY));
                 if manifest.first_ordinal == 0 && named.is_some() && header != named {
                     let text = "the header does not name the program that the manifest names";
-                    self.notes.push(Note { at: mcap::MAGIC.len() as u64, text: text.to_owned() });
+                    self.note(mcap::MAGIC.len() as u64, text.to_owned());
                 }
                 // Behind a loss it speaks of commits that are not used.
                 if manifest.first_ordinal == self.commits() {
@@ -213,15 +238,15 @@ impl Scan {
             }
             Err(_) if record.name == THINNED => {
                 self.parts.push(Part { at: frame.at, end: frame.body.end, kept: Kept::Marker });
-                self.thinned = Some(record.metadata.get("kept").cloned().unwrap_or_default());
+                self.thinned = Some(in_brief(record.metadata.get("kept").cloned().unwrap_or_default()));
             }
             Err(error) if record.name == MANIFEST => {
                 self.stretches.suspect(self.place(frame.at));
-                self.notes.push(Note { at: self.place(frame.at), text: format!("{error}; it is left out") });
+                self.note(self.place(frame.at), format!("{}; it is left out", in_brief(error.to_string())));
             }
             Err(_) => {
-                let text = format!("metadata {:?} is not foldline's; it is left out", record.name);
-                self.notes.push(Note { at: self.place(frame.at), text });
+                let name = in_brief(format!("{:?}", record.name));
+                self.note(self.place(frame.at), format!("metadata {name} is not foldline's; it is left out"));
             }
         }
     }
@@ -310,4 +335,10 @@ impl Scan {
         });
         Ok(())
     }
+}
+
+/// Whether a message index has a channel, a length, and entries of that length.
+fn is_message_index(body: &[u8]) -> bool {
+    let Some((entries_len, entries)) = body.get(2..).and_then(|rest| rest.split_first_chunk()) else { return false };
+    u32::from_le_bytes(*entries_len) as usize == entries.len() && entries.len().is_multiple_of(16)
 }

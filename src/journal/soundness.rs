@@ -1,7 +1,8 @@
 //! What a mesh and a state must hold so that no later code can stumble over them, whoever wrote them.
 
+use crate::scene::{Scene, Stage};
 use crate::spline::DEGREES;
-use crate::state::{Mesh, Refinement, State};
+use crate::state::{CriticalAhead, Mesh, PathMemory, Refinement, State, StepControl};
 
 /// What is wrong with a mesh or a state.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -82,6 +83,20 @@ pub enum Flaw {
         /// Parametric direction, 0 or 1.
         way: usize,
         /// The knot.
+        value: f64,
+    },
+    /// Something that no run of the scene makes.
+    #[error("it has {what}, and no run of the scene in this log makes that")]
+    Foreign {
+        /// What it is.
+        what: &'static str,
+    },
+    /// A number that no run makes.
+    #[error("{what} is {value}, and no run makes that")]
+    Absurd {
+        /// Which quantity.
+        what: &'static str,
+        /// The value.
         value: f64,
     },
 }
@@ -191,3 +206,95 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
     }
     finite("rotation of a known jump", state.control.jump_seen_at_deg)
 }
+
+/// Checks that a state may have been made by a run of these scenes: those of its log up to its own, which is the last. What one
+/// of them brought into a state stays there under the next.
+///
+/// # Errors
+/// The first flaw.
+pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw> {
+    let Some(scene) = scenes.last() else { return Ok(()) };
+    let State {
+        mesh,
+        displacement,
+        marked,
+        refined,
+        step: _,
+        stage,
+        parameter: _,
+        turns,
+        moment_n_mm: _,
+        strain_energy_n_mm: _,
+        negative_pivots,
+        control,
+        path,
+        // Its size and numbers are all that can be asked of it.
+        previous: _,
+        largest_force_n,
+        refinement,
+    } = state;
+    let foreign = |what| Err(Flaw::Foreign { what });
+    for way in 0..2 {
+        if mesh.degree[way] != scene.mesh.degree[way] {
+            return Err(Flaw::Degree { way, degree: mesh.degree[way] });
+        }
+    }
+    let follows_a_path = scenes.iter().any(|scene| scene.continuation.is_some());
+    let refines = scenes.iter().any(|scene| scene.adapt.is_some());
+    let is_stage = |stage: &Stage| match stage {
+        Stage::SwitchBranch => follows_a_path,
+        stage => scene.pipeline.contains(stage),
+    };
+    match stage {
+        Some(stage) if !is_stage(stage) => return foreign("a stage of another pipeline"),
+        _ if !refines && marked.iter().any(|knots| !knots.is_empty()) => return foreign("marked knot spans"),
+        _ if !refines && refined.is_some() => return foreign("a refined mesh"),
+        _ if !refines && refinement.is_some() => return foreign("a memory of refining"),
+        _ if !follows_a_path && path.is_some() => return foreign("a path"),
+        _ if turns.len() > scene.supports.len() + ENDS => return foreign("more rigid sections that turn"),
+        _ if *negative_pivots > 3 * displacement.len() as u64 + MOTIONS * (scene.supports.len() + ENDS) as u64 => {
+            return foreign("more negative pivots than unknowns");
+        }
+        _ => {}
+    }
+    let at_least = |what, value: f64, least: f64| {
+        if value >= least { Ok(()) } else { Err(Flaw::Absurd { what, value }) }
+    };
+    let StepControl { halvings, jump_seen_at_deg: _, rejection: _ } = control;
+    if halvings.unsigned_abs() > HALVINGS {
+        return Err(Flaw::Absurd { what: "the number of halvings", value: f64::from(*halvings) });
+    }
+    if let Some(PathMemory {
+        heading: _,
+        parameter_rate: _,
+        first_mm,
+        next_mm,
+        travelled_mm,
+        critical_ahead,
+        at_bifurcation: _,
+    }) = path
+    {
+        at_least("the first step along the path", *first_mm, f64::MIN_POSITIVE)?;
+        at_least("the next step along the path", *next_mm, f64::MIN_POSITIVE)?;
+        at_least("the length of the path", *travelled_mm, 0.0)?;
+        if let Some(CriticalAhead { within_mm, rate_beyond: _ }) = critical_ahead {
+            at_least("the way to a critical point", *within_mm, 0.0)?;
+        }
+    }
+    if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = refinement {
+        at_least("what refining changed", *changed_n_mm, 0.0)?;
+        at_least("the growth of the mesh", *growth, f64::MIN_POSITIVE)?;
+        at_least("what refining was expected to change", expected_n_mm.unwrap_or(0.0), 0.0)?;
+        at_least("what a ripple released", *ripple_n_mm, 0.0)?;
+    }
+    at_least("the largest force", *largest_force_n, 0.0)
+}
+
+/// Ends of a tape spring, which turn as rigid sections and are no supports of the scene.
+const ENDS: usize = 2;
+
+/// Unknowns of the motion of a rigid section.
+const MOTIONS: u64 = 6;
+
+/// Halvings or doublings after which an increment is no number any more.
+const HALVINGS: u32 = 1000;

@@ -1,17 +1,17 @@
 //! Everything that can be checked about a log, all of it, not only up to the first flaw.
 
-use std::fs::File;
 use std::io;
 use std::ops::Range;
 use std::path::Path;
 
+use super::agreement::disagreement;
 use super::checkpoint::read_in_parts;
 use super::damage::Completeness;
 use super::encoder::EncodeError;
 use super::index_keeper::LONG_BYTES;
 use super::ledger::Ledger;
 use super::log::{Entry, Log};
-use super::reader::read_at;
+use super::reader::{open_regular, read_at};
 use super::rewriting::Rewriting;
 
 /// How much a finding matters.
@@ -37,7 +37,7 @@ pub struct Finding {
 }
 
 /// Checks a log: framing, checksums, seals, the hash of every message, the chain, the content hash and soundness of
-/// every state and mesh, manifests, completeness, and that the bytes between are those that the writer would write.
+/// every state and mesh, reports against their states, manifests, completeness, and that the bytes between are those that the writer would write.
 ///
 /// A long log is checked part by part; one that is damaged before its end, or was thinned, is read whole.
 pub fn verify(path: &Path) -> Vec<Finding> {
@@ -54,7 +54,7 @@ pub fn verify(path: &Path) -> Vec<Finding> {
 
 /// Checks a long log without holding it in memory; `None` for one that has to be read whole.
 fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
-    let file = File::open(path)?;
+    let file = open_regular(path)?;
     if file.metadata()?.len() < LONG_BYTES {
         return Ok(None);
     }
@@ -131,12 +131,16 @@ fn of_the_whole(log: &Log) -> Vec<Finding> {
     findings
 }
 
-/// Decodes the states of some entries.
+/// Decodes the states of some entries, and holds their reports against them.
 fn states(log: &Log, entries: Range<usize>) -> Vec<Finding> {
     let kept = entries.filter(|entry| log.keeps_state(log.first() + entry));
-    let checked = kept.filter_map(|entry| {
-        let error = log.state(log.first() + entry).err()?;
-        Some(finding(Level::Error, place(&log.entries()[entry]), with_causes(&error)))
+    let checked = kept.filter_map(|index| {
+        let entry = &log.entries()[index];
+        let text = match log.state(log.first() + index) {
+            Ok(state) => disagreement(&entry.record.report, &state)?.to_string(),
+            Err(error) => with_causes(&error),
+        };
+        Some(finding(Level::Error, place(entry), text))
     });
     checked.collect()
 }

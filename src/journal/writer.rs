@@ -261,13 +261,9 @@ impl JournalWriter {
     /// # Errors
     /// Where the backend cannot be written.
     pub fn on(backend: Box<dyn Backend>, log: &str, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
-        let encode = |source: mcap::McapError| WriteError::Encode {
-            ordinal: 0,
-            log: log.to_owned(),
-            source: EncodeError::Mcap(source),
-        };
+        let encode = |source| WriteError::Encode { ordinal: 0, log: log.to_owned(), source };
         let mut writer = Self {
-            encoder: Encoder::new(&library()).map_err(encode)?,
+            encoder: Encoder::new(&library()).map_err(|source| encode(source.into()))?,
             backend,
             lock: None,
             log: log.to_owned(),

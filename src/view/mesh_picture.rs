@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use super::camera::{Camera, DepthBuffer, Projected, ViewDirection};
 use super::colour::Colour;
+use super::printable::printable;
 use super::samples::SurfaceSamples;
 use super::ticks::ticks;
 
@@ -254,5 +255,5 @@ fn text(svg: &mut String, [x, y]: [f64; 2], anchor: &str, size: u32, words: &str
 
 /// Text as XML.
 pub(super) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

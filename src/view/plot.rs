@@ -12,6 +12,7 @@ use plotters::series::{DashedLineSeries, LineSeries};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle, WHITE};
 
+use super::printable::printable;
 use crate::pipeline::Record;
 use crate::scene::Scene;
 use crate::study::{PathPoint, TapeSpring, equilibrium_path, snaps};
@@ -25,6 +26,16 @@ pub enum PlotError {
     /// No moment over rotation.
     #[error("only a tape spring whose ends turn has a moment to plot over a rotation")]
     NoMoment,
+    /// A number that no picture can show: axes would never be done with their marks.
+    #[error(
+        "{value} at load step {step} is too large to draw, or no number: `foldline verify` tells whether the log holds it"
+    )]
+    NotDrawable {
+        /// Load step of the report.
+        step: u64,
+        /// The number.
+        value: f64,
+    },
     /// The drawing library gave up.
     #[error("the plot could not be drawn: {0}")]
     Drawing(String),
@@ -35,6 +46,10 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for PlotE
         PlotError::Drawing(error.to_string())
     }
 }
+
+/// Largest number that is drawn, and shortest axis.
+const LARGEST: f64 = 1e30;
+const SHORTEST: f64 = 1e-12;
 
 const SIZE: (u32, u32) = (1000, 760);
 const UPPER_HEIGHT: u32 = 500;
@@ -56,9 +71,10 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// # Errors
 /// Where there is no equilibrium yet.
 pub fn moment_rotation_plot(scene: &Scene, records: &[Record], title: &str) -> Result<String, PlotError> {
+    drawable(records)?;
     let path = equilibrium_path(records);
     let last = path.last().ok_or(PlotError::NoEquilibrium)?;
-    let end_deg = path.iter().map(|point| point.parameter).fold(last.parameter, f64::max) * 1.02;
+    let end_deg = path.iter().map(|point| point.parameter).fold(last.parameter, f64::max).max(SHORTEST) * 1.02;
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
@@ -69,6 +85,20 @@ pub fn moment_rotation_plot(scene: &Scene, records: &[Record], title: &str) -> R
         root.present()?;
     }
     Ok(svg)
+}
+
+/// Refuses numbers that have no place on an axis.
+fn drawable(records: &[Record]) -> Result<(), PlotError> {
+    let numbers = records.iter().flat_map(|record| {
+        let report = &record.report;
+        let own = [report.parameter, report.attempted_parameter, report.moment_n_mm, report.strain_energy_n_mm];
+        let probe = report.probes.first().map(|probe| probe.value);
+        own.into_iter().chain(probe).map(|value| (report.step, value))
+    });
+    match numbers.into_iter().find(|(_, value)| value.is_nan() || value.abs() > LARGEST) {
+        Some((step, value)) => Err(PlotError::NotDrawable { step, value }),
+        None => Ok(()),
+    }
 }
 
 fn draw_moment(
@@ -86,11 +116,11 @@ fn draw_moment(
         .collect();
     let measured = std::iter::once((0.0, 0.0)).chain(path.iter().map(|point| (point.parameter, point.moment_n_mm)));
     let measured: Vec<(f64, f64)> = measured.collect();
-    let highest = measured.iter().chain(&law).map(|point| point.1).fold(f64::MIN_POSITIVE, f64::max);
+    let highest = measured.iter().chain(&law).map(|point| point.1).fold(SHORTEST, f64::max);
     let lowest = measured.iter().map(|point| point.1).fold(0.0, f64::min);
 
     let mut chart = ChartBuilder::on(area)
-        .caption(title, text(19))
+        .caption(printable(title), text(19))
         .margin(16)
         .margin_right(28)
         .x_label_area_size(28)
@@ -205,6 +235,7 @@ fn draw_path(chart: &mut Chart, path: &[PathPoint], points: &[(f64, f64)]) -> Re
 /// Where there is no equilibrium yet.
 pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result<Option<String>, PlotError> {
     let Some(probe) = scene.probes.first() else { return Ok(None) };
+    drawable(records)?;
     let path = equilibrium_path(records);
     let reading = records.iter().rev().find_map(|record| record.report.probes.first());
     let reading = reading.ok_or(PlotError::NoEquilibrium)?;
@@ -217,7 +248,7 @@ pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result
     let span = |value: fn(&(f64, f64)) -> f64| {
         let [low, high] =
             points.iter().map(value).fold([0.0, 0.0], |[low, high]: [f64; 2], v| [low.min(v), high.max(v)]);
-        let margin = 0.06 * (high - low).max(f64::MIN_POSITIVE);
+        let margin = 0.06 * (high - low).max(SHORTEST);
         low - margin..high + margin
     };
     let mut svg = String::new();
@@ -225,13 +256,14 @@ pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result
         let root = SVGBackend::with_string(&mut svg, (SIZE.0, UPPER_HEIGHT + 40)).into_drawing_area();
         root.fill(&WHITE)?;
         let mut chart = ChartBuilder::on(&root)
-            .caption(title, text(19))
+            .caption(printable(title), text(19))
             .margin(16)
             .margin_right(28)
             .x_label_area_size(48)
             .y_label_area_size(LEFT)
             .build_cartesian_2d(span(|point| point.0), span(|point| point.1))?;
-        draw_axes(&mut chart, Some(format!("{} ({})", probe.name, reading.unit)), "load factor")?;
+        let along = format!("{} ({})", probe.name, reading.unit);
+        draw_axes(&mut chart, Some(printable(&along).into_owned()), "load factor")?;
         draw_path(&mut chart, &path, &points)?;
         chart
             .configure_series_labels()
@@ -248,7 +280,7 @@ pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result
 }
 
 fn draw_elements(area: &Area, path: &[PathPoint], end_deg: f64) -> Result<(), PlotError> {
-    let height = |point: &PathPoint| ((point.elements[0] * point.elements[1]) as f64).max(1.0).log2();
+    let height = |point: &PathPoint| point.elements.iter().map(|count| *count as f64).product::<f64>().max(1.0).log2();
     let (low, high) = path.iter().map(height).fold((f64::MAX, 0.0f64), |(low, high), n| (low.min(n), high.max(n)));
     let (bottom, top) = ((low - 0.6).floor(), (high + 1.0).ceil());
     let mut chart = ChartBuilder::on(area)

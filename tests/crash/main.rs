@@ -1,5 +1,9 @@
 //! What happens to processes, disks and files, done to logs and to the running program on purpose.
 
+mod bounds;
+#[path = "../fuzz/crafted.rs"]
+#[allow(dead_code, reason = "shared with the fuzzing")]
+mod crafted;
 mod disk;
 mod findings;
 mod flips;

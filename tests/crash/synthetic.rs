@@ -92,7 +92,7 @@ pub fn next(state: &State) -> (State, Report) {
         attempted_parameter: new.parameter + 0.1,
         moment_n_mm: new.moment_n_mm,
         strain_energy_n_mm: new.strain_energy_n_mm,
-        elements: new.mesh.element_counts(),
+        elements: new.refined.as_ref().unwrap_or(&new.mesh).element_counts(),
         unknowns: 3 * new.displacement.len(),
         iterations: 4,
         factorizations: 5,
