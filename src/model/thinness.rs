@@ -2,10 +2,9 @@
 //! curvature and the shorter side of the surface.
 
 use crate::model::ModelError;
-use crate::model::place::sample_parameters;
 use crate::scene::{Material, Scene};
-use crate::shell::{PointReference, gauss_legendre, norm};
-use crate::spline::{Mesh, Spans, mid_surface_point};
+use crate::shell::{PointReference, cross, gauss_legendre, norm};
+use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 use crate::units::place;
 
 /// Share of a radius or a side from which on a thickness is said: plates so thick bend by shear too, by about (t/L)² more.
@@ -15,13 +14,15 @@ const MOST_OFFSET: f64 = 0.02;
 /// Error of a tube under pressure by offset over radius, c/R: to first order, the theory has the stretch u/R (1 − c/R) in the middle
 /// of the thickness for u/R (1 + c/R), squared in the energy, and an area of R for R − c.
 pub const ERROR_OF_OFFSET: f64 = 3.0;
-/// Gauss points a span for the length of a line.
-const LENGTH_POINTS: usize = 4;
+/// Gauss points a span for curvature, area and length.
+const POINTS: usize = 2;
+/// Share of the area whose radii are left aside: the tip of a cone, a small hole at a pole.
+const TIPS: f64 = 0.01;
 
 /// The lengths of a surface that its thickness is held against.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Smallest radius of curvature at sample points, mm; infinite for a plane.
+    /// Smallest radius of curvature but for tips, mm; infinite for a plane.
     pub radius_mm: f64,
     /// Where it is.
     pub at: [f64; 3],
@@ -29,30 +30,48 @@ pub struct Extent {
     pub side_mm: f64,
 }
 
+/// A point of the surface.
+struct Sample {
+    curvature: f64,
+    position: [f64; 3],
+    area: f64,
+}
+
 impl Extent {
     /// Of the surface of a mesh, which has a normal everywhere.
     pub fn of(mesh: &Mesh, material: &Material) -> Self {
-        let [us, vs] = [0, 1].map(|way| sample_parameters(mesh, way));
-        let curvature = |at: [f64; 2]| {
-            let point = mid_surface_point(mesh, &[], at);
-            (PointReference::new(point.derivatives, material, 1.0).largest_curvature(), point.position)
+        let [us, vs] = [0, 1].map(|way| nodes(mesh, way));
+        let sample = |[u, along]: [f64; 2], [v, across]: [f64; 2]| {
+            let SurfacePoint { position, derivatives } = mid_surface_point(mesh, &[], [u, v]);
+            let curvature = PointReference::new(derivatives, material, 1.0).largest_curvature();
+            Sample { curvature, position, area: along * across * norm(cross(derivatives[0], derivatives[1])) }
         };
-        let all = us.iter().flat_map(|u| vs.iter().map(|v| curvature([*u, *v])));
-        let (largest, at) = all.fold((0.0, [0.0; 3]), |worst, one| if one.0 > worst.0 { one } else { worst });
-        Self { radius_mm: 1.0 / largest, at, side_mm: side_mm(mesh, 0).min(side_mm(mesh, 1)) }
+        let mut samples: Vec<Sample> = us.iter().flat_map(|u| vs.iter().map(move |v| sample(*u, *v))).collect();
+        samples.sort_by(|one, other| other.curvature.total_cmp(&one.curvature));
+        let mut left = TIPS * samples.iter().map(|sample| sample.area).sum::<f64>();
+        let sharpest = samples.iter().find(|sample| {
+            left -= sample.area;
+            left < 0.0
+        });
+        let (curvature, at) = sharpest.map_or((0.0, [0.0; 3]), |sample| (sample.curvature, sample.position));
+        Self { radius_mm: 1.0 / curvature, at, side_mm: side_mm(mesh, 0).min(side_mm(mesh, 1)) }
     }
+}
+
+/// Gauss points of all spans of a direction, each with its weight.
+fn nodes(mesh: &Mesh, way: usize) -> Vec<[f64; 2]> {
+    let rule = gauss_legendre(POINTS);
+    let in_span = |[from, to]: [f64; 2]| {
+        let half = 0.5 * (to - from);
+        rule.iter().map(|[node, weight]| [from + half * (1.0 + node), half * weight]).collect::<Vec<_>>()
+    };
+    Spans::of(&mesh.knots[way], mesh.degree[way]).bounds.into_iter().flat_map(in_span).collect()
 }
 
 /// Length of the line through the middle that runs in a direction, mm.
 fn side_mm(mesh: &Mesh, way: usize) -> f64 {
-    let rule = gauss_legendre(LENGTH_POINTS);
-    let speed =
-        |at: f64| norm(mid_surface_point(mesh, &[], if way == 0 { [at, 0.5] } else { [0.5, at] }).derivatives[way]);
-    let span = |[from, to]: [f64; 2]| -> f64 {
-        let half = 0.5 * (to - from);
-        rule.iter().map(|[node, weight]| half * weight * speed(from + half * (1.0 + node))).sum()
-    };
-    Spans::of(&mesh.knots[way], mesh.degree[way]).bounds.into_iter().map(span).sum()
+    let point = |at: f64| mid_surface_point(mesh, &[], if way == 0 { [at, 0.5] } else { [0.5, at] });
+    nodes(mesh, way).into_iter().map(|[at, weight]| weight * norm(point(at).derivatives[way])).sum()
 }
 
 /// Refuses a body that is no shell, and a surface drawn too far from its middle.
