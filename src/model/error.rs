@@ -253,6 +253,55 @@ pub enum ModelError {
         /// Spans.
         least: usize,
     },
+    /// A body that its own curvature leaves no inside.
+    #[error(
+        "the thickness, {} mm, reaches the smallest radius of curvature of the surface, {} mm at {at}: a body so thick is no shell; \
+         are lengths given in another unit than mm, or is thickness_mm meant smaller?",
+        significant(*thickness_mm, 4),
+        significant(*radius_mm, 4)
+    )]
+    ThickerThanRadius {
+        /// Thickness, mm.
+        thickness_mm: f64,
+        /// Smallest radius of curvature, mm.
+        radius_mm: f64,
+        /// Where.
+        at: String,
+    },
+    /// A body as thick as it is wide.
+    #[error(
+        "the thickness, {} mm, reaches the shorter side of the surface, {} mm: a body so thick is no shell; are lengths given in \
+         another unit than mm, or is thickness_mm meant smaller?",
+        significant(*thickness_mm, 4),
+        significant(*side_mm, 4)
+    )]
+    ThickerThanSide {
+        /// Thickness, mm.
+        thickness_mm: f64,
+        /// Shorter side, mm.
+        side_mm: f64,
+    },
+    /// A curved surface drawn too far from the middle of the thickness.
+    #[error(
+        "the surface lies offset_mm = {offset_mm} off the middle of the thickness, and its smallest radius of curvature is {} mm at \
+         {at}: what this theory leaves out makes results wrong by up to {} % (a tube under pressure); draw the middle surface with \
+         its own radius, and write offset_mm = 0.0 (up to {} mm is taken here)",
+        significant(*radius_mm, 4),
+        significant(100.0 * error, 2),
+        significant(*most_mm, 2)
+    )]
+    OffsetTooLarge {
+        /// Offset, mm.
+        offset_mm: f64,
+        /// Smallest radius of curvature, mm.
+        radius_mm: f64,
+        /// Where.
+        at: String,
+        /// Error of a tube under pressure, of its value.
+        error: f64,
+        /// Largest offset that is taken, mm.
+        most_mm: f64,
+    },
     /// A mesh of lower degree than the surface has.
     #[error(
         "the surface has degree {geometry}, and the mesh degree {mesh} cannot hold it: raise mesh.degree to {geometry}"

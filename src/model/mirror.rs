@@ -78,6 +78,12 @@ impl Mirror {
         parameters.map(|parameter| self.point(mesh, parameter)).collect()
     }
 
+    /// The share of a vector across the plane, where that is more than rounding.
+    pub(super) fn share_across(&self, vector: [f64; 3]) -> Option<f64> {
+        let share = dot(vector, self.normal);
+        (share.abs() > 2.0 * ANGLE * norm(vector)).then_some(share)
+    }
+
     /// Whether a parameter across it is its own.
     fn is_at(&self, parameter: f64) -> bool {
         (parameter - self.parameter).abs() <= SAME_PARAMETER
@@ -195,8 +201,8 @@ fn shear_coupling(material: &Material, [a1, a2]: [[f64; 3]; 2], tangent: [f64; 3
         .collect()
 }
 
-/// Refuses what acts on the line itself, or everywhere, and would be undone by its mirror image. Behind an edge the image of a
-/// load elsewhere is not modelled; behind a line inside it is ([`check_own_image`]).
+/// Refuses what acts on the line itself, on a line that meets it, or everywhere, and would be undone by its mirror image. Behind
+/// an edge the image of a load elsewhere is not modelled; behind a line inside it is ([`check_own_image`]).
 fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
     let axis = place(mirror.normal);
     let normal = axis.trim_end_matches(" mm");
@@ -209,13 +215,17 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
         Place::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.way]),
         Place::Whole => false,
     };
+    // A line the other way meets the plane in a point.
+    let meets = |on: &Place| match on {
+        Place::Edge(edge) => side(*edge).0 != mirror.way,
+        Place::Line(direction, _) => direction.index() != mirror.way,
+        Place::Point(_) | Place::Whole => false,
+    };
     for action in &scene.actions {
         let across = |force: &ForceVector, unit: &str| match force {
-            ForceVector::Components(force) => {
-                let share = dot(*force, mirror.normal);
-                let off = share.abs() > 2.0 * ANGLE * norm(*force);
-                off.then(|| format!("with {} {unit} across it, along {normal}", significant(share, 4)))
-            }
+            ForceVector::Components(force) => mirror
+                .share_across(*force)
+                .map(|share| format!("with {} {unit} across it, along {normal}", significant(share, 4))),
             ForceVector::Along(_, SurfaceDirection::Outward) => Some("outward, across its plane".into()),
             // The surface crosses the plane at right angles: its normal lies in it, as does the centre of a symmetric one.
             ForceVector::Along(_, SurfaceDirection::Normal | SurfaceDirection::Radial) => None,
@@ -223,6 +233,10 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
         let how = match &action.kind {
             ActionKind::Force { on, force_n } if is_on(&Place::Point(*on)) => across(force_n, "N"),
             ActionKind::LineForce { on, force_n_per_mm } if is_on(on) => across(force_n_per_mm, "N/mm"),
+            // Outward of such a line lies in the plane, as its line crosses that at right angles.
+            ActionKind::LineForce { on, force_n_per_mm: force @ ForceVector::Components(_) } if meets(on) => {
+                across(force, "N/mm").map(|how| format!("at the end of its line, {how}"))
+            }
             ActionKind::AreaForce { force_n_per_mm2, .. } => across(force_n_per_mm2, "N/mm²"),
             ActionKind::Gravity { acceleration_m_s2 } => across(&ForceVector::Components(*acceleration_m_s2), "m/s²"),
             ActionKind::EdgeMoment { on, .. } if Some(*on) == mirror.edge => Some("as a moment about its edge".into()),

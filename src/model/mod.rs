@@ -29,6 +29,7 @@ mod supports;
 mod symmetric_line;
 mod symmetry_plane;
 mod tables;
+mod thinness;
 mod unknowns;
 
 pub(crate) use direction::{Site, direction_at};

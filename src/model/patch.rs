@@ -5,6 +5,7 @@ use crate::model::mirror::check_mirror_images;
 use crate::model::overhang::check_overhangs;
 use crate::model::shape::shape;
 use crate::model::subdivision::subdivide;
+use crate::model::thinness::check_thinness;
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
@@ -15,7 +16,7 @@ pub const MOST_CONTROL_POINTS: usize = 500_000;
 ///
 /// # Errors
 /// Where the ends of a tape spring leave no free control points between them, the mesh is too large, the surface is none
-/// that a shell can have, something is not its own mirror image at a plane of symmetry, or a load by the projected area
+/// that a shell can have, or too curved or small for its thickness or offset, something is not its own mirror image at a plane of symmetry, or a load by the projected area
 /// meets both sides.
 pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     let shape = shape(scene)?;
@@ -31,6 +32,7 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
         return Err(ModelError::TooManyControlPoints { elements: shape.elements, count });
     }
     let mesh = subdivide(shape.mesh, shape.elements)?;
+    check_thinness(scene, &mesh)?;
     check_mirror_images(scene, &mesh)?;
     check_overhangs(scene, &mesh)?;
     Ok(mesh)

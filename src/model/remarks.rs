@@ -1,21 +1,27 @@
 //! What the words of a scene come to where they leave it open.
 
-use crate::model::Unknowns;
+use crate::model::mirror::Mirror;
 use crate::model::place::parameters_of;
-use crate::scene::{Action, ActionKind, ForceVector, Geometry, Scene, SurfaceDirection};
-use crate::shell::{PointReference, cross, dot, norm, scaled};
+use crate::model::symmetry_plane::ROUNDING;
+use crate::model::thinness::{ERROR_OF_OFFSET, Extent, THICK};
+use crate::model::{FreeStrains, Loads, ModelError, Unknowns};
+use crate::scene::{Action, ActionKind, ForceVector, Geometry, History, Scene, SurfaceDirection};
+use crate::shell::{FreeStrain, cross, dot, norm, scaled};
 use crate::spline::{Mesh, Spans, mid_surface_point};
 use crate::units::{rounded, significant};
 
-/// Offset over radius from which on it is said. A tube under pressure on a surface t/2 off is 1.5 offset/R off.
-const LARGE_OFFSET: f64 = 5e-3;
+/// Offset over radius from which on it is said.
+const LARGE_OFFSET: f64 = 1e-3;
 /// Length of quadratic elements, in sqrt(R t) of the curvature along them, from which on it is said. The baseline on 4 across,
 /// 4.8 of these, has 384 N·mm at 8° in place of 285, and on 16, 1.2, it is right to 2 %.
 const LOCKED: f64 = 2.0;
 
-/// A sentence for each support of rigid motions (what it holds), for each action along the normal (which side that is), and for
-/// what the shell's theory or its elements leave out from the start.
-pub fn remarks(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Vec<String> {
+/// A sentence for each support of rigid motions (what it holds), for each action along the normal (which side that is) or across
+/// a plane of symmetry (what its image does), for loads that are none, and for what the shell's theory or its elements leave out from the start.
+///
+/// # Errors
+/// Where loads or planes of symmetry do not fit the mesh.
+pub fn remarks(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<Vec<String>, ModelError> {
     let supports = unknowns.supports().held_motions.iter().map(|held| {
         let name = &unknowns.supports().traces[held.support].name;
         let motions = match held.free.basis.ncols() {
@@ -28,26 +34,38 @@ pub fn remarks(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Vec<String> {
         )
     });
     let actions = scene.actions.iter().filter_map(|action| of_action(scene, mesh, action));
-    supports.chain(actions).chain(of_offset(scene, mesh)).chain(of_degree_2(scene, mesh)).collect()
+    let theory = of_thickness(scene, mesh).into_iter().chain(of_degree_2(scene, mesh));
+    let all =
+        supports.chain(actions).chain(of_images(scene, mesh)?).chain(of_nothing(scene, mesh, unknowns)?).chain(theory);
+    Ok(all.collect())
 }
 
-/// A surface off the middle of the thickness whose radius is not far larger: the shell's theory leaves z/R out.
-fn of_offset(scene: &Scene, mesh: &Mesh) -> Option<String> {
-    let offset_mm = scene.material.offset_mm();
-    let curvature = |sample: usize| {
-        let at = [(sample % 5) as f64 / 4.0, (sample / 5) as f64 / 4.0];
-        let derivatives = mid_surface_point(mesh, &[], at).derivatives;
-        PointReference::new(derivatives, &scene.material, 1.0).largest_curvature()
-    };
-    let share = offset_mm.abs() * (0..25).map(curvature).fold(0.0, f64::max);
-    (share > LARGE_OFFSET).then(|| {
+/// A shell that is thick for its radius or its side, and a curved surface off the middle of the thickness: what the theory of
+/// thin shells leaves out.
+fn of_thickness(scene: &Scene, mesh: &Mesh) -> Vec<String> {
+    let Extent { radius_mm, side_mm, .. } = Extent::of(mesh, &scene.material);
+    let (thickness_mm, offset_mm) = (scene.material.thickness_mm(), scene.material.offset_mm());
+    let lengths = [("smallest radius of curvature", radius_mm), ("shorter side", side_mm)];
+    let thick = lengths.into_iter().filter(|(_, length_mm)| thickness_mm >= THICK * length_mm).map(|(name, length_mm)| {
         format!(
-            "the surface lies {} mm off the middle of the thickness, {} % of its smallest radius: results may be off by as much and \
-             half again, and weight acts on the surface; draw the middle surface instead",
-            significant(offset_mm, 3),
-            significant(100.0 * share, 2)
+            "the thickness, {} mm, is {} % of the {name}, {} mm: the theory of thin shells, which leaves out shear across the \
+             thickness, is meant for thinner ones",
+            significant(thickness_mm, 3),
+            significant(100.0 * thickness_mm / length_mm, 2),
+            significant(length_mm, 3)
         )
-    })
+    });
+    let share = offset_mm.abs() / radius_mm;
+    let off = (share > LARGE_OFFSET).then(|| {
+        format!(
+            "the surface lies {} mm off the middle of the thickness, {} % of its smallest radius: results may be off by {} %, and \
+             weight acts on the surface; draw the middle surface with its own radius instead",
+            significant(offset_mm, 3),
+            significant(100.0 * share, 2),
+            significant(100.0 * ERROR_OF_OFFSET * share, 2)
+        )
+    });
+    thick.chain(off).collect()
 }
 
 /// Elements of degree 2 that are long for the curvature along them: a change of curvature stretches them.
@@ -77,6 +95,52 @@ fn of_degree_2(scene: &Scene, mesh: &Mesh) -> Option<String> {
             significant(LOCKED * layer, 3)
         )
     })
+}
+
+/// Loads, given motions and free strains that are zero throughout, or on places that are held.
+fn of_nothing(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<Option<String>, ModelError> {
+    let (loads, free_strains) = (Loads::new(scene, mesh)?, FreeStrains::new(scene, mesh));
+    let still = vec![[0.0; 3]; mesh.control_points.len()];
+    let histories = scene.actions.iter().map(|action| &action.history);
+    let kinks = histories.chain(scene.supports.iter().map(|support| &support.history)).flat_map(History::kinks);
+    let mut loaded = false;
+    for load_factor in kinks.chain([scene.load.target()]) {
+        let moves = unknowns.given_at(load_factor).iter().any(|value| *value != 0.0);
+        let strained = free_strains.at(load_factor).is_some_and(|state| state.strain != FreeStrain::default());
+        let forces = loads.forces(mesh, &still, load_factor);
+        let all: f64 = forces.iter().map(|force| norm(*force)).sum();
+        let placement = unknowns.place(&vec![0.0; unknowns.count()], load_factor);
+        let pushes = placement.restrict(&forces).iter().any(|force| force.abs() > ROUNDING * all);
+        if moves || strained || pushes {
+            return Ok(None);
+        }
+        loaded |= all > 0.0;
+    }
+    let why = match loaded {
+        true => "all loads are on places that supports hold, which take them up at once",
+        false => "all loads, given motions and free strains are zero",
+    };
+    Ok(Some(format!("nothing acts on the shell, and it will stay as it is: {why}")))
+}
+
+/// Forces across a plane of symmetry that its edge has no part in: the shell behind it is pulled the other way.
+fn of_images(scene: &Scene, mesh: &Mesh) -> Result<Vec<String>, ModelError> {
+    let mirrors = Mirror::all(scene, &scene.supports, mesh)?;
+    let of = |Action { name, kind, .. }: &Action| {
+        let (force, unit) = match kind {
+            ActionKind::Force { force_n: ForceVector::Components(force), .. } => (force, "N"),
+            ActionKind::LineForce { force_n_per_mm: ForceVector::Components(force), .. } => (force, "N/mm"),
+            _ => return None,
+        };
+        let edges = mirrors.iter().filter(|mirror| mirror.edge.is_some());
+        let (mirror, share) = edges.filter_map(|mirror| Some((mirror, mirror.share_across(*force)?))).next()?;
+        Some(format!(
+            "action \"{name}\" has {} {unit} across the plane of symmetry of support \"{}\": its image behind that pulls the other way",
+            significant(share.abs(), 4),
+            mirror.support
+        ))
+    };
+    Ok(scene.actions.iter().filter_map(of).collect())
 }
 
 fn of_action(scene: &Scene, mesh: &Mesh, Action { name, kind, .. }: &Action) -> Option<String> {

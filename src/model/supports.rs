@@ -155,10 +155,10 @@ impl Supports {
     pub fn contradiction(&self, constraint: usize) -> ModelError {
         let support = self.owner[constraint].map_or("the joints", |index| self.traces[index].name.as_str()).to_owned();
         let points: Vec<usize> = self.constraints[constraint].iter().map(|(component, _)| component / 3).collect();
-        let other = self
-            .traces
-            .iter()
-            .find(|trace| trace.name != support && points.iter().any(|point| trace.points.contains(point)));
+        // On one mesh those beside share a few control points with it; the one in the way shares most.
+        let shared = |trace: &Trace| points.iter().filter(|point| trace.points.contains(point)).count();
+        let others = self.traces.iter().filter(|trace| trace.name != support && shared(trace) > 0);
+        let other = others.rev().max_by_key(|trace| shared(trace));
         ModelError::Contradiction { support, other: other.map(|trace| trace.name.clone()) }
     }
 

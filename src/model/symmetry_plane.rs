@@ -31,15 +31,21 @@ pub enum NoPlane {
     },
     /// The surface leaves the plane at another angle.
     #[error(
-        "the surface crosses its plane at {at} {}° off a right angle (up to {}° is taken for rounding)",
+        "the surface crosses its plane at {at} {}° off a right angle, so that it leaves it by {} mm (up to {} mm, {POSITION} of its \
+         size, is taken for rounding)",
         significant(*off_deg, 3),
-        significant(ANGLE.to_degrees(), 2)
+        significant(*off_mm, 3),
+        significant(*tolerance_mm, 3)
     )]
     NotAtRightAngles {
         /// Angle, degrees.
         off_deg: f64,
         /// Where.
         at: String,
+        /// Largest distance from the plane at right angles to the surface, mm.
+        off_mm: f64,
+        /// What is taken for rounding, mm.
+        tolerance_mm: f64,
     },
     /// The lines of control points leave the plane at another angle.
     #[error(
@@ -102,12 +108,14 @@ pub(super) fn symmetry_plane(points: &[[f64; 3]], steps: &[[f64; 3]]) -> Result<
     if distance(farthest) > POSITION * size {
         // A plane line whose surface leaves it at an angle, or no plane at all: the line alone says which.
         let (off_mm, at) = off_own_plane(points);
-        return Err(match off_mm > POSITION * size {
-            true => NoPlane::NotPlane { off_mm, at: place(at), tolerance_mm: POSITION * size },
+        let tolerance_mm = POSITION * size;
+        return Err(match off_mm > tolerance_mm {
+            true => NoPlane::NotPlane { off_mm, at: place(at), tolerance_mm },
             false => {
                 let slant = |arm: [f64; 3]| dot(arm, normal).abs().atan2(norm(cross(arm, normal)));
                 let off = points.iter().map(|point| slant(sub(*point, points[0]))).fold(0.0, f64::max);
-                NoPlane::NotAtRightAngles { off_deg: off.to_degrees(), at: place(points[0]) }
+                let off_mm = distance(farthest);
+                NoPlane::NotAtRightAngles { off_deg: off.to_degrees(), at: place(points[0]), off_mm, tolerance_mm }
             }
         });
     }

@@ -53,9 +53,9 @@ impl Stages {
     /// What supports and actions of the scene come to where its words leave it open: a sentence each.
     ///
     /// # Errors
-    /// Where the supports do not fit the mesh of the state.
+    /// Where supports or loads do not fit the mesh of the state.
     pub fn remarks(&self, state: &State) -> Result<Vec<String>, ModelError> {
-        Ok(remarks(&self.scene, &state.mesh, &Unknowns::new(&self.scene, &state.mesh)?))
+        remarks(&self.scene, &state.mesh, &Unknowns::new(&self.scene, &state.mesh)?)
     }
 
     /// Runs a stage. `observer` sees every Newton iterate.

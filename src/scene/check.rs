@@ -8,7 +8,7 @@ use super::document::Document;
 use super::error::{Checked, Direction, Fault, Place, Problem, SceneError, Source};
 use super::key_table as keys;
 use super::read::{Found, Reader};
-use super::{actions, general, names, stage_order};
+use super::{actions, general, names, nearness, stage_order};
 use crate::units::significant;
 
 /// Length of the layer in which a cylinder feels its held end, in units of sqrt(R t): pi decay lengths of
@@ -186,6 +186,7 @@ fn check_steps(reader: &Reader<'_, '_>, supports: &[Support], actions: &[Action]
             ));
         }
     }
+    nearness::check(document, supports, actions)?;
     let moves = |support: &Support| match &support.hold {
         Hold::Displacement { displacement_mm } => {
             displacement_mm.iter().any(|value| value.is_some_and(|value| value != 0.0))

@@ -13,7 +13,7 @@
 //! | `read` | one entry to one value, within the limits of its key |
 //! | `table`, `general`, `actions` | tables whose keys depend on their kind: geometries, materials, supports, actions, probes |
 //! | `nurbs` | surfaces of the user's own |
-//! | `check`, `stage_order` | entries to a scene; what must hold between keys, and between stages |
+//! | `check`, `stage_order`, `nearness` | entries to a scene; what must hold between keys, between stages, between places |
 //! | `error`, `explain`, `render` | what can be wrong, in words, and with the text underlined |
 //! | `identity` | hash and differences of scenes |
 //! | `write`, `help` | a scene as TOML; the help text |
@@ -31,6 +31,7 @@ mod identity;
 mod key_table;
 mod keys;
 mod names;
+mod nearness;
 mod nurbs;
 mod read;
 mod render;

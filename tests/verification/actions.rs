@@ -477,6 +477,76 @@ fn what_the_words_of_a_scene_come_to_is_said() {
     assert_eq!(plate, "action \"q\" pushes towards +z, and keeps that direction");
 }
 
+/// Places that are almost one are refused, with both names and what to do.
+#[test]
+fn places_that_are_almost_one_are_refused() {
+    let plate = "kind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 20.0";
+    let lifted = |on: &str| format!("[[support]]\nname = \"lifted\"\non = {on}\nkind = \"displacement\"\nz_mm = 1.0\n");
+    let held = |on: &str| format!("[[support]]\nname = \"held\"\non = {on}\nkind = \"fixed\"\nhold = [\"z\"]\n");
+    let pushed =
+        |on: &str| format!("[[action]]\nname = \"push\"\non = {on}\nkind = \"force\"\nforce_n = [0.0, 0.0, 1.0]\n");
+    let read = |tables: &str| {
+        let text = format!(
+            "[geometry]\n{plate}\n[material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = 70000.0\npoissons_ratio = 0.3\n\
+             thickness_mm = 1.0\n[mesh]\nelements = [6, 4]\n[load]\nkind = \"steps\"\nincrement = 1.0\n\
+             [[support]]\nname = \"root\"\non = \"u-start\"\nkind = \"clamped\"\n{tables}"
+        );
+        parse(&text, "scene.toml").map_err(|error| error.to_string())
+    };
+    for (tables, names) in [
+        (lifted("\"u=0.000001\""), ["\"lifted\"", "the edge \"u-start\""]),
+        (lifted("\"v=0.99999\""), ["\"lifted\"", "the edge \"v-end\""]),
+        (held("\"u=0.3\"") + &lifted("\"u=0.300001\""), ["\"lifted\"", "support \"held\""]),
+        (held("[0.3, 0.5]") + &lifted("[0.30000001, 0.5]"), ["\"lifted\"", "support \"held\""]),
+        (held("\"u=0.3\"") + &pushed("[0.30005, 0.5]"), ["action \"push\"", "support \"held\""]),
+    ] {
+        let error = read(&tables).unwrap_err();
+        assert!(names.iter().all(|name| error.contains(name)) && error.contains("almost the same place"), "{error}");
+    }
+    for tables in [
+        held("\"u=0.3\"") + &lifted("\"u=0.3002\""),
+        held("[0.3, 0.5]") + &lifted("[0.30000001, 0.6]"),
+        held("\"v=0.3\"") + &pushed("[1.0, 0.3]"),
+    ] {
+        read(&tables).unwrap_or_else(|error| panic!("{error}\n{tables}"));
+    }
+}
+
+/// Of two supports that meet the same control points, the one that says otherwise is named.
+#[test]
+fn the_support_in_the_way_is_named() {
+    let tables = "[[support]]\nname = \"root\"\non = \"u-start\"\nkind = \"clamped\"\n\
+         [[support]]\nname = \"line\"\non = \"u=0.3\"\nkind = \"fixed\"\nhold = [\"z\"]\n\
+         [[support]]\nname = \"point\"\non = [0.3, 0.5]\nkind = \"displacement\"\nz_mm = 1.0\n";
+    let error = refused(shell("kind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 20.0", 1.0, [6, 4], tables));
+    assert!(error.contains("\"point\" gives a displacement that \"line\" does not allow"), "{error}");
+}
+
+/// Loads that are none, or act where the shell is held, are said.
+#[test]
+fn that_nothing_acts_is_said() {
+    let said = |action: &str| {
+        let root = "[[support]]\nname = \"root\"\non = \"u-start\"\nkind = \"clamped\"\n";
+        let plate = "kind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 20.0";
+        let stages = Stages::new(shell(plate, 1.0, [6, 2], &format!("{root}[[action]]\n{action}\n")));
+        stages.remarks(&stages.start().unwrap()).unwrap().join("; ")
+    };
+    let line = |on: &str, z: f64| format!("on = \"{on}\"\nkind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, {z:?}]");
+    let none = [
+        line("u-end", 0.0),
+        "kind = \"gravity\"\nacceleration_m_s2 = [0.0, 0.0, 0.0]".into(),
+        line("u-end", 0.1) + "\nhistory = [[0.0, 0.0], [1.0, 0.0]]",
+        "kind = \"natural-curvature\"\nchange_per_mm = [0.0, 0.0, 0.0]".into(),
+    ];
+    for action in &none {
+        assert!(said(action).contains("nothing acts on the shell") && said(action).contains("are zero"), "{action}");
+    }
+    assert!(said(&line("u-start", 1.0)).contains("on places that supports hold"));
+    for action in [line("u-end", 0.1), line("u-end", 0.1) + "\nhistory = [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]"] {
+        assert_eq!(said(&action), "", "{action}");
+    }
+}
+
 /// New words, written and read again.
 #[test]
 fn actions_and_supports_are_written_as_they_are_read() {

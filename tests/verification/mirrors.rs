@@ -120,8 +120,14 @@ fn loads_and_motions_that_a_mirror_turns_round_are_refused() {
         force("[0.0, 0.5]", "[0.0, 2.0, 3.0]"),
         force("[0.5, 0.5]", "[1.0, 2.0, 3.0]"),
         force("[1.0, 0.0]", "[1.0, 0.0, 0.0]"),
-        line("\"u-start\"", "[0.0, 0.5, 1.0]"),
+        line("\"u-start\"", "[0.0, 0.0, 1.0]"),
         line("\"u-end\"", "[1.0, 0.0, 0.0]"),
+        line("\"u-end\"", "[1.0, 0.0, 0.5]"),
+        line("\"u=0.5\"", "[1.0, 0.0, 0.5]"),
+        line("\"v=0.5\"", "[0.0, 0.5, 0.0]"),
+        line("\"v-end\"", "[0.0, 0.5, 0.1]"),
+        line("\"u-end\"", "1.0\nalong = \"outward\""),
+        line("\"v=0.5\"", "1.0\nalong = \"normal\""),
         moment("\"u-end\""),
         rigid("z_mm = 1.0"),
         rigid("x_mm = \"free\"\nrotation_y_deg = 10.0"),
@@ -136,6 +142,10 @@ fn loads_and_motions_that_a_mirror_turns_round_are_refused() {
         force("[1.0, 0.0]", "[1.0, 0.2, 0.0]"),
         force("[0.0, 0.0]", "[0.0, 1.0, 0.0]"),
         line("\"v-start\"", "[1.0, -0.5, 0.0]"),
+        line("\"u-end\"", "[1.0, 0.01, 0.0]"),
+        line("\"u=0.5\"", "[0.0, 0.01, 0.0]"),
+        line("\"v-end\"", "[0.1, 0.0, 0.0]"),
+        line("\"v=0.5\"", "[0.1, 0.5, 0.0]"),
         moment("\"u-start\""),
         rigid("y_mm = 0.1"),
         rigid("y_mm = \"free\"\nrotation_x_deg = 10.0"),
@@ -144,6 +154,60 @@ fn loads_and_motions_that_a_mirror_turns_round_are_refused() {
     ];
     let told = refused.map(|tables| start(&tables).expect_err(&tables).to_string());
     insta::assert_snapshot!(told.join("\n\n"));
+}
+
+/// A line that ends on a plane of symmetry bears no force across it there: a ring and a tube, held at one end and pulled at the
+/// other.
+#[test]
+fn lines_that_end_on_a_plane_of_symmetry_bear_no_force_across_it() {
+    let pulled = |geometry: &str, force: &str| {
+        let text = format!(
+            "[geometry]\n{geometry}\n[material]\n{ISOTROPIC}\nthickness_mm = 1.0\n[mesh]\nelements = [4, 4]\n\
+             [load]\nkind = \"steps\"\nincrement = 1.0\n[[support]]\non = \"u-start\"\nkind = \"clamped\"\n\
+             [[support]]\nname = \"one\"\non = \"v-start\"\nkind = \"symmetric\"\n\
+             [[support]]\nname = \"other\"\non = \"v-end\"\nkind = \"symmetric\"\n\
+             [[action]]\non = \"u-end\"\nkind = \"line-force\"\nforce_n_per_mm = {force}\n"
+        );
+        Stages::new(parse(&text, "scene.toml").unwrap()).start().map(|_| ())
+    };
+    let ring =
+        |arc: f64| format!("kind = \"annulus\"\ninner_radius_mm = 20.0\nouter_radius_mm = 50.0\narc_deg = {arc:?}");
+    let tube = "kind = \"cylinder-panel\"\nlength_mm = 100.0\nradius_mm = 50.0\narc_deg = 180.0\nfrom_deg = 0.0";
+    for (geometry, force) in [
+        (ring(90.0), "[0.0, 0.0, 0.1]"),
+        (ring(90.0), "0.1\nalong = \"outward\""),
+        (ring(70.0), "0.1\nalong = \"radial\""),
+        (tube.into(), "[0.1, 0.0, 0.0]"),
+        (tube.into(), "[0.0, 0.0, 0.1]"),
+    ] {
+        assert_eq!(pulled(&geometry, force), Ok(()), "{geometry} {force}");
+    }
+    for (geometry, force, support) in [
+        (ring(90.0), "[0.1, 0.0, 0.0]", "other"),
+        (ring(90.0), "[0.0, 0.1, 0.0]", "one"),
+        (ring(70.0), "[0.01, 0.0, 0.0]", "other"),
+        (tube.into(), "[0.0, 0.1, 0.0]", "one"),
+    ] {
+        let refused = pulled(&geometry, force);
+        let on = |error: &ModelError| matches!(error, ModelError::LoadNotMirrored { support: found, .. } if found == support);
+        assert!(refused.as_ref().is_err_and(on), "{geometry} {force}: {refused:?}");
+    }
+}
+
+/// A pull beside a plane of symmetry is taken, and what its image does is said.
+#[test]
+fn what_the_image_of_a_pull_does_is_said() {
+    let said = |force: &str| {
+        let action =
+            format!("[[action]]\nname = \"pull\"\non = \"v=0.5\"\nkind = \"line-force\"\nforce_n_per_mm = {force}\n");
+        let stages = Stages::new(quarter(PLATE, ISOTROPIC, &format!("{HELD}{action}")));
+        stages.remarks(&stages.start().unwrap()).unwrap().join("; ")
+    };
+    assert_eq!(
+        said("[0.0, -0.5, 0.1]"),
+        "action \"pull\" has 0.5 N/mm across the plane of symmetry of support \"side\": its image behind that pulls the other way"
+    );
+    assert_eq!(said("[0.0, 0.0, 0.1]"), "");
 }
 
 /// Corners of a quarter plate, mm, in the order of its net.

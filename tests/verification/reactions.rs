@@ -340,12 +340,12 @@ fn reactions_and_loads_are_in_equilibrium() {
     let other = support("other", "\"v-start\"", "kind = \"clamped\"");
     let plane = support("plane", "\"u-end\"", "kind = \"symmetric\"");
     let point = support("point", "[0.1, 0.55]", "kind = \"displacement\"\nz_mm = 0.3");
-    let load = action("on = \"v-end\"\nkind = \"line-force\"\nforce_n_per_mm = [0.01, 0.05, 0.03]");
+    let load = action("on = \"v-end\"\nkind = \"line-force\"\nforce_n_per_mm = [0.0, 0.05, 0.03]");
     let orders = [[&one, &other, &plane, &point], [&plane, &point, &other, &one]];
     let [first, second] = orders.map(|order| {
         let tables: String = order.into_iter().cloned().collect();
         let found = solve(shell.scene(&(tables + &load), &names));
-        for (c, acting) in [0.3, 1.5, 0.9].into_iter().enumerate() {
+        for (c, acting) in [0.0, 1.5, 0.9].into_iter().enumerate() {
             let sum: f64 = names.iter().map(|name| found.all(name)[c]).sum();
             assert!((sum + acting).abs() < 1e-8, "{sum} against {acting}");
         }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use foldline::model::{ModelError, starting_mesh};
 use foldline::pipeline::{Report, Stages};
-use foldline::scene::{Geometry, NurbsPatch, Scene, Seam, parse};
+use foldline::scene::{Geometry, Material, NurbsPatch, Scene, Seam, parse};
 use foldline::spline::{Mesh, Spans, mid_surface_point};
 use foldline::state::State;
 
@@ -16,11 +16,14 @@ fn read(text: &str) -> Scene {
 
 const PLATE: &str = include_str!("scenes/near-equal-knots.toml");
 
-/// A surface, meshed: nothing of a scene but this decides whether it is taken.
+/// A surface, meshed: nothing of a scene but this decides whether it is taken, as its shell is thin.
 fn meshed(patch: NurbsPatch, degree: [usize; 2], elements: [usize; 2]) -> Result<Mesh, ModelError> {
     let mut scene = read(include_str!("scenes/elements-not-honoured.toml"));
     scene.geometry = Geometry::Nurbs(patch);
     (scene.mesh.degree, scene.mesh.elements) = (degree, elements);
+    if let Material::Isotropic { thickness_mm, .. } = &mut scene.material {
+        *thickness_mm = 1e-3;
+    }
     starting_mesh(&scene)
 }
 
@@ -306,4 +309,76 @@ fn a_kink_of_rounding_is_none() {
     assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
     let refused = Stages::new(bent(0.05)).start().unwrap_err().to_string();
     assert!(refused.contains("a kink of 0.229° at (50, 0, 0.05) mm"), "{refused}");
+}
+
+/// A shell on any geometry, with a thickness and an offset, under pressure.
+fn of_thickness(geometry: &str, supports: &str, thickness_mm: f64, offset_mm: f64) -> Scene {
+    read(&format!(
+        "[geometry]\n{geometry}\n[material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = 70000.0\npoissons_ratio = 0.3\n\
+         thickness_mm = {thickness_mm:?}\noffset_mm = {offset_mm:?}\n[mesh]\nelements = [4, 8]\n\
+         [load]\nkind = \"steps\"\nincrement = 1.0\n{supports}\
+         [[action]]\nkind = \"pressure\"\npressure_mpa = 1e-6\n"
+    ))
+}
+
+const CLAMPED: &str = "[[support]]\non = \"u-start\"\nkind = \"clamped\"\n";
+/// Those of a quarter of a tube, and how much it grows in its middle.
+const QUARTER: &str = "[[support]]\non = \"u-start\"\nkind = \"symmetric\"\n\
+     [[support]]\non = \"v-start\"\nkind = \"symmetric\"\n[[support]]\non = \"v-end\"\nkind = \"symmetric\"\n\
+     [[probe]]\nname = \"grows\"\nkind = \"displacement\"\non = [0.0, 0.5]\ncomponent = \"radial\"\n";
+
+fn remarks(scene: Scene) -> Result<String, ModelError> {
+    let stages = Stages::new(scene);
+    Ok(stages.remarks(&stages.start()?)?.join("; "))
+}
+
+const SHORT_TUBE: &str =
+    "kind = \"cylinder-panel\"\nlength_mm = 30.0\nradius_mm = 20.0\narc_deg = 90.0\nfrom_deg = 45.0";
+
+/// On every geometry: what is thicker than it is wide or round is refused, and said from a fifth on.
+#[test]
+fn thickness_is_held_against_radius_and_side() {
+    let bowl = "kind = \"nurbs\"\ndegrees = [1, 2]\nknots_u = [0, 0, 1, 1]\nknots_v = [0, 0, 0, 1, 1, 1]\n\
+                weights = [1, 0.7071067811865476, 1, 1, 0.7071067811865476, 1]\n\
+                control_points_mm = [[0, 5, 0], [0, 5, 5], [0, 0, 5], [60, 5, 0], [60, 5, 5], [60, 0, 5]]";
+    let plate = |length: f64, width: f64| format!("kind = \"plate\"\nlength_mm = {length:?}\nwidth_mm = {width:?}");
+    let told = |geometry: &str, thickness_mm: f64| remarks(of_thickness(geometry, CLAMPED, thickness_mm, 0.0));
+    for (geometry, side) in [
+        (plate(100.0, 20.0), 20.0),
+        (plate(0.05, 0.1), 0.05),
+        ("kind = \"annulus\"\ninner_radius_mm = 2.0\nouter_radius_mm = 5.0\narc_deg = 90.0".into(), 3.0),
+    ] {
+        let refused = told(&geometry, 1.01 * side);
+        let is_side = |error: &ModelError| matches!(error, ModelError::ThickerThanSide { side_mm, .. } if (side_mm / side - 1.0).abs() < 1e-9);
+        assert!(refused.as_ref().is_err_and(is_side), "{geometry}: {refused:?}");
+        let thick = told(&geometry, 0.25 * side).unwrap();
+        assert!(thick.contains("is 25 % of the shorter side"), "{geometry}: {thick}");
+        assert!(!told(&geometry, 0.19 * side).unwrap().contains("thickness"), "{geometry}");
+    }
+    let refused = told(bowl, 5.1);
+    let is_radius = |error: &ModelError| matches!(error, ModelError::ThickerThanRadius { radius_mm, .. } if (radius_mm / 5.0 - 1.0).abs() < 1e-9);
+    assert!(refused.as_ref().is_err_and(is_radius), "{refused:?}");
+    let thick = told(SHORT_TUBE, 18.0).unwrap();
+    assert!(thick.contains("is 90 % of the smallest radius of curvature, 20 mm"), "{thick}");
+    assert!(thick.contains("of the shorter side, 30 mm"), "{thick}");
+}
+
+/// A tube under pressure that is drawn on its inner or outer face is off by 3 offset/R, which is said, and refused beyond 2 % of R.
+#[test]
+fn an_offset_on_a_curved_shell_is_said_and_refused() {
+    let grows = |offset_mm: f64| end_of(of_thickness(SHORT_TUBE, QUARTER, 0.4, offset_mm)).1.probes[0].value;
+    for offset_mm in [0.1, -0.1, 0.2, -0.2] {
+        // Pushed with p R at its surface, the middle of radius R − c grows by p R (R − c)/(E t).
+        let right = 1e-6 * 20.0 * (20.0 - offset_mm) / (70_000.0 * 0.4);
+        let off = grows(offset_mm) / right - 1.0;
+        let expected = 3.0 * offset_mm / 20.0;
+        assert!((off / expected - 1.0).abs() < 0.1, "{offset_mm}: off by {off}, {expected} is said");
+    }
+    let told = |offset_mm: f64| remarks(of_thickness(SHORT_TUBE, QUARTER, 1.0, offset_mm));
+    let said = told(-0.2).unwrap();
+    assert!(said.contains("1 % of its smallest radius: results may be off by 3 %"), "{said}");
+    assert!(!told(0.019).unwrap().contains("off the middle"));
+    assert!(matches!(told(0.41), Err(ModelError::OffsetTooLarge { .. })));
+    let refused = told(-0.5).unwrap_err().to_string();
+    assert!(refused.contains("offset_mm = -0.5") && refused.contains("wrong by up to 7.5 %"), "{refused}");
 }

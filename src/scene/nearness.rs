@@ -1,0 +1,97 @@
+//! Places that are almost one: what holds or moves two of them differently tears at a gap that no element resolves.
+
+use super::data::{Action, ActionKind, Edge, ParametricDirection, Place, Support};
+use super::document::Document;
+use super::error::Checked;
+use super::table::Table;
+use crate::units::significant;
+
+/// Fractions of a side by which places are apart, or one.
+const APART: f64 = 1e-4;
+/// The edges, as a scene calls them.
+const EDGES: [(Edge, &str); 4] =
+    [(Edge::UStart, "u-start"), (Edge::UEnd, "u-end"), (Edge::VStart, "v-start"), (Edge::VEnd, "v-end")];
+
+/// A place of a scene and where it is written.
+struct Site<'a, 'd, 't> {
+    name: String,
+    on: Place,
+    table: &'a Table<'d, 't>,
+}
+
+/// Refuses supports and actions on places that almost coincide, or almost lie on an edge.
+pub(super) fn check(document: &Document<'_>, supports: &[Support], actions: &[Action]) -> Checked<()> {
+    let (held, loaded) = (document.tables("support"), document.tables("action"));
+    let supports = supports.iter().zip(&held).map(|(support, table)| Site {
+        name: format!("support \"{}\"", support.name),
+        on: support.on,
+        table,
+    });
+    let actions = actions.iter().zip(&loaded).filter_map(|(action, table)| {
+        Some(Site { name: format!("action \"{}\"", action.name), on: place_of(&action.kind)?, table })
+    });
+    let mut before: Vec<Site> = Vec::new();
+    for site in supports.chain(actions) {
+        let edges = EDGES.iter().map(|(edge, name)| (Place::Edge(*edge), format!("the edge \"{name}\"")));
+        let others = before.iter().map(|other| (other.on, other.name.clone()));
+        let mut gaps = edges.chain(others).filter_map(|(on, name)| Some((gap(site.on, on)?, name)));
+        if let Some((gap, other)) = gaps.next() {
+            return Err(site.table.wrong(
+                site.table.place_of("on").as_ref(),
+                format!("{} lies {} of a side beside {other}, which is almost the same place", site.name, significant(gap, 2)),
+                format!("no element resolves what is between them: write the same place for both, or put them {APART} of the side apart"),
+            ));
+        }
+        before.push(site);
+    }
+    Ok(())
+}
+
+/// Where an action is, unless it is on the whole surface.
+fn place_of(kind: &ActionKind) -> Option<Place> {
+    match kind {
+        ActionKind::Force { on, .. } => Some(Place::Point(*on)),
+        ActionKind::LineForce { on, .. } => Some(*on),
+        ActionKind::EdgeMoment { on, .. } => Some(Place::Edge(*on)),
+        _ => None,
+    }
+}
+
+/// Fractions of u and v that a place has; `None` for one that it runs along.
+fn fractions(on: Place) -> [Option<f64>; 2] {
+    match on {
+        Place::Edge(edge) => {
+            let (direction, at_end) = edge.side();
+            fractions(Place::Line(direction, if at_end { 1.0 } else { 0.0 }))
+        }
+        Place::Line(ParametricDirection::U, fraction) => [Some(fraction), None],
+        Place::Line(ParametricDirection::V, fraction) => [None, Some(fraction)],
+        Place::Point(at) => at.map(Some),
+        Place::Whole => [None; 2],
+    }
+}
+
+/// How far two places are apart that are almost one, as a fraction of a side.
+fn gap(one: Place, other: Place) -> Option<f64> {
+    let [one, other] = [one, other].map(fractions);
+    let apart = (0..2).filter_map(|way| Some((one[way]? - other[way]?).abs())).fold(0.0, f64::max);
+    (0.0 < apart && apart < APART).then_some(apart)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_one_or_apart_or_almost_one() {
+        let line = |u: f64| Place::Line(ParametricDirection::U, u);
+        assert_eq!(gap(line(1e-6), Place::Edge(Edge::UStart)), Some(1e-6));
+        assert!(gap(Place::Point([0.3, 0.5]), Place::Point([0.300_01, 0.5])).is_some());
+        assert!(gap(Place::Point([0.3, 0.5]), line(0.300_01)).is_some());
+        assert_eq!(gap(Place::Point([0.3, 0.5]), Place::Point([0.300_01, 0.6])), None);
+        assert_eq!(gap(Place::Point([0.3, 0.5]), line(0.3)), None);
+        assert_eq!(gap(line(0.3), line(0.301)), None);
+        assert_eq!(gap(line(1e-6), Place::Edge(Edge::VStart)), None);
+        assert_eq!(gap(line(0.3), Place::Whole), None);
+    }
+}
