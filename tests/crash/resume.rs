@@ -206,7 +206,7 @@ fn two_writers_do_not_meet() {
     first.commit(&run[1].0, &run[1].1).unwrap();
 
     // A file system without locks: a rival comes in all the same, and leaves its token.
-    fs::write(folder.file("run.mcap.lease"), "another token\nprocess 1 (elsewhere)\n").unwrap();
+    fs::write(folder.file("run.mcap.lease"), "00112233445566778899aabbccddeeff\nprocess 1 (elsewhere)\n").unwrap();
     let before = fs::read(&path).unwrap();
     let error = first.commit(&run[2].0, &run[2].1).unwrap_err();
     assert!(matches!(error, WriteError::Lock(LockError::Lost { .. })), "{error}");
@@ -249,7 +249,7 @@ fn what_lies_beside_a_log_is_no_obstacle() {
     let path = folder.file("run.mcap");
     write(&path, &synthetic::run(3, 2), End::Dropped);
     fs::write(folder.file("run.mcap.new"), "half a copy").unwrap();
-    fs::write(folder.file("run.mcap.lease"), "token of a dead process\n").unwrap();
+    fs::write(folder.file("run.mcap.lease"), "00112233445566778899aabbccddeeff\nprocess 1 (dead)\n").unwrap();
     fs::write(folder.file("run.mcap.lock"), "").unwrap();
     resume_and_finish(&path, 5);
     assert_faultless(&path);

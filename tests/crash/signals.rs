@@ -168,7 +168,7 @@ fn the_one_that_lost_the_lease_stops() {
     std::fs::remove_file(place.file("run.mcap.lock")).unwrap();
     place.foldline("resume run.mcap --until 8").ends(0);
     let after = place.read("run.mcap");
-    place.write("run.mcap.lease", "another token\nprocess 1 (elsewhere)\n");
+    place.write("run.mcap.lease", "00112233445566778899aabbccddeeff\nprocess 1 (elsewhere)\n");
     run.send("CONT");
     let (said, reported) = run.end();
     said.ends(1).says(&["run.mcap was taken over by process 1 (elsewhere): this run stops and adds nothing to it"]);

@@ -126,7 +126,7 @@ fn rounding_on_a_path_is_called_rounding() {
             if report.stage == Stage::SwitchBranch {
                 continue;
             }
-            let (state, _) = stages.run(report.stage, &before, &mut |_, _| {}).unwrap();
+            let (state, _) = stages.run(report.stage, &before, &mut |_| {}).unwrap();
             let verdict = verdict(&compare(&log.state(index).unwrap(), &state));
             rounded += usize::from(matches!(verdict, Verdict::WithinTolerance(_)));
             assert!(!matches!(verdict, Verdict::Different(_)), "stage {index}, {}: {verdict:?}", report.stage);
