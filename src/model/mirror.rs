@@ -235,7 +235,7 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
             ActionKind::LineForce { on, force_n_per_mm } if is_on(on) => across(force_n_per_mm, "N/mm"),
             // Outward of such a line lies in the plane, as its line crosses that at right angles.
             ActionKind::LineForce { on, force_n_per_mm: force @ ForceVector::Components(_) } if meets(on) => {
-                across(force, "N/mm").map(|how| format!("at the end of its line, {how}"))
+                across(force, "N/mm").map(|how| format!("where its line meets it, {how}"))
             }
             ActionKind::AreaForce { force_n_per_mm2, .. } => across(force_n_per_mm2, "N/mm²"),
             ActionKind::Gravity { acceleration_m_s2 } => across(&ForceVector::Components(*acceleration_m_s2), "m/s²"),
