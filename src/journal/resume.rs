@@ -17,7 +17,6 @@
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use super::backend::{Backend, FileBackend, beside};
 use super::damage::Completeness;
@@ -34,7 +33,6 @@ use super::reader::ReadError;
 use super::recovery::{CopyError, copy};
 use super::writer::JournalWriter;
 use crate::scene::SyncPolicy;
-use crate::state::MeshHash;
 use crate::whole_file::write_new;
 
 /// Why a run cannot go on from a log.
@@ -212,19 +210,12 @@ impl Resume {
             source,
         })?;
         let writer = JournalWriter {
-            encoder,
-            backend: Box::new(backend),
             lock: Some(lock),
-            log: name,
-            sync,
-            viewer: None,
             index,
             known: known(&log, log.commits()),
-            mesh_hash: MeshHash::default(),
             last: log.last_commit().copied(),
             length,
-            synced: Instant::now(),
-            given_up: false,
+            ..JournalWriter::with(encoder, Box::new(backend), &name, sync)
         };
         Ok(Resumed { writer, log, dropped })
     }
@@ -253,19 +244,11 @@ impl Resume {
             let _ = fs::remove_file(&index);
         }
         let writer = JournalWriter {
-            encoder,
-            backend: Box::new(backend),
             lock: Some(lock),
-            log: name,
-            sync,
-            viewer: None,
-            index: None,
             known: known(&log, keep),
-            mesh_hash: MeshHash::default(),
             last: keep.checked_sub(1).map(|last| log.entries()[last].record.commit),
             length,
-            synced: Instant::now(),
-            given_up: false,
+            ..JournalWriter::with(encoder, Box::new(backend), &name, sync)
         };
         Ok(Resumed { writer, log, dropped })
     }

@@ -262,8 +262,17 @@ impl JournalWriter {
     /// Where the backend cannot be written.
     pub fn on(backend: Box<dyn Backend>, log: &str, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
         let encode = |source| WriteError::Encode { ordinal: 0, log: log.to_owned(), source };
-        let mut writer = Self {
-            encoder: Encoder::new(&library()).map_err(|source| encode(source.into()))?,
+        let encoder = Encoder::new(&library()).map_err(|source| encode(source.into()))?;
+        let mut writer = Self::with(encoder, backend, log, sync);
+        writer.encoder.manifest(manifest).map_err(encode)?;
+        writer.append()?;
+        Ok(writer)
+    }
+
+    /// A writer that has appended nothing, and holds no lock.
+    pub(super) fn with(encoder: Encoder, backend: Box<dyn Backend>, log: &str, sync: SyncPolicy) -> Self {
+        Self {
+            encoder,
             backend,
             lock: None,
             log: log.to_owned(),
@@ -276,10 +285,7 @@ impl JournalWriter {
             length: 0,
             synced: Instant::now(),
             given_up: false,
-        };
-        writer.encoder.manifest(manifest).map_err(encode)?;
-        writer.append()?;
-        Ok(writer)
+        }
     }
 
     /// The same writer, with messages for viewers in every commit from here on.

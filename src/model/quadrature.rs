@@ -116,7 +116,6 @@ fn balanced(mesh: &Mesh, direction: usize, least: &[usize], stretching_over_bend
 
 /// Whether the undeformed surface cannot be unrolled.
 fn is_curved_both_ways(mesh: &Mesh) -> bool {
-    let still = vec![[0.0; 3]; mesh.control_points.len()];
     let parameter = |direction: usize, k: usize| {
         let (knots, degree) = (&mesh.knots[direction], mesh.degree[direction]);
         let (from, to) = (knots[degree], knots[knots.len() - 1 - degree]);
@@ -124,7 +123,7 @@ fn is_curved_both_ways(mesh: &Mesh) -> bool {
     };
     let (mut gauss, mut normal) = (0.0_f64, 0.0_f64);
     for k in 0..SAMPLES * SAMPLES {
-        let point = mid_surface_point(mesh, &still, [parameter(0, k / SAMPLES), parameter(1, k % SAMPLES)]);
+        let point = mid_surface_point(mesh, &[], [parameter(0, k / SAMPLES), parameter(1, k % SAMPLES)]);
         let [a1, a2, a11, a22, a12] = point.derivatives;
         let cross = cross(a1, a2);
         let [b11, b22, b12] = [a11, a22, a12].map(|second| dot(second, cross) / norm(cross));
