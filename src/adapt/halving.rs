@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use crate::adapt::project_displacements;
-use crate::equilibrium::{LinearRelease, Standing, Workspace};
+use crate::equilibrium::{LinearBuckling, LinearRelease, Standing, Workspace};
 use crate::model::MOST_CONTROL_POINTS;
 use crate::scene::Scene;
 use crate::shell::norm;
@@ -47,7 +47,17 @@ pub struct Halving {
     pub held: f64,
 }
 
-impl Halving {
+/// An equilibrium on the mesh with every element halved, as it was found and relaxed by one step of Newton's method.
+#[derive(Debug)]
+pub struct Halved {
+    work: Workspace,
+    halving: Halving,
+    relaxed: LinearRelease,
+    parameter: f64,
+    largest_force: f64,
+}
+
+impl Halved {
     /// Of an equilibrium; `None` where the halved mesh has no factor, does not fit in memory, or has more than a fifth of
     /// [`MOST_CONTROL_POINTS`].
     pub fn of(scene: &Scene, state: &State) -> Option<Self> {
@@ -65,12 +75,35 @@ impl Halving {
         let integrated = work.energy(&displacement, state.parameter);
         let at = Standing { displacement: &displacement, ..Standing::of(state) };
         let held = work.energy(&vec![[0.0; 3]; displacement.len()], state.parameter);
-        let LinearRelease { energy: released, motion_mm } = work.linear_release(at).ok()?;
+        let relaxed = work.linear_release(at).ok()?;
         let energy = state.strain_energy_n_mm / scene.symmetry.copies() as f64;
         let largest = displacement.iter().map(|moved| norm(*moved)).fold(0.0, f64::max);
-        Some(Self { energy, integrated, released, motion_mm, sizes_mm: [largest, longest_side(&finer)], held })
+        let sizes_mm = [largest, longest_side(&finer)];
+        let LinearRelease { energy: released, motion_mm, .. } = relaxed;
+        let halving = Halving { energy, integrated, released, motion_mm, sizes_mm, held };
+        Some(Self { work, halving, relaxed, parameter: state.parameter, largest_force: state.largest_force_n })
     }
 
+    /// What halving changes of the energy.
+    pub fn halving(&self) -> Halving {
+        self.halving
+    }
+
+    /// The workspace of the halved mesh and the relaxed shape on it.
+    pub fn relaxed(&mut self) -> (&mut Workspace, Standing<'_>) {
+        let LinearRelease { displacement, turns, .. } = &self.relaxed;
+        let Self { parameter, largest_force, .. } = *self;
+        (&mut self.work, Standing { displacement, turns, parameter, largest_force })
+    }
+
+    /// How the shell has buckled on the halved mesh, if it has.
+    pub fn buckling(&mut self) -> Option<LinearBuckling> {
+        let (work, at) = self.relaxed();
+        LinearBuckling::of(work, at).ok().flatten()
+    }
+}
+
+impl Halving {
     /// Whether the shell hardly moves on the way to equilibrium on the halved mesh.
     pub fn is_still(&self) -> bool {
         let [displacement, side] = self.sizes_mm;

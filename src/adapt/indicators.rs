@@ -196,3 +196,33 @@ pub fn element_strains(
     };
     tables.points.element_points(element).iter().enumerate().map(at_point).collect()
 }
+
+/// The largest magnitude of a Green–Lagrange strain along u or v in a surface of the shell (membrane strain and half the
+/// thickness times the bending strain), and the middle of the element where it is, as parameters (u, v).
+pub fn largest_strain(
+    discretization: &Discretization,
+    displacement: &[[f64; 3]],
+    thickness_mm: f64,
+) -> (f64, [f64; 2]) {
+    let elements = discretization.tables.elements;
+    let of_element = |element: usize| {
+        let points = element_strains(discretization, displacement, element);
+        let values = points.iter().flat_map(|(strains, lengths)| {
+            [0, 1].map(|axis| {
+                let of_surface = strains.membrane[axis].abs() + 0.5 * thickness_mm * strains.bending[axis].abs();
+                of_surface / (lengths[axis] * lengths[axis])
+            })
+        });
+        values.fold(0.0, f64::max)
+    };
+    let values: Vec<f64> = (0..elements[0] * elements[1]).into_par_iter().map(of_element).collect();
+    let largest =
+        (0..values.len()).fold(0, |best, element| if values[element] > values[best] { element } else { best });
+    let mesh = &discretization.mesh;
+    let at = [largest / elements[1], largest % elements[1]];
+    let middle = |way: usize| {
+        let [from, to] = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds[at[way]];
+        0.5 * (from + to)
+    };
+    (values[largest], [middle(0), middle(1)])
+}

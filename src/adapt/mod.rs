@@ -4,6 +4,6 @@ mod halving;
 mod indicators;
 mod refinement;
 
-pub use halving::Halving;
-pub use indicators::{Blocked, Indicators, element_strains, evaluate_indicators};
+pub use halving::{Halved, Halving};
+pub use indicators::{Blocked, Indicators, element_strains, evaluate_indicators, largest_strain};
 pub use refinement::project_displacements;

@@ -6,12 +6,16 @@ use crate::equilibrium::solve_error::SolveError;
 use crate::shell::norm;
 
 /// What the way to equilibrium comes to, to first order, with the residual r on the free unknowns and the stiffness K.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LinearRelease {
     /// ½ rᵀK⁻¹r of the model, N·mm; negative where K is not positive definite and r mostly in its negative part.
     pub energy: f64,
     /// The largest motion of a control point in K⁻¹r, mm.
     pub motion_mm: f64,
+    /// Displacement of the control points with K⁻¹r, mm.
+    pub displacement: Vec<[f64; 3]>,
+    /// Rotation vectors of the rigid sections with it, where one of them turns freely.
+    pub turns: Vec<[f64; 3]>,
 }
 
 impl Workspace {
@@ -29,6 +33,10 @@ impl Workspace {
         let mut step = residual.clone();
         self.tangent.solver.solve(&mut step);
         let motion_mm = placement.velocity(&step, &[]).iter().map(|motion| norm(*motion)).fold(0.0, f64::max);
-        Ok(LinearRelease { energy: 0.5 * product(&residual, &step), motion_mm })
+        let moved: Vec<f64> = free.iter().zip(&step).map(|(value, change)| value + change).collect();
+        let relaxed = unknowns.place(&moved, at.parameter);
+        let turns = if unknowns.turns_are_unknown() { relaxed.turns() } else { Vec::new() };
+        let energy = 0.5 * product(&residual, &step);
+        Ok(LinearRelease { energy, motion_mm, displacement: relaxed.displacement(), turns })
     }
 }

@@ -30,7 +30,7 @@ pub use newton::{Effort, Equilibrium, Iterate, Observer, Solved, Standing, Works
 pub use solve_error::{SolveError, WorkspaceError};
 pub use sparse::DenseProduct;
 pub use sparse::FactorError;
-pub use stability::{SoftMode, soft_mode};
+pub use stability::{LinearBuckling, SoftMode, soft_mode};
 pub use symmetry::SymmetryError;
 pub use timing::{KernelCost, KernelRun};
 

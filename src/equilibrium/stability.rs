@@ -66,6 +66,58 @@ pub fn soft_mode(work: &mut Workspace, at: Standing) -> Result<SoftMode, SolveEr
     Ok(SoftMode { eigenvalue, shape, free, largest_at, iterations, factorizations })
 }
 
+/// A shell that has buckled, or is about to, with the load at which it did to first order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearBuckling {
+    /// Negative pivots of the stiffness at the state.
+    pub negative: usize,
+    /// The scene's parameter at which the softest mode loses its stiffness, were that linear in the parameter from the
+    /// undeformed shell on: exact where the shell deforms in proportion to the load before it buckles.
+    pub parameter: f64,
+}
+
+/// Difference of the strain energy from that of a small displacement of the same shape, scaled up, up to which the shell has
+/// deformed in proportion. Beside limit points stiffness falls with the root of the distance, and the estimate is 5 to 11 % low
+/// for a hinged roof that is right to 1 %.
+const IN_PROPORTION: f64 = 0.1;
+/// A small displacement, relative to what there is.
+const SMALL: f64 = 1e-3;
+
+impl LinearBuckling {
+    /// Of a state; `None` where it is stable, where the shell has not deformed in proportion to the load, or where the mode has
+    /// no stiffness in the undeformed shell either.
+    ///
+    /// # Errors
+    /// Where the stiffness has no factor.
+    pub fn of(work: &mut Workspace, at: Standing) -> Result<Option<Self>, SolveError> {
+        let negative = work.factorize_at(at)?;
+        if negative == 0 || !work.is_in_proportion(at) {
+            return Ok(None);
+        }
+        let mode = soft_mode(work, at)?.free;
+        let here = work.stiffness_along(&mode, at);
+        let (still, unturned) = (vec![[0.0; 3]; at.displacement.len()], vec![[0.0; 3]; at.turns.len()]);
+        let rest = Standing { displacement: &still, turns: &unturned, parameter: 0.0, largest_force: 0.0 };
+        let at_rest = work.stiffness_along(&mode, rest);
+        let parameter = at.parameter * at_rest / (at_rest - here);
+        Ok((here < 0.0 && at_rest > 0.0).then_some(Self { negative, parameter }))
+    }
+}
+
+impl Workspace {
+    fn is_in_proportion(&self, at: Standing) -> bool {
+        let small: Vec<[f64; 3]> = at.displacement.iter().map(|u| u.map(|value| SMALL * value)).collect();
+        let energy = self.energy(at.displacement, at.parameter);
+        (self.energy(&small, 0.0) / (SMALL * SMALL) - energy).abs() <= IN_PROPORTION * energy
+    }
+
+    /// vᵀKv of a direction in the free unknowns.
+    fn stiffness_along(&mut self, direction: &[f64], at: Standing) -> f64 {
+        let stiffness = self.form_at(at).to_vec();
+        product(direction, &self.tangent.solver.multiply(&stiffness, direction))
+    }
+}
+
 /// Tᵀ m T in the structure of the stiffness.
 fn mass(work: &Workspace, free: &[f64], parameter: f64) -> Vec<f64> {
     let Workspace { discretization, tangent, .. } = work;

@@ -1,5 +1,6 @@
 //! Stages, the loop that runs them, step control, and the sinks that see every stage.
 
+mod doubts;
 mod fields;
 mod load_solve;
 mod path_control;

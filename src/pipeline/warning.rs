@@ -2,30 +2,25 @@
 //!
 //! | warning | measure | looked for |
 //! |---|---|---|
-//! | the elements are coarse | the strain energy that halving all of them would change ([`Halving`]) | before a jump, and at the end of a run |
+//! | the elements are coarse | the strain energy that halving all of them would change ([`Halving`](crate::adapt::Halving)) | before a jump, and at the end of a run |
+//! | a probe is off | what it would read there, after one step of Newton's method | the same |
+//! | buckling is late | the load at which the halved mesh buckles ([`LinearBuckling`](crate::equilibrium::LinearBuckling)) | the same, and where a critical point is passed |
+//! | strains are large | the largest in the surfaces of the shell | before a jump, and at the end of a run |
 //! | refinement is blocked | how long the spans that the length limit keeps are for their bending ([`Blocked`]) | where nothing is marked any more |
 //! | refining changed the energy | the strain energy that the finer mesh stores otherwise at the same load | wherever the mesh is refined, but behind a jump: there it is meant to |
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::adapt::{Blocked, Halving, evaluate_indicators};
-use crate::pipeline::step_control::next_stage;
-use crate::pipeline::{Report, Stages};
-use crate::scene::Stage;
-use crate::state::{Refinement, State};
-use crate::units::{count, signed};
+use crate::adapt::Blocked;
+use crate::state::State;
+use crate::units::{count, signed, significant};
 
 /// Change of the strain energy, relative to it, from which on it is said.
-const LARGE: f64 = 0.05;
+pub(super) const LARGE: f64 = 0.05;
 
-/// The same of the last refinement, taken for the whole mesh, up to which a run whose indicators ask for no more has seen that
-/// its elements are fine enough; halving them all to see it again would cost `baseline-quarter.toml` a tenth of its time. Where
-/// the length limit keeps spans that bend much, the last refinement may have been at a load at which nothing bent yet.
-const SMALL: f64 = 0.01;
-
-/// A mesh that cannot show what the shell does, with the numbers that say so.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Where numbers are not what they seem, with those that say so.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Warning {
     /// Halving every element would change the strain energy by much.
@@ -36,6 +31,41 @@ pub enum Warning {
         elements: [usize; 2],
         /// What halving them would change of the strain energy, relative to it ([`Halving::energy_share`]).
         energy_share: f64,
+    },
+    /// A probe would read another value with every element halved.
+    ProbeOff {
+        /// The scene's parameter at the equilibrium that this is said of.
+        parameter: f64,
+        /// Elements each way of the model there.
+        elements: [usize; 2],
+        /// The probe that is off the most, relative to its value.
+        probe: String,
+        /// What it reads.
+        value: f64,
+        /// What it would read on the halved mesh, to first order.
+        halved: f64,
+        /// Unit of both.
+        unit: String,
+        /// Other probes that are off as well.
+        others: usize,
+    },
+    /// With every element halved the shell would have buckled before.
+    LateBuckling {
+        /// The scene's parameter at the equilibrium that this is said of.
+        parameter: f64,
+        /// Elements each way of the model there.
+        elements: [usize; 2],
+        /// The parameter at which the halved mesh buckles, to first order.
+        halved: f64,
+    },
+    /// Strains that the material law is not meant for.
+    LargeStrains {
+        /// The scene's parameter at the equilibrium that this is said of.
+        parameter: f64,
+        /// The largest magnitude of a Green–Lagrange strain along u or v in a surface of the shell.
+        strain: f64,
+        /// The middle of the element where it is, as parameters (u, v) in [0, 1].
+        at: [f64; 2],
     },
     /// The length limit keeps spans that are far longer than their bending allows.
     RefinementBlocked {
@@ -79,6 +109,9 @@ impl Warning {
     pub fn name(&self) -> &'static str {
         match self {
             Self::CoarseElements { .. } => "coarse elements",
+            Self::ProbeOff { .. } => "probe off",
+            Self::LateBuckling { .. } => "late buckling",
+            Self::LargeStrains { .. } => "large strains",
             Self::RefinementBlocked { .. } => "refinement blocked",
             Self::EnergyChangedByRefining { .. } => "energy changed",
         }
@@ -88,6 +121,9 @@ impl Warning {
     pub fn parameter(&self) -> f64 {
         match *self {
             Self::CoarseElements { parameter, .. }
+            | Self::ProbeOff { parameter, .. }
+            | Self::LateBuckling { parameter, .. }
+            | Self::LargeStrains { parameter, .. }
             | Self::RefinementBlocked { parameter, .. }
             | Self::EnergyChangedByRefining { parameter, .. } => parameter,
         }
@@ -100,8 +136,8 @@ impl Warning {
 
     /// A sentence with the numbers, and the way out.
     pub fn in_words(&self) -> String {
-        match *self {
-            Self::CoarseElements { elements: [n1, n2], energy_share, .. } => {
+        match self {
+            &Self::CoarseElements { elements: [n1, n2], energy_share, .. } => {
                 let change = if energy_share > 1.0 {
                     "more than all".to_owned()
                 } else {
@@ -112,7 +148,33 @@ impl Warning {
                      write more elements or a higher degree in [mesh], or a lower adapt.threshold"
                 )
             }
-            Self::RefinementBlocked { spans, decay_lengths, over_threshold, .. } => {
+            Self::ProbeOff { elements: [n1, n2], probe, value, halved, unit, others, .. } => {
+                let others = match others {
+                    0 => String::new(),
+                    _ => format!("; {} off as well", count(*others, "other probe")),
+                };
+                format!(
+                    "probe \"{probe}\" reads {} {unit} on {n1} × {n2} elements and some {} {unit} with each of them \
+                     halved{others}; write more elements or a higher degree in [mesh], or a lower adapt.threshold",
+                    significant(*value, 3),
+                    significant(*halved, 3)
+                )
+            }
+            &Self::LateBuckling { parameter, elements: [n1, n2], halved } => format!(
+                "{n1} × {n2} elements are too stiff against buckling: with each of them halved the shell is unstable at {}, \
+                 and buckles at some {}; write more elements or a higher degree in [mesh]",
+                significant(parameter, 3),
+                significant(halved, 3)
+            ),
+            &Self::LargeStrains { strain, at: [u, v], .. } => format!(
+                "strains reach {} %, at u = {}, v = {}: the law of the material (stress in proportion to strain) and the theory \
+                 of thin shells are meant for small ones, and err by some {} % there; look at loads, thickness and units",
+                significant(100.0 * strain, 2),
+                significant(u, 2),
+                significant(v, 2),
+                significant(100.0 * 1.5 * strain, 2)
+            ),
+            &Self::RefinementBlocked { spans, decay_lengths, over_threshold, .. } => {
                 let each_way = spans.iter().zip(["u", "v"]).filter(|(number, _)| **number > 0);
                 let kept: Vec<String> =
                     each_way.map(|(number, way)| format!("{} along {way}", count(*number, "span"))).collect();
@@ -122,78 +184,11 @@ impl Warning {
                     kept.join(" and ")
                 )
             }
-            Self::EnergyChangedByRefining { elements: [n1, n2], energy_change, .. } => format!(
+            &Self::EnergyChangedByRefining { elements: [n1, n2], energy_change, .. } => format!(
                 "refining to {n1} × {n2} elements changed the strain energy at the same load by {} %, and what was read before \
                  is as far off; start from a finer mesh, or lower adapt.threshold",
                 signed(100.0 * energy_change, 1)
             ),
         }
-    }
-}
-
-impl Stages {
-    /// Adds what is to be said of the state that a stage made, or of the one before it.
-    pub(super) fn warn(&mut self, before: &State, after: &State, report: &mut Report) {
-        let refined = matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
-        let of_refining = refined.then(|| Warning::of_refining(before, after, report.elements));
-        // Where a number is most likely read: at the last equilibrium before a jump, and at the end of the run.
-        let jumped = report.jumped && report.stage == Stage::Solve;
-        let ends = next_stage(&self.scene, after).is_none();
-        let looked_at = [jumped.then_some(before), ends.then_some(after)];
-        let of_elements = looked_at.into_iter().flatten().map(|state| self.coarse_elements(state));
-        report.warnings.extend(of_refining.into_iter().chain(of_elements).flatten());
-    }
-
-    fn coarse_elements(&mut self, state: &State) -> Option<Warning> {
-        if self.refining_has_shown(state) {
-            return None;
-        }
-        let halving = Halving::of(&self.scene, state).filter(|halving| !halving.is_still())?;
-        let energy_share = halving.energy_share();
-        let (parameter, elements) = (state.parameter, state.mesh.element_counts());
-        let is_said = energy_share.is_finite() && energy_share > LARGE;
-        is_said.then_some(Warning::CoarseElements { parameter, elements, energy_share })
-    }
-
-    /// Whether refining has shown that elements are fine enough: the last time changed little, and the indicators are content.
-    fn refining_has_shown(&mut self, state: &State) -> bool {
-        let is_small = |last: Refinement| last.of_all_n_mm() <= SMALL * state.strain_energy_n_mm;
-        let Some(adapt) = self.scene.adapt.clone().filter(|_| state.refinement.is_some_and(is_small)) else {
-            return false;
-        };
-        let Ok((scene, work)) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators) else {
-            return false;
-        };
-        let indicators = evaluate_indicators(scene, &adapt, work.discretization(), &state.displacement);
-        indicators.marked.iter().all(Vec::is_empty) && indicators.blocked.is_none()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::pipeline::{MemorySink, Run};
-    use crate::scene::{LengthLimit, Scene, parse};
-
-    /// Whether refining has shown enough at the end of a run.
-    fn has_shown(scene: Scene) -> bool {
-        let start = Stages::new(scene.clone()).start().unwrap();
-        let mut sink = MemorySink::default();
-        Run::new(Stages::new(scene.clone()), start, None).to_end(None, &|| false, &mut sink).unwrap();
-        Stages::new(scene).refining_has_shown(&sink.stages.pop().unwrap().0)
-    }
-
-    /// The baseline, refined behind its snap, halves no elements to see what refining has shown; a cylinder that the length
-    /// limit keeps coarse since its first small load does.
-    #[test]
-    fn what_refining_has_shown_is_not_looked_for_again() {
-        let text = include_str!("../../pipelines/baseline-quarter.toml");
-        let mut baseline = parse(text, "baseline-quarter.toml").unwrap();
-        baseline.load.set_target(20.0);
-        assert!(has_shown(baseline));
-        let text = include_str!("../../tests/verification/scenes/pulled-cylinder.toml");
-        let mut cylinder = parse(text, "pulled-cylinder.toml").unwrap();
-        cylinder.adapt.as_mut().unwrap().length_limit = LengthLimit::SqrtRadiusThickness;
-        assert!(!has_shown(cylinder));
     }
 }

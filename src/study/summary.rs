@@ -92,7 +92,7 @@ pub struct FoldMean {
 }
 
 /// A kind of warning, and how often it was said.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Said {
     /// The first one.
     pub first: Warning,
@@ -345,7 +345,7 @@ fn warnings(records: &[Record]) -> Vec<Said> {
     let mut firsts: Vec<Warning> = Vec::new();
     for warning in records.iter().flat_map(|record| &record.report.warnings) {
         if firsts.iter().all(|first| first.name() != warning.name()) {
-            firsts.push(*warning);
+            firsts.push(warning.clone());
         }
     }
     let steps_with = |first: &Warning| {
@@ -354,7 +354,7 @@ fn warnings(records: &[Record]) -> Vec<Said> {
         steps.dedup();
         steps.len()
     };
-    firsts.into_iter().map(|first| Said { first, steps: steps_with(&first) }).collect()
+    firsts.into_iter().map(|first| Said { steps: steps_with(&first), first }).collect()
 }
 
 /// Warnings up to the load step of the first jump: those of the equilibria before it are said there.

@@ -1,6 +1,6 @@
 //! Meshes that cannot show what the shell does are said to be coarse, and those of the shipped scenes are not.
 
-use foldline::adapt::Halving;
+use foldline::adapt::Halved;
 use foldline::equilibrium::{Equilibrium, Standing, Workspace};
 use foldline::pipeline::{MemorySink, Record, Run, Stages, Warning};
 use foldline::scene::{LengthLimit, Quadrature, Scene, Stage, parse};
@@ -106,7 +106,7 @@ fn halving_is_foreseen() {
     scene.mesh.elements = [4, 4];
     scene.load.set_target(0.4);
     let (state, _) = run(scene.clone()).pop().unwrap();
-    let foreseen = Halving::of(&scene, &state).unwrap();
+    let foreseen = Halved::of(&scene, &state).unwrap().halving();
     let middles = [0, 1].map(|way| {
         let bounds = Spans::of(&state.mesh.knots[way], state.mesh.degree[way]).bounds;
         bounds.iter().map(|[from, to]| 0.5 * (from + to)).collect()
@@ -136,4 +136,88 @@ fn warnings_are_those_of_the_state() {
     again.advance(&mut sink).unwrap();
     assert_eq!(last.report.stage, Stage::Solve);
     assert_eq!(sink.stages[0].1.report.warnings, last.report.warnings);
+}
+
+/// A ring under pressure that follows: 3 E I/R³, the load factor 1 here (Timoshenko & Gere, Theory of Elastic Stability,
+/// section 7.4). A quarter of it, with planes of symmetry at both ends.
+fn ring(degree: usize, elements: usize) -> Scene {
+    let text = format!(
+        r#"
+        geometry = {{ kind = "cylinder-panel", length_mm = 5, radius_mm = 50, arc_deg = 90 }}
+        material = {{ kind = "isotropic", youngs_modulus_mpa = 70000, poissons_ratio = 0, thickness_mm = 0.1 }}
+        mesh = {{ degree = {degree}, elements = [1, {elements}] }}
+        load = {{ kind = "steps", increment = 0.1, factor = 3 }}
+        support = [
+            {{ on = "u-start", kind = "fixed", hold = ["x"] }},
+            {{ on = "v-start", kind = "symmetric" }},
+            {{ on = "v-end", kind = "symmetric" }},
+        ]
+        action = [{{ kind = "pressure", pressure_mpa = -1.4e-4, follower = true }}]
+        "#
+    );
+    parse(&text, "ring.toml").unwrap()
+}
+
+/// The membrane is exact before the ring buckles, so that no energy tells.
+#[test]
+fn elements_that_are_too_stiff_to_buckle_are_said() {
+    let found = warnings(&records(&ring(2, 16)));
+    let [Warning::LateBuckling { parameter, halved, .. }] = found[..] else { panic!("{found:?}") };
+    assert!(parameter > 2.0 && (1.0..1.2).contains(&halved), "{found:?}");
+    assert_eq!(warnings(&records(&ring(3, 16))), []);
+}
+
+/// A tube under pressure, clamped at its ends: all its energy is in the membrane, and the bending at the edge,
+/// κ = 2 β² w with β⁴ = 3 (1 − ν²)/(R t)² and w = p R²/(E t) (Timoshenko & Woinowsky-Krieger, section 115), is lost on
+/// elements that are several times as long as its layer, 1/β = 1.7 mm.
+#[test]
+fn a_probe_that_the_elements_miss_is_said() {
+    const KAPPA_PER_MM: f64 = 2.0 * 0.330_454_5 * 1e-3;
+    let tube = |along: usize| {
+        let text = format!(
+            r#"
+            geometry = {{ kind = "cylinder-panel", length_mm = 100, radius_mm = 50, arc_deg = 90 }}
+            material = {{ kind = "isotropic", youngs_modulus_mpa = 70000, poissons_ratio = 0.3, thickness_mm = 0.1 }}
+            mesh = {{ degree = 3, elements = [{along}, 8] }}
+            load = {{ kind = "steps", increment = 1 }}
+            support = [
+                {{ on = "u-start", kind = "clamped" }},
+                {{ on = "u-end", kind = "symmetric" }},
+                {{ on = "v-start", kind = "symmetric" }},
+                {{ on = "v-end", kind = "symmetric" }},
+            ]
+            action = [{{ kind = "pressure", pressure_mpa = 0.0028 }}]
+            probe = [{{ name = "edge", kind = "bending-strain" }}]
+            "#
+        );
+        warnings(&records(&parse(&text, "tube.toml").unwrap()))
+    };
+    let found = tube(16);
+    let [Warning::ProbeOff { value, halved, .. }] = found[..] else { panic!("{found:?}") };
+    assert!(value < halved && halved < KAPPA_PER_MM, "{value} {halved} {KAPPA_PER_MM}");
+    assert_eq!(tube(128), []);
+}
+
+/// A strip that is pulled out by a third: E = (λ² − 1)/2.
+#[test]
+fn strains_that_the_law_is_not_meant_for_are_said() {
+    let pulled = |by_mm: f64| {
+        let text = format!(
+            r#"
+            geometry = {{ kind = "plate", length_mm = 30, width_mm = 10 }}
+            material = {{ kind = "isotropic", youngs_modulus_mpa = 1000, poissons_ratio = 0, thickness_mm = 1 }}
+            mesh = {{ degree = 2, elements = [2, 2] }}
+            load = {{ kind = "steps", increment = 0.5 }}
+            support = [
+                {{ on = "u-start", kind = "clamped" }},
+                {{ on = "u-end", kind = "displacement", x_mm = {by_mm} }},
+            ]
+            "#
+        );
+        warnings(&records(&parse(&text, "strip.toml").unwrap()))
+    };
+    let found = pulled(10.0);
+    let [Warning::LargeStrains { strain, .. }] = found[..] else { panic!("{found:?}") };
+    assert!((strain - (16.0 / 9.0 - 1.0) / 2.0).abs() < 1e-6, "{strain}");
+    assert_eq!(pulled(1.0), []);
 }

@@ -1,0 +1,165 @@
+//! When a stage doubts its numbers: what is looked at, and from where on it is said.
+
+use crate::adapt::{Halved, evaluate_indicators, largest_strain};
+use crate::equilibrium::{LinearBuckling, Standing};
+use crate::pipeline::probes::read_probes;
+use crate::pipeline::step_control::next_stage;
+use crate::pipeline::warning::LARGE;
+use crate::pipeline::{Reading, Report, Stages, Warning};
+use crate::scene::Stage;
+use crate::state::{Refinement, State};
+
+/// The same of the last refinement, taken for the whole mesh, up to which a run whose indicators ask for no more has seen that
+/// its elements are fine enough; halving them all to see it again would cost `baseline-quarter.toml` a tenth of its time. Where
+/// the length limit keeps spans that bend much, the last refinement may have been at a load at which nothing bent yet.
+const SMALL: f64 = 0.01;
+/// Change of a probe, relative to the larger of both readings, from which on it is said.
+const OFF: f64 = 0.1;
+/// Readings smaller than this share of the largest displacement, of the largest force, or of that times the longest side,
+/// are not held against another.
+const SMALL_READING: f64 = 1e-3;
+/// Share by which the halved mesh buckles before, from which on it is said.
+const LATE: f64 = 0.05;
+/// Strain from which on it is said: stress over strain of the law differs from one of logarithmic strains by 1.5 times this.
+const LARGE_STRAIN: f64 = 0.05;
+
+/// Where numbers are most likely read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Looked {
+    /// At the last equilibrium before a jump.
+    BeforeJump,
+    /// At a critical point that was passed.
+    AtCriticalPoint,
+    /// At the end of the run.
+    AtEnd,
+}
+
+impl Stages {
+    /// Adds what is to be said of the state that a stage made, or of the one before it.
+    pub(super) fn warn(&mut self, before: &State, after: &State, report: &mut Report) {
+        let refined = matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
+        report.warnings.extend(refined.then(|| Warning::of_refining(before, after, report.elements)).flatten());
+        let solved = report.stage == Stage::Solve;
+        if report.jumped && solved {
+            report.warnings.extend(self.doubts(before, Looked::BeforeJump));
+        }
+        if report.critical_point.is_some() && solved {
+            report.warnings.extend(self.doubts(after, Looked::AtCriticalPoint));
+        } else if next_stage(&self.scene, after).is_none() {
+            report.warnings.extend(self.doubts(after, Looked::AtEnd));
+        }
+    }
+
+    fn doubts(&mut self, state: &State, looked: Looked) -> Vec<Warning> {
+        let large_strains = self.large_strains(state);
+        large_strains.into_iter().chain(self.coarse(state, looked)).collect()
+    }
+
+    fn large_strains(&mut self, state: &State) -> Option<Warning> {
+        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::Solve).ok()?;
+        let (strain, at) = largest_strain(work.discretization(), &state.displacement, scene.material.thickness_mm());
+        (strain > LARGE_STRAIN).then_some(Warning::LargeStrains { parameter: state.parameter, strain, at })
+    }
+
+    /// What halving every element would change: the energy, else the load at which it buckles, else a probe.
+    fn coarse(&mut self, state: &State, looked: Looked) -> Option<Warning> {
+        if self.refining_has_shown(state) {
+            return None;
+        }
+        let mut halved = Halved::of(&self.scene, state)?;
+        let halving = halved.halving();
+        let (parameter, elements) = (state.parameter, state.mesh.element_counts());
+        let energy_share = halving.energy_share();
+        if energy_share.is_finite() && energy_share > LARGE {
+            return (!halving.is_still()).then_some(Warning::CoarseElements { parameter, elements, energy_share });
+        }
+        // Beyond a critical point the mesh in hand is unstable as well.
+        let is_stable = looked == Looked::AtCriticalPoint || state.negative_pivots == 0;
+        let buckled = if is_stable { halved.buckling() } else { None };
+        if let Some(LinearBuckling { parameter: at, .. }) = buckled {
+            return (at < (1.0 - LATE) * parameter).then_some(Warning::LateBuckling {
+                parameter,
+                elements,
+                halved: at,
+            });
+        }
+        // Near a critical point one step of Newton's method leads anywhere.
+        let is_vague = looked != Looked::AtEnd || halving.is_still();
+        if is_vague { None } else { self.probe_off(state, &mut halved) }
+    }
+
+    fn probe_off(&mut self, state: &State, halved: &mut Halved) -> Option<Warning> {
+        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::Solve).ok()?;
+        let here = read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm);
+        let [largest, side] = halved.halving().sizes_mm;
+        let (work, at) = halved.relaxed();
+        let there = read_probes(&self.scene, work, at, state.strain_energy_n_mm);
+        let smallest = |reading: &Reading| match reading.unit.as_str() {
+            "mm" => SMALL_READING * largest,
+            "N" => SMALL_READING * state.largest_force_n,
+            "N·mm" => SMALL_READING * state.largest_force_n * side,
+            _ => 0.0,
+        };
+        let is_off = |(here, there): &(&Reading, &Reading)| {
+            let size = here.value.abs().max(there.value.abs());
+            size > smallest(here) && (there.value - here.value).abs() > OFF * size
+        };
+        let mut off: Vec<_> = here.iter().zip(&there).filter(is_off).collect();
+        let share = |(here, there): &(&Reading, &Reading)| {
+            (there.value - here.value).abs() / here.value.abs().max(there.value.abs())
+        };
+        off.sort_by(|one, other| share(other).total_cmp(&share(one)));
+        let (worst, finer) = off.first()?;
+        Some(Warning::ProbeOff {
+            parameter: state.parameter,
+            elements: state.mesh.element_counts(),
+            probe: worst.name.clone(),
+            value: worst.value,
+            halved: finer.value,
+            unit: worst.unit.clone(),
+            others: off.len() - 1,
+        })
+    }
+
+    /// Whether refining has shown that elements are fine enough: the last time changed little, and the indicators are content.
+    fn refining_has_shown(&mut self, state: &State) -> bool {
+        let is_small = |last: Refinement| last.of_all_n_mm() <= SMALL * state.strain_energy_n_mm;
+        let Some(adapt) = self.scene.adapt.clone().filter(|_| state.refinement.is_some_and(is_small)) else {
+            return false;
+        };
+        let Ok((scene, work)) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators) else {
+            return false;
+        };
+        let indicators = evaluate_indicators(scene, &adapt, work.discretization(), &state.displacement);
+        indicators.marked.iter().all(Vec::is_empty) && indicators.blocked.is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::{MemorySink, Run};
+    use crate::scene::{LengthLimit, Scene, parse};
+
+    /// Whether refining has shown enough at the end of a run.
+    fn has_shown(scene: Scene) -> bool {
+        let start = Stages::new(scene.clone()).start().unwrap();
+        let mut sink = MemorySink::default();
+        Run::new(Stages::new(scene.clone()), start, None).to_end(None, &|| false, &mut sink).unwrap();
+        Stages::new(scene).refining_has_shown(&sink.stages.pop().unwrap().0)
+    }
+
+    /// The baseline, refined behind its snap, halves no elements to see what refining has shown; a cylinder that the length
+    /// limit keeps coarse since its first small load does.
+    #[test]
+    fn what_refining_has_shown_is_not_looked_for_again() {
+        let text = include_str!("../../pipelines/baseline-quarter.toml");
+        let mut baseline = parse(text, "baseline-quarter.toml").unwrap();
+        baseline.load.set_target(20.0);
+        assert!(has_shown(baseline));
+        let text = include_str!("../../tests/verification/scenes/pulled-cylinder.toml");
+        let mut cylinder = parse(text, "pulled-cylinder.toml").unwrap();
+        cylinder.adapt.as_mut().unwrap().length_limit = LengthLimit::SqrtRadiusThickness;
+        assert!(!has_shown(cylinder));
+    }
+}
