@@ -124,8 +124,8 @@ impl Halving {
 /// The longest side of the box of a mesh's control points, mm.
 fn longest_side(mesh: &Mesh) -> f64 {
     let side = |c: usize| {
-        let along = mesh.control_points.iter().map(|point| point[c] / point[3]);
-        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+        let along = || mesh.points().map(|point| point[c]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
     };
     side(0).max(side(1)).max(side(2))
 }

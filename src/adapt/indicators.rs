@@ -5,10 +5,10 @@
 
 use rayon::prelude::*;
 
-use crate::model::Discretization;
+use crate::model::{Discretization, Tables};
 use crate::scene::{Adapt, Geometry, LengthLimit, Scene};
 use crate::shell::{PointReference, Strains};
-use crate::spline::Spans;
+use crate::spline::{Grid, Spans};
 
 /// Of the spans that are too coarse those are marked whose indicator is at least this share of the worst one; the others
 /// wait for the next round. After a snap on a coarse mesh the fold is wider than it will be, and where it reaches too far
@@ -57,7 +57,7 @@ pub fn evaluate_indicators(
 ) -> Indicators {
     let elements = discretization.tables.elements;
     let limit = length_limit(scene, discretization, adapt.length_limit);
-    let values: Vec<[f64; 2]> = (0..elements[0] * elements[1])
+    let values: Vec<[f64; 2]> = (0..elements.len())
         .into_par_iter()
         .map(|element| element_indicators(discretization, displacement, element))
         .collect();
@@ -80,10 +80,10 @@ pub fn evaluate_indicators(
 }
 
 /// Spans of a direction in which an element is as asked.
-fn spans_where(elements: [usize; 2], axis: usize, holds: impl Fn(usize, usize) -> bool) -> Vec<bool> {
-    let mut spans = vec![false; elements[axis]];
-    for element in 0..elements[0] * elements[1] {
-        spans[[element / elements[1], element % elements[1]][axis]] |= holds(element, axis);
+fn spans_where(elements: Grid, axis: usize, holds: impl Fn(usize, usize) -> bool) -> Vec<bool> {
+    let mut spans = vec![false; elements.counts[axis]];
+    for element in 0..elements.len() {
+        spans[elements.place(element)[axis]] |= holds(element, axis);
     }
     spans
 }
@@ -111,7 +111,7 @@ impl Judged<'_> {
     }
 
     /// What the limit keeps far too long.
-    fn blocked(&self, elements: [usize; 2], thickness: f64) -> Option<Blocked> {
+    fn blocked(&self, elements: Grid, thickness: f64) -> Option<Blocked> {
         let decay_lengths =
             |element: usize, axis: usize| (self.values[element][axis] * self.lengths[element][axis] / thickness).sqrt();
         let is_blocked = |element: usize, axis: usize| {
@@ -148,11 +148,12 @@ fn length_limit(scene: &Scene, discretization: &Discretization, rule: LengthLimi
 
 /// The longest line of elements each way, and of these the shorter, mm.
 fn shorter_side(discretization: &Discretization) -> f64 {
-    let [n1, n2] = discretization.tables.elements;
-    let lengths = &discretization.tables.lengths;
-    let along = (0..n2).map(|j| (0..n1).map(|i| lengths[i * n2 + j][0]).sum());
-    let across = (0..n1).map(|i| (0..n2).map(|j| lengths[i * n2 + j][1]).sum());
-    along.fold(0.0, f64::max).min(across.fold(0.0, f64::max))
+    let Tables { elements, lengths, .. } = &discretization.tables;
+    let longest = |way: usize| {
+        let of_line = |beside| elements.line(1 - way, beside).map(|element| lengths[element][way]).sum();
+        (0..elements.counts[1 - way]).map(of_line).fold(0.0, f64::max)
+    };
+    longest(0).min(longest(1))
 }
 
 /// Largest principal curvature of the undeformed surface at the quadrature points, 1/mm.
@@ -179,17 +180,14 @@ pub fn element_strains(
     element: usize,
 ) -> Vec<(Strains, [f64; 2])> {
     let tables = &discretization.tables;
-    let [p1, p2] = discretization.mesh.degree;
-    let n2 = discretization.mesh.control_counts()[1];
-    let first = [tables.first[0][element / tables.elements[1]], tables.first[1][element % tables.elements[1]]];
+    let controls = tables.connectivity.controls(element);
     let functions = tables.points.element_functions(element);
     let at_point = |(q, point): (usize, &PointReference)| {
         let mut u = [[0.0; 3]; 5];
         for k in 0..5 {
-            let row = &functions[(q * 5 + k) * tables.padded..][..(p1 + 1) * (p2 + 1)];
-            for (a, function) in row.iter().enumerate() {
-                let control = displacement[(first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1)];
-                (0..3).for_each(|c| u[k][c] += function * control[c]);
+            let row = &functions[(q * 5 + k) * tables.padded..][..controls.len()];
+            for (control, function) in controls.iter().zip(row) {
+                (0..3).for_each(|c| u[k][c] += function * displacement[*control][c]);
             }
         }
         (point.strains(&u), point.tangent_lengths())
@@ -215,11 +213,11 @@ pub fn largest_strain(
         });
         values.fold(0.0, f64::max)
     };
-    let values: Vec<f64> = (0..elements[0] * elements[1]).into_par_iter().map(of_element).collect();
+    let values: Vec<f64> = (0..elements.len()).into_par_iter().map(of_element).collect();
     let largest =
         (0..values.len()).fold(0, |best, element| if values[element] > values[best] { element } else { best });
     let mesh = &discretization.mesh;
-    let at = [largest / elements[1], largest % elements[1]];
+    let at = elements.place(largest);
     let middle = |way: usize| {
         let [from, to] = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds[at[way]];
         0.5 * (from + to)

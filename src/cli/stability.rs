@@ -112,7 +112,7 @@ fn in_full(record: &Record, report: &StabilityReport) -> String {
 /// The shell with the mode added to its displacement.
 fn draw(folder: &Path, scene: &Scene, record: &Record, report: &StabilityReport) -> Result<(), Failure> {
     let mesh = &report.state.mesh;
-    let points = mesh.control_points.iter().map(|[x, y, z, w]| [x / w, y / w, z / w]);
+    let points = mesh.points();
     let first = mesh.control_points[0];
     let corner = [0, 1, 2].map(|c| first[c] / first[3]);
     let size = points.map(|point| norm(sub(point, corner))).fold(0.0, f64::max);

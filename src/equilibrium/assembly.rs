@@ -1,42 +1,40 @@
 //! Sums over elements: energy, residual and stiffness on control points.
 //!
-//! The stiffness on control points is stored as a stencil: control point i = i₁ n₂ + i₂ has a 3 × 3 block for each j =
-//! i + (d₁, d₂) with j ≥ i that it can share an element with: d₁ = 0, 0 ≤ d₂ ≤ p₂, or 0 < d₁ ≤ p₁, −p₂ ≤ d₂ ≤ p₂.
-//!
-//! Threads work on columns of elements (all elements with the same place along the length). A column touches p₁ + 1
-//! rows of control points; columns p₁ + 1 apart share none, so they are one colour and run at once, each on its own
-//! slice. Colours follow each other. Every sum is therefore formed in one order, whatever the number of threads.
+//! The order of sums is that of the [`Connectivity`](crate::model::Connectivity): threads work on strands of elements, strands of
+//! one colour at once, each on its own slices of the sums, since they share no control point; colours follow each other.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::equilibrium::blocks::{BLOCK, Blocks};
 use crate::equilibrium::descent::length;
 pub use crate::equilibrium::kernel::Want;
 use crate::equilibrium::kernel::{Build, ElementBuffers, integrate_element};
-use crate::model::{Discretization, NaturalState, Tables};
+use crate::model::{BlockPattern, Discretization, NaturalState, Strand, Tables};
 use crate::shell::sub;
-use crate::spline::Mesh;
 
-/// Strain energy of the model at a displacement on `mesh`, N·mm; `tables` may have other elements than `mesh`
-/// ([`Tables::on_elements_of`]). `natural` is the state without forces, where that is not the undeformed one. Summed in
-/// the order of [`Assembled::assemble`].
-pub fn strain_energy(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> f64 {
+/// Strain energy of the model at a displacement of the control points that `tables` act on, N·mm. `natural` is the state
+/// without forces, where that is not the undeformed one. Summed in the order of [`Assembled::assemble`].
+pub fn strain_energy(tables: &Tables, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> f64 {
     let build = Build::detect();
-    let columns: Vec<f64> = (0..tables.elements[0])
-        .into_par_iter()
+    let strands = tables.connectivity.strands();
+    let energies: Vec<f64> = strands
+        .par_iter()
         .map_init(
             || buffers_for(tables, natural),
-            |buffers, column| {
+            |buffers, strand| {
                 let mut energy = 0.0;
-                for across in 0..tables.elements[1] {
-                    gather(mesh, tables, displacement, [column, across], buffers);
-                    integrate_element(tables, column * tables.elements[1] + across, Want::Energy, build, buffers);
+                for element in strand.elements.clone() {
+                    gather(tables, displacement, element, buffers);
+                    integrate_element(tables, element, Want::Energy, build, buffers);
                     energy += buffers.energy;
                 }
                 energy
             },
         )
         .collect();
-    with_locked(columns.iter().sum(), natural)
+    with_locked(energies.iter().sum(), natural)
 }
 
 fn buffers_for(tables: &Tables, natural: Option<NaturalState>) -> ElementBuffers {
@@ -50,18 +48,6 @@ fn with_locked(energy: f64, natural: Option<NaturalState>) -> f64 {
     natural.map_or(energy, |natural| energy + natural.locked_n_mm)
 }
 
-/// Offsets (d₁, d₂) of the stencil, in storage order.
-pub fn stencil(degree: [usize; 2]) -> Vec<[isize; 2]> {
-    let [p1, p2] = degree.map(|p| p as isize);
-    let same_row = (0..=p2).map(|d2| [0, d2]);
-    same_row.chain((1..=p1).flat_map(|d1| (-p2..=p2).map(move |d2| [d1, d2]))).collect()
-}
-
-/// Blocks of a control point.
-pub fn stencil_len(degree: [usize; 2]) -> usize {
-    degree[1] + 1 + degree[0] * (2 * degree[1] + 1)
-}
-
 /// Sums over all elements; buffers are kept between calls.
 #[derive(Debug)]
 pub struct Assembled {
@@ -73,16 +59,15 @@ pub struct Assembled {
     pub residual: Vec<[f64; 3]>,
     /// Norm of the part of the residual that the free strain makes, N: a load in all but name. 0 where there is none.
     pub free_strain_forces: f64,
-    /// `stiffness[(i · stencil_len + slot) · 9 + 3 c + d]`, N/mm.
-    pub stiffness: Vec<f64>,
+    /// N/mm; empty where it is not asked for.
+    pub stiffness: Blocks,
 }
 
 impl Assembled {
     /// Buffers for a mesh.
     pub fn new(discretization: &Discretization) -> Self {
-        let count = discretization.mesh.control_points.len();
-        let stiffness = vec![0.0; count * stencil_len(discretization.mesh.degree) * 9];
-        let residual = vec![[0.0; 3]; count];
+        let stiffness = Blocks::zeros(&discretization.blocks);
+        let residual = vec![[0.0; 3]; discretization.blocks.points()];
         Self { energy: 0.0, element_forces: 0.0, residual, free_strain_forces: 0.0, stiffness }
     }
 
@@ -107,7 +92,7 @@ impl Assembled {
     ) -> Vec<[f64; 3]> {
         let residual = vec![[0.0; 3]; displacement.len()];
         let mut there =
-            Self { energy: 0.0, element_forces: 0.0, residual, free_strain_forces: 0.0, stiffness: Vec::new() };
+            Self { energy: 0.0, element_forces: 0.0, residual, free_strain_forces: 0.0, stiffness: Blocks::default() };
         there.assemble_from(discretization, displacement, natural, Want::Residual);
         there.residual.iter().zip(&self.residual).map(|(g1, g0)| sub(*g1, *g0)).collect()
     }
@@ -120,143 +105,81 @@ impl Assembled {
         natural: Option<NaturalState>,
         want: Want,
     ) {
-        let mesh = &discretization.mesh;
-        let tables = &discretization.tables;
-        let degree = mesh.degree;
-        let n2 = mesh.control_counts()[1];
-        let colours = degree[0] + 1;
-        let row_stiffness = if want == Want::Stiffness { n2 * stencil_len(degree) * 9 } else { 0 };
-        let build = Build::detect();
         self.residual.fill([0.0; 3]);
         if want == Want::Stiffness {
-            self.stiffness.par_chunks_mut(row_stiffness).for_each(|row| row.fill(0.0));
+            self.stiffness.clear();
         }
-        let first = &tables.first[0];
-        let mut totals = vec![ColumnSums::default(); first.len()];
-        for colour in 0..colours.min(first.len()) {
-            let columns: Vec<usize> = (colour..first.len()).step_by(colours).collect();
-            let residuals = take_rows(&mut self.residual, n2, colours, columns.iter().map(|e| first[*e]));
-            let stiffnesses = take_rows(&mut self.stiffness, row_stiffness, colours, columns.iter().map(|e| first[*e]));
-            let sums: Vec<ColumnSums> = columns
-                .par_iter()
-                .zip(residuals)
-                .zip(stiffnesses)
-                .map_init(
-                    || buffers_for(tables, natural),
-                    |buffers, ((column, residual), stiffness)| {
-                        let mut rows = Rows { residual, stiffness };
-                        assemble_column(discretization, displacement, *column, want, build, buffers, &mut rows)
-                    },
-                )
-                .collect();
-            for (column, sum) in columns.iter().zip(sums) {
-                totals[*column] = sum;
-            }
-        }
-        self.energy = with_locked(totals.iter().map(|column| column.energy).sum(), natural);
-        self.element_forces = totals.iter().map(|column| column.squared_forces).sum::<f64>().sqrt();
+        let part = Part { tables: &discretization.tables, blocks: &discretization.blocks, part: 0, natural };
+        let sums = part.add(displacement, want, &mut self.residual, &mut self.stiffness);
+        self.energy = with_locked(sums.energy, natural);
+        self.element_forces = sums.squared_forces.sqrt();
     }
 
     /// Stiffness times a field on the control points.
     pub fn multiply(&self, discretization: &Discretization, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        multiply_stencil(discretization, &self.stiffness, 1.0, field)
+        self.stiffness.multiply(&discretization.blocks, 1.0, field)
     }
 }
 
-/// Blocks of the stencil times a field on the control points; the blocks that are not stored are the transposes of those
-/// that are, times `mirrored`: 1 where they are symmetric, −1 where they are skew.
-pub fn multiply_stencil(
-    discretization: &Discretization,
-    blocks: &[f64],
-    mirrored: f64,
-    field: &[[f64; 3]],
-) -> Vec<[f64; 3]> {
-    let n2 = discretization.mesh.control_counts()[1];
-    let offsets = stencil(discretization.mesh.degree);
-    let mut product = vec![[0.0; 3]; field.len()];
-    for i in 0..field.len() {
-        for (slot, offset) in offsets.iter().enumerate() {
-            let Some(j) = neighbour(i, *offset, n2, field.len()) else { continue };
-            let block = &blocks[(i * offsets.len() + slot) * 9..][..9];
-            for c in 0..3 {
-                for d in 0..3 {
-                    product[i][c] += block[3 * c + d] * field[j][d];
-                    if j != i {
-                        product[j][d] += mirrored * (block[3 * c + d] * field[i][c]);
-                    }
-                }
-            }
+/// Elements with a part in a matrix on control points that other patches may share.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'a> {
+    /// Its elements.
+    pub tables: &'a Tables,
+    /// The matrix.
+    pub blocks: &'a BlockPattern,
+    /// Which part of that the elements are.
+    pub part: usize,
+    /// The state without forces, where that is not the undeformed one.
+    pub natural: Option<NaturalState>,
+}
+
+impl Part<'_> {
+    /// Adds up residual and stiffness at a displacement of the control points; the latter only where `want` says so.
+    pub fn add(
+        &self,
+        displacement: &[[f64; 3]],
+        want: Want,
+        residual: &mut [[f64; 3]],
+        stiffness: &mut Blocks,
+    ) -> ElementSums {
+        let connectivity = &self.tables.connectivity;
+        let build = Build::detect();
+        let mut totals = vec![ElementSums::default(); connectivity.strands().len()];
+        for colour in connectivity.colours() {
+            let strands: Vec<&Strand> = colour.iter().map(|index| &connectivity.strands()[*index]).collect();
+            let of_blocks = if want == Want::Stiffness { &mut stiffness.values[..] } else { &mut [] };
+            let rows = take_rows(&strands, self.blocks, residual, of_blocks);
+            let sums: Vec<ElementSums> = strands
+                .par_iter()
+                .zip(rows)
+                .map_init(
+                    || buffers_for(self.tables, self.natural),
+                    |buffers, (strand, mut rows)| {
+                        let mut sums = ElementSums::default();
+                        for element in strand.elements.clone() {
+                            gather(self.tables, displacement, element, buffers);
+                            integrate_element(self.tables, element, want, build, buffers);
+                            self.scatter(element, want, buffers, &mut rows, &mut sums);
+                        }
+                        sums
+                    },
+                )
+                .collect();
+            colour.iter().zip(sums).for_each(|(index, sum)| totals[*index] = sum);
+        }
+        ElementSums {
+            energy: totals.iter().map(|strand| strand.energy).sum(),
+            squared_forces: totals.iter().map(|strand| strand.squared_forces).sum(),
         }
     }
-    product
-}
 
-/// Control point at an offset of the stencil from `i`, where there is one.
-pub fn neighbour(i: usize, offset: [isize; 2], n2: usize, count: usize) -> Option<usize> {
-    let column = (i % n2) as isize + offset[1];
-    let j = i as isize + offset[0] * n2 as isize + offset[1];
-    (0 <= column && column < n2 as isize && j < count as isize).then_some(j as usize)
-}
-
-/// Slot of the block of two control points i ≤ j that share an element.
-pub fn neighbour_slot(degree: [usize; 2], n2: usize, i: usize, j: usize) -> usize {
-    let [_, p2] = degree;
-    let rows = j / n2 - i / n2;
-    match rows {
-        0 => j - i,
-        _ => p2 + 1 + (rows - 1) * (2 * p2 + 1) + p2 + j % n2 - i % n2,
-    }
-}
-
-/// Disjoint slices of `height` rows from each of the ascending `starts`.
-fn take_rows<T>(mut data: &mut [T], row: usize, height: usize, starts: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
-    let mut taken = 0;
-    let mut slices = Vec::new();
-    for start in starts {
-        let (_, rest) = data.split_at_mut((start - taken) * row);
-        let (slice, rest) = rest.split_at_mut(height * row);
-        slices.push(slice);
-        data = rest;
-        taken = start + height;
-    }
-    slices
-}
-
-/// Sums over a column of elements.
-#[derive(Clone, Copy, Default)]
-struct ColumnSums {
-    energy: f64,
-    squared_forces: f64,
-}
-
-/// The rows of control points that a column of elements adds to.
-struct Rows<'a> {
-    residual: &'a mut [[f64; 3]],
-    stiffness: &'a mut [f64],
-}
-
-fn assemble_column(
-    discretization: &Discretization,
-    displacement: &[[f64; 3]],
-    column: usize,
-    want: Want,
-    build: Build,
-    buffers: &mut ElementBuffers,
-    rows: &mut Rows,
-) -> ColumnSums {
-    let tables = &discretization.tables;
-    let [p1, p2] = discretization.mesh.degree;
-    let n2 = discretization.mesh.control_counts()[1];
-    let padded = tables.padded;
-    let functions = (p1 + 1) * (p2 + 1);
-    let mut sums = ColumnSums::default();
-    for across in 0..tables.elements[1] {
-        let first = tables.first[1][across];
-        gather(&discretization.mesh, tables, displacement, [column, across], buffers);
-        integrate_element(tables, column * tables.elements[1] + across, want, build, buffers);
+    /// Adds an element's forces, and its blocks, to the rows of its strand.
+    fn scatter(&self, element: usize, want: Want, buffers: &ElementBuffers, rows: &mut Rows, sums: &mut ElementSums) {
+        let padded = self.tables.padded;
         sums.energy += buffers.energy;
-        for a in 0..functions {
-            let row = &mut rows.residual[(a / (p2 + 1)) * n2 + first + a % (p2 + 1)];
+        for (a, control) in self.tables.connectivity.controls(element).iter().enumerate() {
+            let row = rows.residual(*control);
             for c in 0..3 {
                 let force = buffers.residual[c * padded + a];
                 row[c] += force;
@@ -264,43 +187,115 @@ fn assemble_column(
             }
         }
         if want == Want::Stiffness {
-            scatter_stiffness([p1, p2], n2, first, padded, &buffers.stiffness, rows.stiffness);
+            self.scatter_blocks(element, &buffers.stiffness, rows);
         }
     }
-    sums
+
+    fn scatter_blocks(&self, element: usize, local: &[f64], rows: &mut Rows) {
+        let padded = self.tables.padded;
+        let controls = self.tables.connectivity.controls(element);
+        let mut slots = self.blocks.slots(self.part, element);
+        let ascending = controls.is_sorted();
+        for (a, i) in controls.iter().enumerate() {
+            let (of_this, others) = slots.split_at(controls.len() - a);
+            slots = others;
+            let row = rows.blocks(self.blocks, *i);
+            for (b, slot) in (a..).zip(of_this).filter(|(b, _)| ascending || *i <= controls[*b]) {
+                let block = &mut row[*slot as usize * BLOCK..][..BLOCK];
+                for cd in 0..BLOCK {
+                    block[cd] += local[(b * BLOCK + cd % 3 * 3 + cd / 3) * padded + a];
+                }
+            }
+            // Of the others the mirror image is stored.
+            for (b, slot) in (a..).zip(of_this).filter(|(b, _)| !ascending && *i > controls[*b]) {
+                let block = &mut rows.blocks(self.blocks, controls[b])[*slot as usize * BLOCK..][..BLOCK];
+                for cd in 0..BLOCK {
+                    block[cd] += local[(b * BLOCK + cd) * padded + a];
+                }
+            }
+        }
+    }
+}
+
+/// Sums over elements.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ElementSums {
+    /// Strain energy, N·mm.
+    pub energy: f64,
+    /// Squares of the elements' forces on their control points, N².
+    pub squared_forces: f64,
+}
+
+/// A run of control points with their part of the sums.
+struct Run<'a> {
+    points: Range<usize>,
+    residual: &'a mut [[f64; 3]],
+    /// Their rows of blocks; empty where no stiffness is asked for.
+    stiffness: &'a mut [f64],
+}
+
+/// What the elements of a strand add to: runs with growing numbers.
+#[derive(Default)]
+struct Rows<'a>(Vec<Run<'a>>);
+
+impl<'a> Rows<'a> {
+    fn run(&mut self, point: usize) -> &mut Run<'a> {
+        let index = match self.0.len() {
+            1 => 0,
+            _ => self.0.partition_point(|run| run.points.end <= point),
+        };
+        &mut self.0[index]
+    }
+
+    fn residual(&mut self, point: usize) -> &mut [f64; 3] {
+        let run = self.run(point);
+        &mut run.residual[point - run.points.start]
+    }
+
+    /// Blocks of a control point's row.
+    fn blocks(&mut self, pattern: &BlockPattern, point: usize) -> &mut [f64] {
+        let run = self.run(point);
+        let first = pattern.start(run.points.start);
+        &mut run.stiffness[(pattern.start(point) - first) * BLOCK..(pattern.start(point + 1) - first) * BLOCK]
+    }
+}
+
+/// Disjoint slices for strands that share no control point.
+fn take_rows<'a>(
+    strands: &[&Strand],
+    pattern: &BlockPattern,
+    mut residual: &'a mut [[f64; 3]],
+    mut stiffness: &'a mut [f64],
+) -> Vec<Rows<'a>> {
+    let mut runs: Vec<(usize, Range<usize>)> = strands
+        .iter()
+        .enumerate()
+        .flat_map(|(index, strand)| strand.runs.iter().map(move |run| (index, run.clone())))
+        .collect();
+    runs.sort_unstable_by_key(|(_, run)| run.start);
+    let mut rows: Vec<Rows> = strands.iter().map(|_| Rows::default()).collect();
+    let mut taken = 0;
+    for (index, points) in runs {
+        let (_, rest) = residual.split_at_mut(points.start - taken);
+        let (of_this, rest) = rest.split_at_mut(points.len());
+        residual = rest;
+        let blocks = |from: usize, to: usize| (pattern.start(to) - pattern.start(from)) * BLOCK;
+        let mut of_these: &mut [f64] = &mut [];
+        if !stiffness.is_empty() {
+            let (_, rest) = stiffness.split_at_mut(blocks(taken, points.start));
+            (of_these, stiffness) = rest.split_at_mut(blocks(points.start, points.end));
+        }
+        taken = points.end;
+        rows[index].0.push(Run { points, residual: of_this, stiffness: of_these });
+    }
+    rows
 }
 
 /// Copies the displacement of an element's control points into its buffers.
-fn gather(mesh: &Mesh, tables: &Tables, displacement: &[[f64; 3]], element: [usize; 2], buffers: &mut ElementBuffers) {
-    let [p1, p2] = mesh.degree;
-    let n2 = mesh.control_counts()[1];
-    let first = [tables.first[0][element[0]], tables.first[1][element[1]]];
-    for a in 0..(p1 + 1) * (p2 + 1) {
-        let point = (first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1);
+fn gather(tables: &Tables, displacement: &[[f64; 3]], element: usize, buffers: &mut ElementBuffers) {
+    for (a, control) in tables.connectivity.controls(element).iter().enumerate() {
         for c in 0..3 {
-            buffers.displacement[c * tables.padded + a] = displacement[point][c];
-        }
-    }
-}
-
-/// Adds an element's blocks b ≥ a to the stencil of the column's rows.
-fn scatter_stiffness(degree: [usize; 2], n2: usize, first: usize, padded: usize, local: &[f64], rows: &mut [f64]) {
-    let [p1, p2] = degree;
-    let slots = stencil_len(degree);
-    for a1 in 0..=p1 {
-        for a2 in 0..=p2 {
-            let a = a1 * (p2 + 1) + a2;
-            let point = &mut rows[(a1 * n2 + first + a2) * slots * 9..][..slots * 9];
-            for b1 in a1..=p1 {
-                let from = if b1 == a1 { a2 } else { 0 };
-                for b2 in from..=p2 {
-                    let b = b1 * (p2 + 1) + b2;
-                    let slot = if b1 == a1 { b2 - a2 } else { p2 + 1 + (b1 - a1 - 1) * (2 * p2 + 1) + p2 + b2 - a2 };
-                    for cd in 0..9 {
-                        point[slot * 9 + cd] += local[(b * 9 + cd % 3 * 3 + cd / 3) * padded + a];
-                    }
-                }
-            }
+            buffers.displacement[c * tables.padded + a] = displacement[*control][c];
         }
     }
 }

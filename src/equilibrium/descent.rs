@@ -295,8 +295,8 @@ impl<'a> Descent<'a> {
     /// Strain energy less work of the loads.
     fn energy_at(&self, from: &Start, length: f64) -> f64 {
         let displacement = self.discretization.unknowns.place(&from.moved(length), self.parameter).displacement();
-        let Discretization { mesh, tables, loads, free_strains, .. } = self.discretization;
-        let energy = strain_energy(mesh, tables, &displacement, free_strains.at(self.parameter));
+        let Discretization { tables, loads, free_strains, .. } = self.discretization;
+        let energy = strain_energy(tables, &displacement, free_strains.at(self.parameter));
         energy - loads.work(&self.strokes_to(from, &displacement), self.parameter)
     }
 

@@ -3,7 +3,8 @@
 //! The symmetric part of the tangent goes into the assembled stiffness; the skew part, where loads turn with the shell,
 //! is kept beside it.
 
-use crate::equilibrium::assembly::{Assembled, multiply_stencil, neighbour_slot, stencil_len};
+use crate::equilibrium::assembly::Assembled;
+use crate::equilibrium::blocks::Blocks;
 use crate::equilibrium::gmres::gmres;
 use crate::equilibrium::sparse::SparseSolver;
 use crate::model::{Discretization, Loads, Placement};
@@ -18,8 +19,8 @@ const SKEW_ITERATIONS: usize = 100;
 pub(super) struct External {
     /// On the control points, N; empty where nothing acts.
     pub forces: Vec<[f64; 3]>,
-    /// −½ (∂f/∂u − ∂f/∂uᵀ) in the stencil of the stiffness; empty where nothing turns with the shell.
-    skew: Vec<f64>,
+    /// −½ (∂f/∂u − ∂f/∂uᵀ); empty where nothing turns with the shell.
+    skew: Blocks,
     /// The symmetric part of the matrix on the unknowns; empty where there is no skew one.
     symmetric: Vec<f64>,
 }
@@ -46,9 +47,9 @@ impl External {
         assembled: &mut Assembled,
     ) -> Self {
         let forces = Self::forces_at(discretization, displacement, parameter);
-        let mut external = Self { forces, skew: Vec::new(), symmetric: Vec::new() };
+        let mut external = Self { forces, skew: Blocks::default(), symmetric: Vec::new() };
         if discretization.loads.follow() {
-            external.skew = vec![0.0; assembled.stiffness.len()];
+            external.skew = Blocks::zeros(&discretization.blocks);
             external.add_tangent(&discretization.loads, discretization, displacement, parameter, assembled);
         }
         external
@@ -62,15 +63,13 @@ impl External {
         parameter: f64,
         assembled: &mut Assembled,
     ) {
-        let mesh = &discretization.mesh;
-        let n2 = mesh.control_counts()[1];
-        let slots = stencil_len(mesh.degree);
-        loads.tangent(mesh, displacement, parameter, |part| {
+        loads.tangent(&discretization.mesh, displacement, parameter, |part| {
             let [i, j] = part.points;
-            let [first, second] = [i.min(j), i.max(j)];
-            let at = (first * slots + neighbour_slot(mesh.degree, n2, first, second)) * 9;
-            let stiffness = &mut assembled.stiffness[at..][..9];
-            let skew = &mut self.skew[at..][..9];
+            let Some(block) = discretization.blocks.block(i.min(j), i.max(j)) else {
+                unreachable!("a load couples control points {i} and {j}, which share no element")
+            };
+            let stiffness = assembled.stiffness.block_mut(block);
+            let skew = self.skew.block_mut(block);
             for c in 0..3 {
                 for d in 0..3 {
                     let half = 0.5 * part.block[c][d];
@@ -105,7 +104,7 @@ impl External {
     /// The skew part times a field on the control points.
     pub fn multiply_skew(&self, discretization: &Discretization, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
         match self.has_skew() {
-            true => multiply_stencil(discretization, &self.skew, -1.0, field),
+            true => self.skew.multiply(&discretization.blocks, -1.0, field),
             false => vec![[0.0; 3]; field.len()],
         }
     }

@@ -15,7 +15,7 @@
 //! magnitudes would grow with the number of elements for one and the same stress, which the norm of membrane forces does
 //! not.
 
-use crate::equilibrium::assembly::{Assembled, stencil_len};
+use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::descent::length;
 use crate::model::Discretization;
 
@@ -59,9 +59,7 @@ impl ForceScale {
         displacement: &[[f64; 3]],
         met: f64,
     ) -> Self {
-        let blocks = 9 * stencil_len(discretization.mesh.degree);
-        // The first block of a control point is its own.
-        let own = assembled.stiffness.chunks_exact(blocks).zip(displacement);
+        let own = assembled.stiffness.diagonal(&discretization.blocks).zip(displacement);
         let squares = own.flat_map(|(block, u)| [0, 1, 2].map(|c| (block[4 * c] * u[c]).powi(2)));
         let rounding = ROUNDINGS * f64::EPSILON * squares.sum::<f64>().sqrt();
         let (reactions, loads) = (length(&assembled.residual), length(loads));

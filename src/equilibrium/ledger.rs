@@ -72,9 +72,9 @@ impl Before {
 
     fn put_in_at(&self, discretization: &Discretization, parameter: f64, displacement: Option<&[[f64; 3]]>) -> f64 {
         let Some(displacement) = displacement else { return 0.0 };
-        let Discretization { mesh, tables, free_strains, .. } = discretization;
+        let Discretization { tables, free_strains, .. } = discretization;
         let [after, before] = [parameter, self.parameter]
-            .map(|parameter| strain_energy(mesh, tables, displacement, free_strains.at(parameter)));
+            .map(|parameter| strain_energy(tables, displacement, free_strains.at(parameter)));
         after - before
     }
 }

@@ -20,14 +20,7 @@ pub(super) struct Metric {
 impl Metric {
     /// Of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
-        // ∫N_i dξ = (ξ_{i+p+1} − ξ_i)/(p + 1): de Boor, A Practical Guide to Splines, chapter X.
-        let ways = [0, 1].map(|way| {
-            let (knots, degree) = (&mesh.knots[way], mesh.degree[way]);
-            let total = knots[knots.len() - 1] - knots[0];
-            let integral = |i: usize| (knots[i + degree + 1] - knots[i]) / ((degree + 1) as f64 * total);
-            (0..knots.len() - degree - 1).map(integral).collect::<Vec<f64>>()
-        });
-        Self { weights: ways[0].iter().flat_map(|along| ways[1].iter().map(move |across| along * across)).collect() }
+        Self { weights: mesh.basis_integrals() }
     }
 
     /// Σ m a·b.

@@ -1,6 +1,7 @@
 //! Equilibrium: assembly, the sparse solver, Newton's method as a descent on the energy.
 
 mod assembly;
+mod blocks;
 mod condition;
 mod continuation;
 mod descent;
@@ -21,7 +22,8 @@ mod symmetry;
 mod tangent_stiffness;
 mod timing;
 
-pub use assembly::{Assembled, Want, strain_energy};
+pub use assembly::{Assembled, Part, Want, strain_energy};
+pub use blocks::Blocks;
 pub use condition::Condition;
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};
 pub use force_scale::ForceScale;

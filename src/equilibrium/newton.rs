@@ -190,8 +190,8 @@ impl Workspace {
 
     /// Energy of the model at a displacement and a value of the parameter, N·mm.
     pub fn energy(&self, displacement: &[[f64; 3]], parameter: f64) -> f64 {
-        let Discretization { mesh, tables, free_strains, .. } = &self.discretization;
-        strain_energy(mesh, tables, displacement, free_strains.at(parameter))
+        let Discretization { tables, free_strains, .. } = &self.discretization;
+        strain_energy(tables, displacement, free_strains.at(parameter))
     }
 
     /// Internal forces less loads on the control points, N: at equilibrium, the reactions of the supports.

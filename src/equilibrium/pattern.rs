@@ -1,11 +1,11 @@
-//! From the stencil on control points to the sparse matrix on free unknowns: K_q = Tᵀ K T.
+//! From the blocks on control points to the sparse matrix on free unknowns: K_q = Tᵀ K T.
 //!
 //! Built once per mesh. Almost every block belongs to two control points whose components are unknowns of their own,
 //! and is copied; the others (supports, symmetry, joints) go through their directions.
 
 use rayon::prelude::*;
 
-use crate::equilibrium::assembly::{Assembled, neighbour, stencil};
+use crate::equilibrium::blocks::{BLOCK, Blocks};
 use crate::equilibrium::sparse::{Couplings, SparseSolver};
 use crate::model::{Discretization, Placement};
 
@@ -15,12 +15,12 @@ const SHARE: usize = 1 << 14;
 /// Where the numbers of the matrix come from.
 #[derive(Debug)]
 pub struct Pattern {
-    /// For each number of the matrix the number of the stencil that it is; [`NOWHERE`] where it is none.
+    /// For each number of the matrix the number of the blocks that it is; [`NOWHERE`] where it is none.
     sources: Vec<u32>,
     projected: Vec<ProjectedBlock>,
 }
 
-/// Beyond every stencil and every matrix.
+/// Beyond all blocks and every matrix.
 const NOWHERE: u32 = u32::MAX;
 
 /// Block of which a control point is constrained.
@@ -32,23 +32,23 @@ struct ProjectedBlock {
     targets: Vec<u32>,
 }
 
-/// Which free unknowns meet in the matrix: those of control points that share an element.
-pub fn couplings(discretization: &Discretization, pairs: &[PointPair]) -> Couplings {
+/// Which free unknowns meet in the matrix: those of control points that have a block.
+pub fn couplings(discretization: &Discretization) -> Couplings {
     let unknowns = &discretization.unknowns;
     let of_point = |point| unknowns.entries_of(point).iter().map(|entry| entry.coordinate).collect();
     Couplings {
         unknowns: unknowns.count(),
-        groups: (0..discretization.mesh.control_points.len()).map(of_point).collect(),
-        pairs: pairs.iter().map(|pair| pair.points).collect(),
+        groups: (0..discretization.blocks.points()).map(of_point).collect(),
+        pairs: discretization.blocks.pairs().collect(),
     }
 }
 
 impl Pattern {
     /// For a matrix that a solver holds for these [`couplings`].
-    pub fn new(discretization: &Discretization, pairs: &[PointPair], solver: &SparseSolver) -> Self {
+    pub fn new(discretization: &Discretization, solver: &SparseSolver) -> Self {
         let mut pattern = Self { sources: vec![NOWHERE; solver.value_count()], projected: Vec::new() };
-        for PointPair { block, points } in pairs {
-            pattern.place(discretization, solver, *block, *points);
+        for (block, points) in discretization.blocks.pairs().enumerate() {
+            pattern.place(discretization, solver, block * BLOCK, points);
         }
         pattern
     }
@@ -59,7 +59,7 @@ impl Pattern {
         let stored = |a: usize, b: usize| i != j || a >= b;
         if unknowns.is_regular(i) && unknowns.is_regular(j) {
             let (a, b) = (unknowns.entries_of(i)[0].coordinate, unknowns.entries_of(j)[0].coordinate);
-            for k in (0..9).filter(|k| stored(k / 3, k % 3)) {
+            for k in (0..BLOCK).filter(|k| stored(k / 3, k % 3)) {
                 self.sources[target(solver, a + k / 3, b + k % 3) as usize] = (block + k) as u32;
             }
             return;
@@ -75,22 +75,16 @@ impl Pattern {
     }
 
     /// Fills the values of the matrix.
-    pub fn fill(
-        &self,
-        discretization: &Discretization,
-        placement: &Placement,
-        assembled: &Assembled,
-        values: &mut [f64],
-    ) {
+    pub fn fill(&self, discretization: &Discretization, placement: &Placement, blocks: &Blocks, values: &mut [f64]) {
         let shares = values.par_chunks_mut(SHARE).zip(self.sources.par_chunks(SHARE));
         shares.for_each(|(values, sources)| {
             for (value, source) in values.iter_mut().zip(sources) {
-                *value = assembled.stiffness.get(*source as usize).copied().unwrap_or(0.0);
+                *value = blocks.values.get(*source as usize).copied().unwrap_or(0.0);
             }
         });
         let unknowns = &discretization.unknowns;
         for projected in &self.projected {
-            let block = &assembled.stiffness[projected.block..][..9];
+            let block = &blocks.values[projected.block..][..BLOCK];
             let [i, j] = projected.points;
             let mut targets = projected.targets.iter();
             for (a, left) in unknowns.entries_of(i).iter().zip(placement.directions_of(i)) {
@@ -115,34 +109,9 @@ impl Pattern {
 }
 
 fn target(solver: &SparseSolver, a: usize, b: usize) -> u32 {
-    // Couplings and blocks are those of one stencil.
+    // Couplings and blocks are those of one pattern.
     let Some(place) = solver.place(a, b) else { unreachable!("unknowns {a} and {b} stand in a block and do not meet") };
     place as u32
-}
-
-/// Control points i ≤ j that share an element.
-#[derive(Clone, Copy, Debug)]
-pub struct PointPair {
-    /// Offset of their block in the stencil.
-    block: usize,
-    points: [usize; 2],
-}
-
-/// All pairs of the stencil.
-pub fn point_pairs(discretization: &Discretization) -> Vec<PointPair> {
-    let mesh = &discretization.mesh;
-    let count = mesh.control_points.len();
-    let n2 = mesh.control_counts()[1];
-    let offsets = stencil(mesh.degree);
-    let mut pairs = Vec::new();
-    for i in 0..count {
-        for (slot, offset) in offsets.iter().enumerate() {
-            if let Some(j) = neighbour(i, *offset, n2, count) {
-                pairs.push(PointPair { block: (i * offsets.len() + slot) * 9, points: [i, j] });
-            }
-        }
-    }
-    pairs
 }
 
 #[cfg(test)]
@@ -150,7 +119,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::equilibrium::assembly::Want;
+    use crate::equilibrium::assembly::{Assembled, Want};
     use crate::model::starting_mesh;
     use crate::scene::{Geometry, Symmetry, parse};
 
@@ -184,14 +153,13 @@ mod tests {
             let field = placement.velocity(&direction, &[]);
             let expected = placement.restrict(&assembled.multiply(&discretization, &field));
 
-            let pairs = point_pairs(&discretization);
-            let couplings = couplings(&discretization, &pairs);
+            let couplings = couplings(&discretization);
             let solvers = [SparseSolver::new(&couplings).unwrap(), SparseSolver::supernodal(&couplings).unwrap()];
             let scale = expected.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
             for solver in solvers {
-                let pattern = Pattern::new(&discretization, &pairs, &solver);
+                let pattern = Pattern::new(&discretization, &solver);
                 let mut values = vec![0.0; solver.value_count()];
-                pattern.fill(&discretization, &placement, &assembled, &mut values);
+                pattern.fill(&discretization, &placement, &assembled.stiffness, &mut values);
                 let product = solver.multiply(&values, &direction);
                 for (a, b) in product.iter().zip(&expected) {
                     assert!((a - b).abs() < 1e-11 * scale, "{symmetry:?} {arc_deg}°: {a} {b}");
@@ -209,7 +177,7 @@ mod tests {
             scene.mesh.elements = elements;
             let mesh = Arc::new(starting_mesh(&scene).unwrap());
             let discretization = Discretization::new(&scene, &mesh).unwrap();
-            SparseSolver::new(&couplings(&discretization, &point_pairs(&discretization))).unwrap().flops()
+            SparseSolver::new(&couplings(&discretization)).unwrap().flops()
         };
         let (along, across) = (flops([40, 4]), flops([4, 40]));
         // Numbered along the shorter way a band would be six times as wide, with 36 times the work.

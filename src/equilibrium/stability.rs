@@ -7,7 +7,7 @@
 //! iteration (Golub & Van Loan, *Matrix Computations*, 4th ed., section 8.2.2) from a shift below it (0 where the state is
 //! stable) then gives the mode. Of a part of a symmetric shell it is the lowest of the modes that share its symmetry.
 
-use crate::equilibrium::assembly::Assembled;
+use crate::equilibrium::blocks::Blocks;
 use crate::equilibrium::descent::product;
 use crate::equilibrium::metric::Metric;
 use crate::equilibrium::newton::{Standing, Workspace};
@@ -121,11 +121,10 @@ impl Workspace {
 /// Tᵀ m T in the structure of the stiffness.
 fn mass(work: &Workspace, free: &[f64], parameter: f64) -> Vec<f64> {
     let Workspace { discretization, tangent, .. } = work;
-    let mut diagonal = Assembled::new(discretization);
-    let blocks = diagonal.stiffness.len() / discretization.mesh.control_points.len();
+    let mut diagonal = Blocks::zeros(&discretization.blocks);
     for (point, weight) in Metric::new(&discretization.mesh).weights.iter().enumerate() {
-        // The first block of a control point is its own.
-        (0..3).for_each(|c| diagonal.stiffness[point * blocks + 4 * c] = *weight);
+        let own = diagonal.block_mut(discretization.blocks.start(point));
+        (0..3).for_each(|c| own[4 * c] = *weight);
     }
     let placement = discretization.unknowns.place(free, parameter);
     tangent.project(discretization, &placement, &diagonal)

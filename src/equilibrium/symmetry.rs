@@ -69,11 +69,11 @@ fn forms<Batch, const ROWS: usize>(
     [displacement, x, y]: [&[[f64; 3]]; 3],
     hessian_of: &impl Fn(&PointReference, &Derivatives, &mut Hessian),
 ) -> [f64; 2] {
-    let Tables { elements, padded, .. } = discretization.tables;
+    let Tables { padded, ref connectivity, .. } = discretization.tables;
     let mut hessian: Hessian = [[0.0; 16]; 15];
     let mut forms = [0.0; 2];
-    for element in 0..elements[0] * elements[1] {
-        let points = element_control_points(discretization, element);
+    for element in 0..connectivity.elements() {
+        let points = connectivity.controls(element);
         for (q, point) in table.element_points(element).iter().enumerate() {
             let functions = &table.element_functions(element)[q * ROWS * padded..][..ROWS * padded];
             let derivatives = |field: &[[f64; 3]]| -> Derivatives {
@@ -92,15 +92,6 @@ fn forms<Batch, const ROWS: usize>(
         }
     }
     forms
-}
-
-/// Control points of an element's functions, in their order.
-fn element_control_points(discretization: &Discretization, element: usize) -> Vec<usize> {
-    let tables = &discretization.tables;
-    let [p1, p2] = discretization.mesh.degree;
-    let n2 = discretization.mesh.control_counts()[1];
-    let first = [tables.first[0][element / tables.elements[1]], tables.first[1][element % tables.elements[1]]];
-    (0..(p1 + 1) * (p2 + 1)).map(|a| (first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1)).collect()
 }
 
 /// A field without any symmetry, the same in every run.
@@ -163,11 +154,11 @@ mod tests {
     #[test]
     fn a_matrix_that_is_not_the_sum_of_the_hessians_shows() {
         let (discretization, shape, mut half) = deformed();
-        let largest = half.stiffness.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let largest = half.stiffness.values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         // The block of a control point in the middle with itself.
         let points = discretization.mesh.control_points.len();
-        let row = half.stiffness.len() / points;
-        half.stiffness[points / 2 * row] += 1e-6 * largest;
+        let own = discretization.blocks.start(points / 2);
+        half.stiffness.block_mut(own)[0] += 1e-6 * largest;
         let error = measure(&discretization, &shape, &half, |point, u, hessian| {
             point.hessian(u, hessian);
         });

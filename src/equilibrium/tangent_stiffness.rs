@@ -1,8 +1,9 @@
 //! The tangent stiffness on the free unknowns, and its factor.
 
 use crate::equilibrium::assembly::Assembled;
+use crate::equilibrium::blocks::Blocks;
 use crate::equilibrium::external::External;
-use crate::equilibrium::pattern::{Pattern, couplings, point_pairs};
+use crate::equilibrium::pattern::{Pattern, couplings};
 use crate::equilibrium::sparse::{FactorError, NegativePivots, SparseSolver};
 use crate::model::{Discretization, Placement};
 
@@ -19,9 +20,8 @@ impl TangentStiffness {
     /// # Errors
     /// Where the factor does not fit in memory.
     pub(super) fn new(discretization: &Discretization) -> Result<Self, FactorError> {
-        let pairs = point_pairs(discretization);
-        let solver = SparseSolver::new(&couplings(discretization, &pairs))?;
-        Ok(Self { pattern: Pattern::new(discretization, &pairs, &solver), solver })
+        let solver = SparseSolver::new(&couplings(discretization))?;
+        Ok(Self { pattern: Pattern::new(discretization, &solver), solver })
     }
 
     /// The matrix at a point, Tᵀ K T and what the curvature of the supports adds: its symmetric part where loads turn with
@@ -33,7 +33,7 @@ impl TangentStiffness {
         assembled: &Assembled,
         external: &External,
     ) -> &[f64] {
-        self.pattern.fill(discretization, placement, assembled, self.solver.matrix_mut());
+        self.pattern.fill(discretization, placement, &assembled.stiffness, self.solver.matrix_mut());
         self.solver.add(&placement.curvature(&external.subtract_from(&assembled.residual)));
         self.solver.matrix_mut()
     }
@@ -56,13 +56,8 @@ impl TangentStiffness {
         self.solver.factorize()
     }
 
-    /// Tᵀ A T for blocks A of the stencil, as the numbers of a matrix.
-    pub(super) fn project(
-        &self,
-        discretization: &Discretization,
-        placement: &Placement,
-        blocks: &Assembled,
-    ) -> Vec<f64> {
+    /// Tᵀ A T for blocks A, as the numbers of a matrix.
+    pub(super) fn project(&self, discretization: &Discretization, placement: &Placement, blocks: &Blocks) -> Vec<f64> {
         let mut values = vec![0.0; self.solver.value_count()];
         self.pattern.fill(discretization, placement, blocks, &mut values);
         values

@@ -46,6 +46,6 @@ pub fn stability_at(log: &Log, index: usize, scene: &Scene) -> Result<StabilityR
 pub(super) fn mode_of(scene: &Scene, work: &mut Workspace, state: &State) -> Result<(SoftMode, [f64; 3]), SolveError> {
     let mut mode = soft_mode(work, Standing::of(state))?;
     mode.eigenvalue *= scene.symmetry.copies() as f64;
-    let [x, y, z, w] = state.mesh.control_points[mode.largest_at];
-    Ok((mode, [x / w, y / w, z / w]))
+    let place = state.mesh.point(mode.largest_at);
+    Ok((mode, place))
 }

@@ -37,11 +37,10 @@ pub fn edge_rows(mesh: &Mesh, edge: Edge) -> Result<EdgeRows, ModelError> {
 /// Control points of an edge, and of the row beside it.
 pub fn rows_of(mesh: &Mesh, edge: Edge) -> [Vec<usize>; 2] {
     let (way, at_end) = side(edge);
-    let counts = mesh.control_counts();
+    let count = mesh.control_counts()[way];
     [0, 1].map(|k| {
-        let along = if at_end { counts[way] - 1 - k } else { k };
-        let index = |j: usize| if way == 0 { along * counts[1] + j } else { j * counts[1] + along };
-        (0..counts[1 - way]).map(index).collect()
+        let along = if at_end { count - 1 - k } else { k };
+        mesh.grid().line(way, along).collect()
     })
 }
 
@@ -62,8 +61,7 @@ pub fn on_edge(mesh: &Mesh, edge: Edge, parameter: f64) -> SurfacePoint {
 fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f64; 3], ModelError> {
     let (way, _) = side(edge);
     let running = 1 - way;
-    let [x, y, z, w] = mesh.control_points[control];
-    let target = [x / w, y / w, z / w];
+    let target = mesh.point(control);
     let degree = mesh.degree[running];
     let mut parameter = mesh.knots[running][j + 1..j + 1 + degree].iter().sum::<f64>() / degree as f64;
     for _ in 0..NEWTON_STEPS {

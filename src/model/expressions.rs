@@ -12,14 +12,11 @@ pub(super) type Sum = Vec<(usize, f64)>;
 /// Displacements of a place as weighted sums of control points (weights of 1 in all): each control point of an edge, the
 /// point, each control point of a line.
 pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Result<Vec<Sum>, ModelError> {
-    let [_, n2] = mesh.control_counts();
     Ok(match on {
         Place::Edge(edge) => edge_rows(mesh, edge)?.outer.into_iter().map(|point| vec![(point, 1.0)]).collect(),
         Place::Point(fractions) => {
             let (first, functions) = evaluate_surface(mesh, parameters_of(&scene.geometry, fractions));
-            let columns = mesh.degree[1] + 1;
-            let control = |a: usize| (first[0] + a / columns) * n2 + first[1] + a % columns;
-            vec![nonzero(functions[0].iter().enumerate().map(|(a, value)| (control(a), *value)).collect())]
+            vec![nonzero(mesh.window(first).zip(functions[0].iter().copied()).collect())]
         }
         Place::Line(direction, fraction) => {
             let way = direction.index();
@@ -33,19 +30,19 @@ pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Resu
 /// N_i w_ij and N_i′ w_ij on the line on which the parameter of direction `way` has a value, with their control points: for each
 /// j, the terms of a control point of the line as a curve and of its derivative across.
 pub(super) fn line_terms(mesh: &Mesh, way: usize, parameter: f64) -> Vec<[Sum; 2]> {
-    let [n1, n2] = mesh.control_counts();
+    let grid = mesh.grid();
     let degree = mesh.degree[way];
     let span = find_span(&mesh.knots[way], degree, parameter);
     let mut basis = vec![0.0; basis_derivatives_len(degree)];
     basis_derivatives(&mesh.knots[way], degree, span, parameter, &mut basis);
     let (values, slopes) = basis.split_at(degree + 1);
     let terms = |j: usize| {
-        let control = |a: usize| if way == 0 { (span - degree + a) * n2 + j } else { j * n2 + span - degree + a };
+        let control = |a: usize| grid.index_along(way, span - degree + a, j);
         [values, slopes].map(|functions| {
             (0..=degree).map(|a| (control(a), functions[a] * mesh.control_points[control(a)][3])).collect()
         })
     };
-    (0..if way == 0 { n2 } else { n1 }).map(terms).collect()
+    (0..grid.counts[1 - way]).map(terms).collect()
 }
 
 /// Terms over their sum: weights of 1 in all.

@@ -17,7 +17,7 @@
 //! their moment over l.
 
 use crate::shell::{add, cross, dot, gauss_legendre, norm, scaled, sub};
-use crate::spline::{Mesh, Spans, basis_derivatives, basis_derivatives_len, find_span};
+use crate::spline::{Mesh, Spans, basis_derivatives, basis_derivatives_len, cartesian, find_span};
 
 /// Points beyond the degree at which the forces are exact.
 const EXACT_MORE: usize = 6;
@@ -54,17 +54,16 @@ impl<'a> Section<'a> {
         let span = find_span(knots, degree, parameter);
         let mut basis = vec![0.0; basis_derivatives_len(degree)];
         basis_derivatives(knots, degree, span, parameter, &mut basis);
-        let counts = mesh.control_counts();
+        let grid = mesh.grid();
         let combined = |functions: &[f64]| -> Vec<[f64; 4]> {
             let at = |i: usize| {
                 let of_row = functions.iter().enumerate().map(|(a, share)| {
                     let row = span - degree + a;
-                    let [i1, i2] = if direction == 0 { [i, row] } else { [row, i] };
-                    mesh.control_points[i1 * counts[1] + i2].map(|number| share * number)
+                    mesh.control_points[grid.index_along(direction, i, row)].map(|number| share * number)
                 });
                 of_row.fold([0.0; 4], |sum, term| [0, 1, 2, 3].map(|c| sum[c] + term[c]))
             };
-            (0..counts[direction]).map(at).collect()
+            (0..grid.counts[direction]).map(at).collect()
         };
         Self {
             degree: mesh.degree[direction],
@@ -78,7 +77,7 @@ impl<'a> Section<'a> {
     fn imbalance(&self, counts: &[usize], stretching_over_bending: f64) -> f64 {
         let exact: Vec<usize> = vec![self.degree + EXACT_MORE; counts.len()];
         let [(found_along, found_across), (along, across)] = [counts, &exact].map(|counts| self.pulls(counts));
-        let positions: Vec<[f64; 3]> = self.line.iter().map(|[x, y, z, w]| [x / w, y / w, z / w]).collect();
+        let positions: Vec<[f64; 3]> = self.line.iter().copied().map(cartesian).collect();
         let size = half_diagonal(&positions);
         let moment = |found: &Pulls, exact: &Pulls| {
             let errors = found

@@ -103,23 +103,17 @@ fn copy_line(mesh: &mut Mesh, way: usize, from: usize, to: usize) {
 }
 
 fn move_to(mesh: &mut Mesh, way: usize, [along, across]: [usize; 2], [x, y, z]: [f64; 3]) {
-    let index = index_of(mesh, way, along, across);
+    let index = mesh.grid().index_along(way, along, across);
     let weight = mesh.control_points[index][3];
     mesh.control_points[index] = [x * weight, y * weight, z * weight, weight];
 }
 
-fn index_of(mesh: &Mesh, way: usize, along: usize, across: usize) -> usize {
-    let counts = mesh.control_counts();
-    if way == 0 { along * counts[1] + across } else { across * counts[1] + along }
-}
-
 fn weight_of(mesh: &Mesh, way: usize, along: usize, across: usize) -> f64 {
-    mesh.control_points[index_of(mesh, way, along, across)][3]
+    mesh.control_points[mesh.grid().index_along(way, along, across)][3]
 }
 
 fn place_of(mesh: &Mesh, way: usize, along: usize, across: usize) -> [f64; 3] {
-    let [x, y, z, w] = mesh.control_points[index_of(mesh, way, along, across)];
-    [x / w, y / w, z / w]
+    mesh.point(mesh.grid().index_along(way, along, across))
 }
 
 /// Weights of a joint, held against the geometry on every line across it.

@@ -340,10 +340,7 @@ impl LoadPoint {
     }
 
     pub fn controls(&self, mesh: &Mesh) -> impl Iterator<Item = usize> + use<> {
-        let [_, n2] = mesh.control_counts();
-        let columns = mesh.degree[1] + 1;
-        let [first1, first2] = self.first;
-        (0..self.functions[0].len()).map(move |a| (first1 + a / columns) * n2 + first2 + a % columns)
+        mesh.window(self.first)
     }
 
     /// a₁, a₂.

@@ -97,10 +97,7 @@ fn plane_of(mesh: &Mesh, edge: Option<Edge>, way: usize, parameter: f64) -> Resu
         return symmetry_plane(&line.points(mesh), &line.steps(mesh));
     };
     let [points, beside] = rows_of(mesh, edge).map(|row| {
-        let point = |control: usize| {
-            let [x, y, z, w] = mesh.control_points[control];
-            [x / w, y / w, z / w]
-        };
+        let point = |control: usize| mesh.point(control);
         row.into_iter().map(point).collect::<Vec<_>>()
     });
     let steps: Vec<[f64; 3]> = beside.iter().zip(&points).map(|(beside, point)| sub(*beside, *point)).collect();

@@ -1,5 +1,7 @@
 //! A scene made discrete: the patch that it starts from, and for a mesh its tables, supports and free unknowns.
 
+mod block_pattern;
+mod connectivity;
 mod direction;
 mod edge;
 mod elimination;
@@ -32,6 +34,8 @@ mod tables;
 mod thinness;
 mod unknowns;
 
+pub use block_pattern::BlockPattern;
+pub use connectivity::{Connectivity, Strand};
 pub(crate) use direction::{Site, direction_at};
 pub use error::ModelError;
 pub(crate) use expressions::control_expressions;
@@ -61,6 +65,8 @@ pub struct Discretization {
     pub mesh: Arc<Mesh>,
     /// Shape functions and undeformed shell at the quadrature points.
     pub tables: Tables,
+    /// Which control points meet in a matrix.
+    pub blocks: BlockPattern,
     /// Free unknowns and how control points follow from them.
     pub unknowns: Unknowns,
     /// What acts on the shell.
@@ -76,9 +82,11 @@ impl Discretization {
     /// Where supports or loads do not fit the mesh.
     pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, ModelError> {
         let (unknowns, loads) = (Unknowns::new(scene, mesh)?, Loads::new(scene, mesh)?);
+        let tables = Tables::new(scene, mesh);
         Ok(Self {
             mesh: mesh.clone(),
-            tables: Tables::new(scene, mesh),
+            blocks: BlockPattern::new(&[&tables.connectivity], &[]),
+            tables,
             unknowns,
             loads,
             free_strains: FreeStrains::new(scene, mesh),

@@ -7,7 +7,7 @@ use crate::model::shape::shape;
 use crate::model::subdivision::subdivide;
 use crate::model::thinness::check_thinness;
 use crate::scene::Scene;
-use crate::spline::Mesh;
+use crate::spline::{Grid, Mesh};
 
 /// Control points of a mesh at most: tables and matrix of more would not fit in the memory of a large workstation.
 pub const MOST_CONTROL_POINTS: usize = 500_000;
@@ -27,7 +27,7 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
             return Err(ModelError::TooFewRows { elements, degree, rows, least: 4 - degree });
         }
     }
-    let count = (shape.elements[0] + shape.mesh.degree[0]) * (shape.elements[1] + shape.mesh.degree[1]);
+    let count = Grid::new([0, 1].map(|way| shape.elements[way] + shape.mesh.degree[way])).len();
     if count > MOST_CONTROL_POINTS {
         return Err(ModelError::TooManyControlPoints { elements: shape.elements, count });
     }

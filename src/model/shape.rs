@@ -7,7 +7,7 @@ use crate::model::joint::smoothed;
 use crate::model::soundness::{check_normals, check_seam, closed_directions};
 use crate::scene::{Geometry, NurbsPatch, Scene, Seam};
 use crate::spline::{
-    HomogeneousCurve, Mesh, basis_derivatives, basis_derivatives_len, circular_arc, find_span, straight_line,
+    Grid, HomogeneousCurve, Mesh, basis_derivatives, basis_derivatives_len, circular_arc, find_span, straight_line,
 };
 
 /// A surface, and how many elements the scene asks for.
@@ -116,10 +116,10 @@ fn sound(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
 fn listed_the_other_way(patch: &NurbsPatch) -> NurbsPatch {
     let n1 = patch.knots_u.len() - patch.degrees[0] - 1;
     let n2 = patch.knots_v.len() - patch.degrees[1] - 1;
-    let source = |k: usize| k % n2 * n1 + k / n2;
+    let listed = Grid::new([n2, n1]);
     NurbsPatch {
-        control_points_mm: (0..n1 * n2).map(|k| patch.control_points_mm[source(k)]).collect(),
-        weights: (0..n1 * n2).map(|k| patch.weights[source(k)]).collect(),
+        control_points_mm: listed.first_fastest().map(|k| patch.control_points_mm[k]).collect(),
+        weights: listed.first_fastest().map(|k| patch.weights[k]).collect(),
         ..patch.clone()
     }
 }
@@ -180,9 +180,7 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
     let across = counts[1 - way];
     let mut new_counts = counts;
     new_counts[way] = count;
-    let index = |counts: [usize; 2], along: usize, j: usize| {
-        if way == 0 { along * counts[1] + j } else { j * counts[1] + along }
-    };
+    let index = |counts: [usize; 2], along: usize, j: usize| Grid::new(counts).index_along(way, along, j);
     let mut control_points = vec![[0.0; 4]; count * across];
     for j in 0..across {
         for row in 0..count {

@@ -130,7 +130,7 @@ impl Gaps {
     fn new(mesh: &Mesh) -> Self {
         let first = mesh.control_points[0];
         let corner = [first[0] / first[3], first[1] / first[3], first[2] / first[3]];
-        let arms = mesh.control_points.iter().map(|[x, y, z, w]| sub([x / w, y / w, z / w], corner));
+        let arms = mesh.points().map(|point| sub(point, corner));
         let tolerance = POSITION * arms.map(norm).fold(0.0, f64::max);
         let gap = |way: usize, reversed: bool| {
             let on =

@@ -168,10 +168,10 @@ mod tests {
     fn a_pressure_does_work_by_the_volume_between() {
         let plate = plate(ActionKind::Pressure { pressure_mpa: 0.7, follower: true });
         let Discretization { mesh, loads, .. } = &plate;
-        let [n1, n2] = mesh.control_counts();
+        let grid = mesh.grid();
         let held = |size: f64, seed: usize| -> Vec<[f64; 3]> {
             let mut field = field(&plate, size, seed);
-            let edge = |i: usize| [0, n1 - 1].contains(&(i / n2)) || [0, n2 - 1].contains(&(i % n2));
+            let edge = |i: usize| (0..2).any(|way| [0, grid.counts[way] - 1].contains(&grid.place(i)[way]));
             field.iter_mut().enumerate().filter(|(i, _)| edge(*i)).for_each(|(_, u)| *u = [0.0; 3]);
             field
         };

@@ -110,7 +110,7 @@ impl Supports {
         };
         let all = supports_of(scene);
         let ties = Ties::new(scene, mesh, &all)?;
-        let points: Vec<[f64; 3]> = mesh.control_points.iter().map(|[x, y, z, w]| [x / w, y / w, z / w]).collect();
+        let points: Vec<[f64; 3]> = mesh.points().collect();
         // Sections first: what else holds their control points must know their frames.
         for (index, support) in all.iter().enumerate() {
             supports.traces.push(Trace {
@@ -320,17 +320,14 @@ impl Supports {
 
     /// C¹ joints of segments, and seams.
     fn tie(&mut self, ties: &Ties, mesh: &Mesh) {
-        let counts = mesh.control_counts();
-        let index = |direction: usize, along: usize, across: usize| match direction {
-            0 => along * counts[1] + across,
-            _ => across * counts[1] + along,
-        };
+        let grid = mesh.grid();
+        let counts = grid.counts;
         for direction in 0..2 {
             for across in 0..counts[1 - direction] {
                 for joint in ties.joints[direction].iter().chain(&ties.seam[direction]) {
                     let total = joint.before_weight + joint.after_weight;
                     for c in 0..3 {
-                        let component = |along: usize| 3 * index(direction, along, across) + c;
+                        let component = |along: usize| 3 * grid.index_along(direction, along, across) + c;
                         self.push(
                             None,
                             vec![
@@ -344,7 +341,7 @@ impl Supports {
                 if !ties.seam[direction].is_empty() {
                     let last = counts[direction] - 1;
                     for c in 0..3 {
-                        let component = |along: usize| 3 * index(direction, along, across) + c;
+                        let component = |along: usize| 3 * grid.index_along(direction, along, across) + c;
                         self.push(None, vec![(component(last), 1.0), (component(0), -1.0)]);
                     }
                 }

@@ -2,11 +2,12 @@
 
 use rayon::prelude::*;
 
+use crate::model::connectivity::{Connectivity, starts};
 use crate::model::quadrature::{Counts, PointCounts};
 use crate::scene::{Material, Scene};
 use crate::shell::{PointBatch, PointReference, StretchingBatch, gauss_legendre};
 use crate::spline::{
-    Mesh, Spans, basis_derivatives, basis_derivatives_len, find_span, quotient_derivatives, tensor_derivatives,
+    Grid, Mesh, Spans, basis_derivatives, basis_derivatives_len, find_span, quotient_derivatives, tensor_derivatives,
 };
 
 /// Basis functions are padded to a multiple of this, so that kernels work on whole vectors of any width.
@@ -18,10 +19,10 @@ pub(crate) const BATCH: usize = 4;
 /// Tables of a mesh. Elements are ordered with the second direction fastest, points within an element likewise.
 #[derive(Debug)]
 pub struct Tables {
-    /// Elements each way.
-    pub elements: [usize; 2],
-    /// First control index of each element, each way.
-    pub first: [Vec<usize>; 2],
+    /// Numbers of the elements.
+    pub elements: Grid,
+    /// Control points of the elements, and the order of sums.
+    pub connectivity: Connectivity,
     /// (p₁ + 1)(p₂ + 1).
     pub functions_per_element: usize,
     /// The same, padded to a multiple of 8; the padding holds zeros.
@@ -64,9 +65,12 @@ impl<Batch, const ROWS: usize> PointTable<Batch, ROWS> {
         Batch: Send,
     {
         let directions = [0, 1].map(|k| Direction::new(geometry.mesh, k, &geometry.spans[k], &counts[k]));
-        let elements = geometry.spans.each_ref().map(Spans::count);
-        let count = elements[0] * elements[1];
-        let points_of = |element: usize| counts[0][element / elements[1]] * counts[1][element % elements[1]];
+        let elements = geometry.elements();
+        let count = elements.len();
+        let points_of = |element: usize| {
+            let [e1, e2] = elements.place(element);
+            counts[0][e1] * counts[1][e2]
+        };
         let point_start = starts((0..count).map(points_of));
         let batch_start = starts((0..count).map(|element| points_of(element).div_ceil(BATCH)));
         let padded = geometry.padded();
@@ -82,8 +86,7 @@ impl<Batch, const ROWS: usize> PointTable<Batch, ROWS> {
             .into_par_iter()
             .enumerate()
             .map(|(element, out)| {
-                let at = [element / elements[1], element % elements[1]];
-                let points = element_points::<ROWS>(geometry, &directions, at, out);
+                let points = element_points::<ROWS>(geometry, &directions, elements.place(element), out);
                 let made = of_element(&points);
                 let references: Vec<PointReference> = points.into_iter().map(|point| part(point.reference)).collect();
                 let batches = references.chunks(BATCH).map(&batch).collect();
@@ -141,9 +144,10 @@ impl Tables {
             let alone = PointReference::stretching_alone;
             PointTable::new(&geometry, &counts, alone, StretchingBatch::new, |_| ()).0
         });
+        let first = [0, 1].map(|k| geometry.spans[k].index.iter().map(|s| s - mesh.degree[k]).collect());
         Self {
-            elements: geometry.spans.each_ref().map(Spans::count),
-            first: [0, 1].map(|k| geometry.spans[k].index.iter().map(|s| s - mesh.degree[k]).collect()),
+            elements: geometry.elements(),
+            connectivity: Connectivity::of_tensor_product(mesh, &first),
             functions_per_element: geometry.functions(),
             padded: geometry.padded(),
             points,
@@ -151,15 +155,6 @@ impl Tables {
             lengths,
         }
     }
-}
-
-/// Sums of all counts before each, and of all.
-fn starts(counts: impl Iterator<Item = usize>) -> Vec<usize> {
-    let sums = counts.scan(0, |sum, count| {
-        *sum += count;
-        Some(*sum)
-    });
-    std::iter::once(0).chain(sums).collect()
 }
 
 /// What points are made from: the functions of a mesh on elements that may be finer than its own.
@@ -180,6 +175,10 @@ impl<'a> Geometry<'a> {
             spans
         });
         Self { material: &scene.material, mesh, spans }
+    }
+
+    fn elements(&self) -> Grid {
+        Grid::new(self.spans.each_ref().map(Spans::count))
     }
 
     fn functions(&self) -> usize {
@@ -251,14 +250,14 @@ fn element_points<const ROWS: usize>(
     let (mesh, padded) = (geometry.mesh, geometry.padded());
     let [d1, d2] = directions;
     let [p1, p2] = mesh.degree;
-    let n2 = mesh.control_counts()[1];
+    let grid = mesh.grid();
     let (size1, size2) = (d1.sizes[at[0]], d2.sizes[at[1]]);
     let mut points: Vec<ElementPoint> = Vec::new();
     for (q1, weight1) in d1.weights[at[0]].iter().enumerate() {
         for (q2, weight2) in d2.weights[at[1]].iter().enumerate() {
             let (along, across) = (&d1.basis[at[0]][q1], &d2.basis[at[1]][q2]);
             let weighted = |a1: usize, a2: usize| {
-                let control = mesh.control_points[(d1.first[at[0]] + a1) * n2 + d2.first[at[1]] + a2];
+                let control = mesh.control_points[grid.index([d1.first[at[0]] + a1, d2.first[at[1]] + a2])];
                 (control, tensor_derivatives(along, across, mesh.degree, [a1, a2]).map(|value| value * control[3]))
             };
             let mut sums = [0.0; 6];

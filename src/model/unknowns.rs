@@ -21,7 +21,7 @@ use crate::model::elimination::{Expression, eliminate};
 use crate::model::supports::{Law, Section, Supports};
 use crate::model::{ModelError, Placement};
 use crate::scene::Scene;
-use crate::spline::Mesh;
+use crate::spline::{Grid, Mesh};
 
 /// The share of one coordinate in the displacement of one control point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +79,7 @@ impl Unknowns {
     /// Where the supports contradict each other, or do not fit the surface.
     pub fn new(scene: &Scene, mesh: &Mesh) -> Result<Self, ModelError> {
         let supports = Supports::new(scene, mesh)?;
-        let points: Vec<[f64; 3]> = mesh.control_points.iter().map(|[x, y, z, w]| [x / w, y / w, z / w]).collect();
+        let points: Vec<[f64; 3]> = mesh.points().collect();
         let first_given = 3 * points.len();
         let eliminated = eliminate(&supports.constraints, first_given)
             .map_err(|contradiction| supports.contradiction(contradiction.constraint))?;
@@ -94,7 +94,7 @@ impl Unknowns {
             points,
             home: Vec::new(),
         };
-        unknowns.number(&eliminated, mesh.control_counts());
+        unknowns.number(&eliminated, mesh.grid());
         Ok(unknowns)
     }
 
@@ -160,12 +160,13 @@ impl Unknowns {
     /// Numbers the free motions of sections and the components that were not eliminated, line of control points after line
     /// along the way that has more of them, so that unknowns that meet stand near each other; and lists each control point's
     /// entries.
-    fn number(&mut self, eliminated: &BTreeMap<usize, Expression>, [n1, n2]: [usize; 2]) {
+    fn number(&mut self, eliminated: &BTreeMap<usize, Expression>, grid: Grid) {
         let components = 3 * self.points.len();
         let mut of_component = BTreeMap::new();
         self.motions = vec![[usize::MAX; 6]; self.supports.sections.len()];
-        let point_in_turn = |k: usize| if n1 >= n2 { k } else { k % n1 * n2 + k / n1 };
-        for point in (0..self.points.len()).map(point_in_turn) {
+        let [n1, n2] = grid.counts;
+        let in_turn: Vec<usize> = if n1 >= n2 { (0..grid.len()).collect() } else { grid.first_fastest().collect() };
+        for point in in_turn {
             self.number_motions_at(point);
             for c in (0..3).filter(|c| !eliminated.contains_key(&(3 * point + c))) {
                 of_component.insert(3 * point + c, self.home.len());

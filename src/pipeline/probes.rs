@@ -94,8 +94,7 @@ impl Reader<'_> {
     }
 
     fn position(&self, point: usize) -> [f64; 3] {
-        let [x, y, z, w] = self.discretization.mesh.control_points[point];
-        add([x / w, y / w, z / w], self.at.displacement[point])
+        add(self.discretization.mesh.point(point), self.at.displacement[point])
     }
 
     /// Sum of forces on control points, and of their moments about `pole`.
@@ -122,9 +121,8 @@ impl Reader<'_> {
             .iter()
             .flatten()
             .fold([0.0; 3], |sum, (point, factor)| add(sum, scaled(factor / count, self.position(*point))));
-        let n2 = mesh.control_counts()[1];
-        let side =
-            (0..mesh.control_points.len()).filter(|point| [point / n2, point % n2][line.way] < line.first_beyond);
+        let grid = mesh.grid();
+        let side = (0..grid.len()).filter(|point| grid.place(*point)[line.way] < line.first_beyond);
         let Some(Exerted { by_joints, .. }) = &self.exerted else { return f64::NAN };
         // A joint across the line pulls on control points of both sides: its part on this one is no push from outside.
         let held = side.map(|point| {
@@ -144,7 +142,7 @@ impl Reader<'_> {
         let mesh = &self.discretization.mesh;
         let tables = &self.discretization.tables;
         let mut best = (0.0, 0);
-        for element in 0..tables.elements[0] * tables.elements[1] {
+        for element in 0..tables.elements.len() {
             for (strains, lengths) in element_strains(self.discretization, self.at.displacement, element) {
                 for axis in 0..2 {
                     let value = strains.bending[axis].abs() / (lengths[axis] * lengths[axis]);
@@ -154,7 +152,7 @@ impl Reader<'_> {
                 }
             }
         }
-        let place = [best.1 / tables.elements[1], best.1 % tables.elements[1]];
+        let place = tables.elements.place(best.1);
         let middle = |way: usize| {
             let [from, to] = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds[place[way]];
             0.5 * (from + to)

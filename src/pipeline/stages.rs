@@ -140,7 +140,7 @@ impl Stages {
         let tables = Tables::on_elements_of(&self.scene, &state.mesh, &finer);
         let natural = FreeStrains::new(&self.scene, &state.mesh).at(state.parameter);
         let parts = self.scene.symmetry.copies() as f64;
-        let energy = parts * strain_energy(&state.mesh, &tables, &state.displacement, natural);
+        let energy = parts * strain_energy(&tables, &state.displacement, natural);
         let mut report = self.report(state, state.step);
         report.marked = [state.marked[0].len(), state.marked[1].len()];
         report.elements = finer.element_counts();

@@ -1,10 +1,9 @@
 //! The spline space with its geometry: what knot insertion changes.
 
 use crate::digest::{Feed, Hash};
-use crate::spline::insert_knots_into_net;
+use crate::spline::{Grid, insert_knots_into_net};
 
-/// Tensor-product NURBS mid-surface. Control points are ordered with the second direction (arc) fastest:
-/// index = i₁ · n₂ + i₂.
+/// Tensor-product NURBS mid-surface; its control points are numbered as a [`Grid`], the second direction (arc) fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Polynomial degree each way.
@@ -21,9 +20,41 @@ impl Mesh {
         [0, 1].map(|k| self.knots[k].len() - self.degree[k] - 1)
     }
 
+    /// Numbers of the control points.
+    pub fn grid(&self) -> Grid {
+        Grid::new(self.control_counts())
+    }
+
+    /// Place of a control point, mm.
+    pub fn point(&self, index: usize) -> [f64; 3] {
+        cartesian(self.control_points[index])
+    }
+
+    /// Places of all control points, mm.
+    pub fn points(&self) -> impl Iterator<Item = [f64; 3]> {
+        self.control_points.iter().copied().map(cartesian)
+    }
+
+    /// Control points whose functions do not vanish where the first of them are `first`, in the order of the functions.
+    pub fn window(&self, first: [usize; 2]) -> impl Iterator<Item = usize> + use<> {
+        self.grid().window(first, self.degree.map(|p| p + 1))
+    }
+
     /// Non-empty knot spans (elements) each way.
     pub fn element_counts(&self) -> [usize; 2] {
         [0, 1].map(|k| self.knots[k].windows(2).filter(|pair| pair[0] < pair[1]).count())
+    }
+
+    /// Integrals of the B-splines of the control points over the parameters, as shares of the whole: without the weights, so
+    /// that they sum up to 1. ∫N_i dξ = (ξ_{i+p+1} − ξ_i)/(p + 1): de Boor, *A Practical Guide to Splines*, chapter X.
+    pub fn basis_integrals(&self) -> Vec<f64> {
+        let ways = [0, 1].map(|way| {
+            let (knots, degree) = (&self.knots[way], self.degree[way]);
+            let total = knots[knots.len() - 1] - knots[0];
+            let integral = |i: usize| (knots[i + degree + 1] - knots[i]) / ((degree + 1) as f64 * total);
+            (0..knots.len() - degree - 1).map(integral).collect::<Vec<f64>>()
+        });
+        ways[0].iter().flat_map(|along| ways[1].iter().map(move |across| along * across)).collect()
     }
 
     /// The same surface with `new` knots (ascending, each way) inserted.
@@ -58,4 +89,9 @@ impl Mesh {
         }
         feed.finish()
     }
+}
+
+/// The point with homogeneous coordinates (w x, w y, w z, w), mm.
+pub fn cartesian([x, y, z, w]: [f64; 4]) -> [f64; 3] {
+    [x / w, y / w, z / w]
 }

@@ -4,12 +4,14 @@
 
 mod arc;
 mod basis;
+mod grid;
 mod insertion;
 mod mesh;
 mod surface;
 
 pub use arc::{HomogeneousCurve, circular_arc, segment_count, straight_line};
 pub use basis::{DEGREES, Spans, basis_derivatives, basis_derivatives_len, find_span};
+pub use grid::Grid;
 pub use insertion::{insert_knots, insert_knots_into_net};
-pub use mesh::Mesh;
+pub use mesh::{Mesh, cartesian};
 pub use surface::{SurfacePoint, evaluate_surface, mid_surface_point, quotient_derivatives, tensor_derivatives};

@@ -16,7 +16,7 @@ pub struct SurfacePoint {
 /// `functions[k][a₁ (p₂ + 1) + a₂]`, k = value, ,1 ,2 ,11 ,22 ,12.
 pub fn evaluate_surface(mesh: &Mesh, parameters: [f64; 2]) -> ([usize; 2], [Vec<f64>; 6]) {
     let [p1, p2] = mesh.degree;
-    let n2 = mesh.control_counts()[1];
+    let grid = mesh.grid();
     let span = [0, 1].map(|k| find_span(&mesh.knots[k], mesh.degree[k], parameters[k]));
     let mut along = vec![0.0; basis_derivatives_len(p1)];
     let mut across = vec![0.0; basis_derivatives_len(p2)];
@@ -27,7 +27,7 @@ pub fn evaluate_surface(mesh: &Mesh, parameters: [f64; 2]) -> ([usize; 2], [Vec<
     let mut sums = [0.0; 6];
     for a1 in 0..=p1 {
         for a2 in 0..=p2 {
-            let weight = mesh.control_points[(first[0] + a1) * n2 + first[1] + a2][3];
+            let weight = mesh.control_points[grid.index([first[0] + a1, first[1] + a2])][3];
             let products = tensor_derivatives(&along, &across, [p1, p2], [a1, a2]);
             for k in 0..6 {
                 weighted[k].push(weight * products[k]);
@@ -64,15 +64,12 @@ pub fn quotient_derivatives(f: [f64; 6], w: [f64; 6]) -> [f64; 6] {
 
 /// Point of the surface with control points moved by `displacement` (same order; empty for the undeformed one).
 pub fn mid_surface_point(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) -> SurfacePoint {
-    let n2 = mesh.control_counts()[1];
-    let p2 = mesh.degree[1];
     let (first, functions) = evaluate_surface(mesh, parameters);
     let mut sums = [[0.0; 3]; 6];
-    for a in 0..functions[0].len() {
-        let index = (first[0] + a / (p2 + 1)) * n2 + first[1] + a % (p2 + 1);
-        let [x, y, z, w] = mesh.control_points[index];
+    for (a, index) in mesh.window(first).enumerate() {
+        let [x, y, z] = mesh.point(index);
         let shift = displacement.get(index).copied().unwrap_or_default();
-        let position = [x / w + shift[0], y / w + shift[1], z / w + shift[2]];
+        let position = [x + shift[0], y + shift[1], z + shift[2]];
         for k in 0..6 {
             for c in 0..3 {
                 sums[k][c] += functions[k][a] * position[c];

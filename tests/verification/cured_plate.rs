@@ -38,8 +38,8 @@ fn curvatures(scene: &Scene, state: &State, margin: f64) -> Vec<[f64; 2]> {
         let size = length_mm / count as f64;
         index as f64 * size >= margin && (count - 1 - index) as f64 * size >= margin
     };
-    (0..elements[0] * elements[1])
-        .filter(|element| inside(element / elements[1], elements[0]) && inside(element % elements[1], elements[1]))
+    (0..elements.len())
+        .filter(|element| (0..2).all(|way| inside(elements.place(*element)[way], elements.counts[way])))
         .flat_map(|element| element_strains(&discretization, &state.displacement, element))
         .map(|(strains, lengths)| [0, 1].map(|axis| strains.bending[axis] / (lengths[axis] * lengths[axis])))
         .collect()

@@ -101,7 +101,7 @@ fn gradient_and_stiffness_are_derivatives_under_free_strain() {
     };
     let placement = discretization.unknowns.place(&point, parameter);
     let natural = discretization.free_strains.at(parameter);
-    let energy = |step: f64| strain_energy(&mesh, &discretization.tables, &at(step), natural);
+    let energy = |step: f64| strain_energy(&discretization.tables, &at(step), natural);
     let mut assembled = Assembled::new(&discretization);
     let mut gradient = |step: f64| {
         assembled.assemble(&discretization, &at(step), parameter, Want::Residual);

@@ -7,6 +7,7 @@ mod baseline;
 mod benchmarks;
 mod buckling;
 mod coarse;
+mod connectivity;
 mod cured_plate;
 mod extreme;
 mod free_strain;

@@ -1,0 +1,164 @@
+//! Which control points each element acts on, and in which order the elements are summed.
+//!
+//! Nothing here knows how a mesh is made: elements may have different numbers of control points, and several patches may
+//! share them. One thread sums up the elements of a strand one after another; strands of one colour share no control point
+//! and run at once, colours follow each other. Every sum is therefore formed in one order, whatever the number of threads.
+
+use std::ops::Range;
+
+use crate::spline::{Grid, Mesh};
+
+/// Elements with their control points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Connectivity {
+    points: usize,
+    /// Control points of element e: `controls[starts[e]..starts[e + 1]]`.
+    starts: Vec<usize>,
+    controls: Vec<usize>,
+    strands: Vec<Strand>,
+    /// Strands of each colour, ascending.
+    colours: Vec<Vec<usize>>,
+}
+
+/// Elements that one thread sums up one after another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strand {
+    /// The elements.
+    pub elements: Range<usize>,
+    /// The control points that they act on, ascending, in as few runs as there are.
+    pub runs: Vec<Range<usize>>,
+}
+
+impl Connectivity {
+    /// Of elements with these control points, in strands of so many elements. Strand k takes the first colour that is free for
+    /// it, beginning with k modulo `cycle`.
+    pub fn new(points: usize, elements: &[Vec<usize>], strand_lengths: &[usize], cycle: usize) -> Self {
+        let of_elements = starts(elements.iter().map(Vec::len));
+        let controls: Vec<usize> = elements.concat();
+        let firsts = starts(strand_lengths.iter().copied());
+        let strands: Vec<Strand> = firsts
+            .windows(2)
+            .map(|pair| {
+                let runs = runs(controls[of_elements[pair[0]]..of_elements[pair[1]]].to_vec());
+                Strand { elements: pair[0]..pair[1], runs }
+            })
+            .collect();
+        let colours = colours(points, &strands, cycle.max(1));
+        Self { points, starts: of_elements, controls, strands, colours }
+    }
+
+    /// Of a tensor-product mesh on a grid of elements whose first control points each way are `first`: a strand for each column
+    /// of elements across the first direction. Such columns share no control point where they stand p₁ + 1 apart.
+    pub fn of_tensor_product(mesh: &Mesh, first: &[Vec<usize>; 2]) -> Self {
+        let elements = Grid::new(first.each_ref().map(Vec::len));
+        let controls: Vec<Vec<usize>> = (0..elements.len())
+            .map(|element| {
+                let [e1, e2] = elements.place(element);
+                mesh.window([first[0][e1], first[1][e2]]).collect()
+            })
+            .collect();
+        let [columns, length] = elements.counts;
+        Self::new(mesh.control_points.len(), &controls, &vec![length; columns], mesh.degree[0] + 1)
+    }
+
+    /// The same elements on other control points: `numbers` are the new ones of the old, among `points` in all.
+    ///
+    /// # Panics
+    /// Where a number is missing.
+    pub fn renumbered(&self, points: usize, numbers: &[usize]) -> Self {
+        let renumbered = |element| self.controls(element).iter().map(|control| numbers[*control]).collect();
+        let elements: Vec<Vec<usize>> = (0..self.elements()).map(renumbered).collect();
+        let lengths: Vec<usize> = self.strands.iter().map(|strand| strand.elements.len()).collect();
+        Self::new(points, &elements, &lengths, self.colours.len())
+    }
+
+    /// Control points that there are.
+    pub fn points(&self) -> usize {
+        self.points
+    }
+
+    /// Elements.
+    pub fn elements(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Control points of an element, in the order of its functions.
+    pub fn controls(&self, element: usize) -> &[usize] {
+        &self.controls[self.starts[element]..self.starts[element + 1]]
+    }
+
+    /// All strands.
+    pub fn strands(&self) -> &[Strand] {
+        &self.strands
+    }
+
+    /// Strands of each colour.
+    pub fn colours(&self) -> &[Vec<usize>] {
+        &self.colours
+    }
+}
+
+/// Sums of all counts before each, and of all.
+pub(super) fn starts(counts: impl Iterator<Item = usize>) -> Vec<usize> {
+    let sums = counts.scan(0, |sum, count| {
+        *sum += count;
+        Some(*sum)
+    });
+    std::iter::once(0).chain(sums).collect()
+}
+
+/// Runs of what is in a list.
+fn runs(mut list: Vec<usize>) -> Vec<Range<usize>> {
+    list.sort_unstable();
+    list.dedup();
+    list.chunk_by(|one, next| one + 1 == *next).map(|run| run[0]..run[run.len() - 1] + 1).collect()
+}
+
+fn colours(points: usize, strands: &[Strand], cycle: usize) -> Vec<Vec<usize>> {
+    let mut taken: Vec<Vec<usize>> = vec![Vec::new(); points];
+    let mut colours: Vec<Vec<usize>> = Vec::new();
+    for (index, strand) in strands.iter().enumerate() {
+        let touched = || strand.runs.iter().cloned().flatten();
+        let is_free = |colour: &usize| touched().all(|point| !taken[point].contains(colour));
+        let in_turn = (0..cycle).map(|k| (index + k) % cycle).chain(cycle..);
+        // Of endless colours one is free.
+        let Some(colour) = in_turn.into_iter().find(is_free) else { unreachable!("colours have no end") };
+        touched().for_each(|point| taken[point].push(colour));
+        colours.resize_with(colours.len().max(colour + 1), Vec::new);
+        colours[colour].push(index);
+    }
+    colours
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Strands of one colour share no control point, and every strand has one colour.
+    fn check(connectivity: &Connectivity) {
+        let mut seen = vec![0; connectivity.strands().len()];
+        for colour in connectivity.colours() {
+            let mut touched = vec![false; connectivity.points()];
+            for strand in colour {
+                seen[*strand] += 1;
+                for point in connectivity.strands()[*strand].runs.iter().cloned().flatten() {
+                    assert!(!std::mem::replace(&mut touched[point], true), "control point {point} twice");
+                }
+            }
+        }
+        assert!(seen.iter().all(|count| *count == 1));
+    }
+
+    /// A strip of elements of 3 points, 2 apart, and two more elements across its ends.
+    #[test]
+    fn strands_of_a_colour_share_nothing() {
+        let mut elements: Vec<Vec<usize>> = (0..5).map(|e| (2 * e..2 * e + 3).collect()).collect();
+        elements.extend([vec![10, 0, 11, 12], vec![0, 5]]);
+        let connectivity = Connectivity::new(13, &elements, &[2, 1, 2, 1, 1], 2);
+        check(&connectivity);
+        assert_eq!(connectivity.controls(5), [10, 0, 11, 12]);
+        assert_eq!(connectivity.strands()[3].runs, [0..1, 10..13]);
+        assert_eq!(connectivity.elements(), 7);
+        check(&connectivity.renumbered(26, &(0..13).map(|k| 25 - 2 * k).collect::<Vec<_>>()));
+    }
+}
