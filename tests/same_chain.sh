@@ -13,7 +13,7 @@ last_of() {
     "$1" inspect "$2" --json | tail -n 1 | sed 's/.*"chain_hash":"\([0-9a-f]*\)".*/\1/'
 }
 
-# A scene, changed by a sed script.
+# A scene, changed by a sed script, and what that does.
 compare() {
     sed "${2:-}" "$1" >"$work/scene.toml"
     for build in old new; do
@@ -24,22 +24,23 @@ compare() {
     one=$(last_of "$old" "$work/old.mcap")
     other=$(last_of "$new" "$work/new.mcap")
     if [ "$one" = "$other" ] && [ -n "$one" ]; then
-        echo "same      $(echo "$one" | cut -c1-16)  $1 ${2:-}"
+        echo "same      $(echo "$one" | cut -c1-16)  $1 ${3:-}"
     else
-        echo "DIFFERENT $1 ${2:-}: $one, $other"
+        echo "DIFFERENT $1 ${3:-}: $one, $other"
         status=1
     fi
     rm -f "$work"/*
 }
 
 short='s/^rotation_deg = .*/rotation_deg = 20.0/'
-compare pipelines/baseline.toml "$short"
-compare pipelines/baseline-quarter.toml "$short"
+compare pipelines/baseline.toml "$short" "to 20°"
+compare pipelines/baseline-quarter.toml "$short" "to 20°"
 compare pipelines/baseline-quarter.toml "$short
-/^increment_deg/a longest_increment_deg = 1.6"
-compare pipelines/baseline-path.toml "s/^elements = .*/elements = [16, 4]/"
+/^increment_deg/a longest_increment_deg = 1.6" "to 20°, growing increments"
+compare pipelines/baseline-path.toml "s/^elements = .*/elements = [16, 4]/" "on 16 × 4"
 compare pipelines/equal-sense.toml "s/^elements = .*/elements = [32, 8]/
-s/^rotation_deg = .*/rotation_deg = 5.0/"
+s/^rotation_deg = .*/rotation_deg = 5.0/" "to 5° on 32 × 8"
+compare pipelines/verification/rolled-cantilever.toml
 compare pipelines/verification/hinged-roof-12.7.toml
 compare pipelines/verification/hinged-roof-6.35-snap.toml
 compare pipelines/verification/slit-annular-plate.toml

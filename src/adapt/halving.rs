@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::adapt::project_displacements;
 use crate::equilibrium::{LinearBuckling, LinearRelease, Standing, Workspace};
-use crate::model::MOST_CONTROL_POINTS;
+use crate::model::{MOST_CONTROL_POINTS, TermSource};
 use crate::scene::Scene;
 use crate::shell::norm;
 use crate::spline::{Mesh, Spans};
@@ -58,9 +58,9 @@ pub struct Halved {
 }
 
 impl Halved {
-    /// Of an equilibrium; `None` where the halved mesh has no factor, does not fit in memory, or has more than a fifth of
+    /// Of an equilibrium of a scene with terms of the caller's own; `None` where the halved mesh has no factor, does not fit in memory, or has more than a fifth of
     /// [`MOST_CONTROL_POINTS`].
-    pub fn of(scene: &Scene, state: &State) -> Option<Self> {
+    pub fn of(scene: &Scene, own: &[Arc<dyn TermSource>], state: &State) -> Option<Self> {
         let mesh = &state.mesh;
         let middles = [0, 1].map(|way| {
             let bounds = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
@@ -71,7 +71,7 @@ impl Halved {
             return None;
         }
         let displacement = project_displacements(mesh, &finer, &state.displacement);
-        let mut work = Workspace::new(scene, &finer).ok()?;
+        let mut work = Workspace::with_terms(scene, &finer, own).ok()?;
         let integrated = work.energy(&displacement, state.parameter);
         let at = Standing { displacement: &displacement, ..Standing::of(state) };
         let held = work.energy(&vec![[0.0; 3]; displacement.len()], state.parameter);

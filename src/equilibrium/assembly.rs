@@ -7,11 +7,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::equilibrium::blocks::{BLOCK, Blocks};
-use crate::equilibrium::descent::length;
 pub use crate::equilibrium::kernel::Want;
 use crate::equilibrium::kernel::{Build, ElementBuffers, integrate_element};
-use crate::model::{BlockPattern, Discretization, NaturalState, Strand, Tables};
+use crate::equilibrium::vector::length;
+use crate::model::{At, BLOCK, BlockPattern, Blocks, Discretization, NaturalState, Strand, Tables};
 use crate::shell::sub;
 
 /// Strain energy of the model at a displacement of the control points that `tables` act on, N·mm. `natural` is the state
@@ -48,19 +47,23 @@ fn with_locked(energy: f64, natural: Option<NaturalState>) -> f64 {
     natural.map_or(energy, |natural| energy + natural.locked_n_mm)
 }
 
-/// Sums over all elements; buffers are kept between calls.
-#[derive(Debug)]
+/// Sums over all elements and terms; buffers are kept between calls.
+#[derive(Debug, Default)]
 pub struct Assembled {
-    /// Strain energy of the model, N·mm.
+    /// Energy that the model stores: strain energy, and what other terms store, N·mm.
     pub energy: f64,
     /// Euclidean norm of the elements' forces on their control points, before they are summed, N.
     pub element_forces: f64,
-    /// Gradient of the energy with respect to the control points' displacements, N.
+    /// Gradient of the strain energy with respect to the control points' displacements, N.
     pub residual: Vec<[f64; 3]>,
+    /// Forces that loads and other terms exert on the control points, N; empty where there are none.
+    pub external: Vec<[f64; 3]>,
     /// Norm of the part of the residual that the free strain makes, N: a load in all but name. 0 where there is none.
     pub free_strain_forces: f64,
-    /// N/mm; empty where it is not asked for.
+    /// Symmetric part of the tangent of the residual less the external forces, N/mm; empty where it is not asked for.
     pub stiffness: Blocks,
+    /// Skew part; empty where there is none.
+    pub skew: Blocks,
 }
 
 impl Assembled {
@@ -68,14 +71,15 @@ impl Assembled {
     pub fn new(discretization: &Discretization) -> Self {
         let stiffness = Blocks::zeros(&discretization.blocks);
         let residual = vec![[0.0; 3]; discretization.blocks.points()];
-        Self { energy: 0.0, element_forces: 0.0, residual, free_strain_forces: 0.0, stiffness }
+        Self { residual, stiffness, ..Self::default() }
     }
 
     /// Assembles residual and energy, and the stiffness where `want` says so, at a displacement of the control points and a
     /// value of the scene's parameter.
     pub fn assemble(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64, want: Want) {
         let natural = discretization.free_strains.at(parameter);
-        self.assemble_from(discretization, displacement, natural, want);
+        self.assemble_shell(discretization, displacement, natural, want);
+        self.add_terms(discretization, displacement, parameter, want);
         self.free_strain_forces = match natural {
             Some(_) => length(&self.change_of_forces(discretization, displacement, None)),
             None => 0.0,
@@ -91,14 +95,25 @@ impl Assembled {
         natural: Option<NaturalState>,
     ) -> Vec<[f64; 3]> {
         let residual = vec![[0.0; 3]; displacement.len()];
-        let mut there =
-            Self { energy: 0.0, element_forces: 0.0, residual, free_strain_forces: 0.0, stiffness: Blocks::default() };
-        there.assemble_from(discretization, displacement, natural, Want::Residual);
+        let mut there = Self { residual, ..Self::default() };
+        there.assemble_shell(discretization, displacement, natural, Want::Residual);
         there.residual.iter().zip(&self.residual).map(|(g1, g0)| sub(*g1, *g0)).collect()
     }
 
-    /// The same where this is the state without forces.
-    fn assemble_from(
+    fn add_terms(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64, want: Want) {
+        let Discretization { mesh, terms, blocks, .. } = discretization;
+        self.external = discretization.external_forces(displacement, parameter);
+        if !terms.is_empty() {
+            let at = At { mesh, displacement, parameter };
+            self.energy += terms.energy(at);
+            if want == Want::Stiffness {
+                self.skew = terms.add_tangent(at, blocks, &mut self.stiffness);
+            }
+        }
+    }
+
+    /// Energy, residual and stiffness of the shell, where this is the state without forces.
+    fn assemble_shell(
         &mut self,
         discretization: &Discretization,
         displacement: &[[f64; 3]],
@@ -113,6 +128,24 @@ impl Assembled {
         let sums = part.add(displacement, want, &mut self.residual, &mut self.stiffness);
         self.energy = with_locked(sums.energy, natural);
         self.element_forces = sums.squared_forces.sqrt();
+    }
+
+    /// Forces that do not balance: the residual less the external forces, N.
+    pub fn forces(&self) -> Vec<[f64; 3]> {
+        subtract(&self.residual, &self.external)
+    }
+
+    /// Whether the tangent has a skew part.
+    pub(super) fn has_skew(&self) -> bool {
+        !self.skew.is_empty()
+    }
+
+    /// The skew part times a field on the control points.
+    pub(super) fn multiply_skew(&self, discretization: &Discretization, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        match self.has_skew() {
+            true => self.skew.multiply(&discretization.blocks, -1.0, field),
+            false => vec![[0.0; 3]; field.len()],
+        }
     }
 
     /// Stiffness times a field on the control points.
@@ -298,4 +331,12 @@ fn gather(tables: &Tables, displacement: &[[f64; 3]], element: usize, buffers: &
             buffers.displacement[c * tables.padded + a] = displacement[*control][c];
         }
     }
+}
+
+/// g − f; `external` may be empty.
+pub(super) fn subtract(internal: &[[f64; 3]], external: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    if external.is_empty() {
+        return internal.to_vec();
+    }
+    internal.iter().zip(external).map(|(g, f)| [0, 1, 2].map(|c| g[c] - f[c])).collect()
 }

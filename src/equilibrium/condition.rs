@@ -4,9 +4,9 @@
 //! Computations*, 4th ed., section 8.2). Both approach from inside, so that the ratio is a lower bound; a few per
 //! cent of it are of no interest, and the iterations stop there.
 
-use crate::equilibrium::descent::product;
-use crate::equilibrium::newton::{Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
+use crate::equilibrium::vector::product;
+use crate::equilibrium::workspace::{Standing, Workspace};
 
 /// Relative change of an eigenvalue in one iteration at which it is known well enough.
 const SETTLED: f64 = 1e-4;

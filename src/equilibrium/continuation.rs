@@ -10,10 +10,12 @@
 //! and a prescribed motion shows in the displacements anyway. See [`Metric`] for how they are measured.
 
 use crate::equilibrium::equations::{Equations, Point};
+use crate::equilibrium::iterate::{Effort, Observer};
 use crate::equilibrium::ledger::Before;
 use crate::equilibrium::metric::Metric;
-use crate::equilibrium::newton::{Effort, Observer, Solved, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
+use crate::equilibrium::solved::Solved;
+use crate::equilibrium::workspace::{Standing, Workspace};
 use crate::scene::Scene;
 use crate::shell::{add, scaled, sub};
 

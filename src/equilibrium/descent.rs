@@ -6,7 +6,7 @@
 //! direction that reverses Newton's where the curvature is negative (section 3.4 there, modified factorizations). Of two
 //! points in a row one is, to rounding, as low as any before.
 //!
-//! With loads, what descends is strain energy less the work of the loads along the way that the steps took ([`crate::model::Loads::strokes`]),
+//! With loads, what descends is strain energy less the work of the loads along the way that the steps took ([`crate::model::Terms::strokes`]),
 //! so that it needs no potential. Where loads that turn with the shell have a skew tangent, the direction solves the whole
 //! system (GMRES on the factor of the symmetric part).
 //!
@@ -32,14 +32,15 @@
 //! its snap 35 to 72 factorizations for 25 to 37, as the stiffness away from equilibrium was more often indefinite.
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
-use crate::equilibrium::external::External;
 use crate::equilibrium::force_scale::ForceScale;
+use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::ledger::Before;
-use crate::equilibrium::newton::{Effort, Iterate, Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
+use crate::equilibrium::solved::Ended;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
-use crate::model::{Discretization, Placement};
-use crate::shell::dot;
+use crate::equilibrium::vector::product;
+use crate::equilibrium::workspace::{Standing, Workspace};
+use crate::model::{At, Discretization, Placement};
 
 /// Share of the predicted decrease that a step must achieve (Nocedal & Wright, section 3.1).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
@@ -64,7 +65,6 @@ pub(super) struct Descent<'a> {
     tangent: &'a mut TangentStiffness,
     unknowns: Vec<f64>,
     displacement: Vec<[f64; 3]>,
-    external: External,
     /// Strokes of the actions since the state that the solve started from, N·mm.
     strokes: Vec<f64>,
     /// The largest force met before, N.
@@ -114,12 +114,10 @@ impl<'a> Descent<'a> {
         let placement = discretization.unknowns.place(&unknowns, parameter);
         let displacement = placement.displacement();
         assembled.assemble(discretization, &displacement, parameter, Want::Stiffness);
-        let external = External::new(discretization, &displacement, parameter, assembled);
         Self {
             placement,
             parameter,
-            external,
-            strokes: discretization.loads.strokes(&discretization.mesh, from.displacement, &displacement),
+            strokes: discretization.terms.strokes(&discretization.mesh, from.displacement, &displacement),
             largest_force: from.largest_force,
             discretization,
             assembled,
@@ -136,8 +134,8 @@ impl<'a> Descent<'a> {
     /// Starts anew from other unknowns, on the way from a state; what it took so far stays counted.
     pub(super) fn start_at(&mut self, from: Standing, unknowns: Vec<f64>) {
         self.go_to(unknowns);
-        let Discretization { mesh, loads, .. } = self.discretization;
-        self.strokes = loads.strokes(mesh, from.displacement, &self.displacement);
+        let Discretization { mesh, terms, .. } = self.discretization;
+        self.strokes = terms.strokes(mesh, from.displacement, &self.displacement);
     }
 
     /// Goes to other unknowns and assembles everything there.
@@ -146,21 +144,20 @@ impl<'a> Descent<'a> {
         self.displacement = self.placement.displacement();
         self.unknowns = unknowns;
         self.assembled.assemble(self.discretization, &self.displacement, self.parameter, Want::Stiffness);
-        self.external = External::new(self.discretization, &self.displacement, self.parameter, self.assembled);
     }
 
     /// Factors the stiffness at the point in hand and says where the descent stands.
     pub(super) fn iterate(&mut self) -> Result<Iterate, SolveError> {
         let assembled = &*self.assembled;
-        let forces = self.external.subtract_from(&assembled.residual);
+        let forces = assembled.forces();
         self.gradient = self.placement.restrict(&forces);
-        let (loads, met) = (&self.external.forces, self.largest_force);
-        let scale = ForceScale::at(self.discretization, assembled, loads, &self.displacement, met);
+        let scale = ForceScale::at(self.discretization, assembled, &self.displacement, self.largest_force);
         let of_unknowns = &self.discretization.unknowns;
-        let mut last = Iterate::at(of_unknowns, assembled.energy, scale, &self.gradient, self.effort)?;
+        let last = Iterate::at(of_unknowns, assembled.energy, scale, &self.gradient, self.effort);
+        let mut last = SolveError::unless_finite(last, self.effort)?;
         last.step_length = self.step_length;
         self.effort.factorizations += 1;
-        let factored = self.tangent.factorize(self.discretization, &self.placement, assembled, &mut self.external);
+        let factored = self.tangent.factorize(self.discretization, &self.placement, assembled);
         let negative = factored.map_err(|cause| SolveError::Factor { cause, effort: self.effort })?;
         last.negative_pivots = negative.count;
         last.shift = 2.0 * negative.largest;
@@ -184,7 +181,7 @@ impl<'a> Descent<'a> {
             unknowns: self.unknowns.clone(),
             displacement: self.displacement.clone(),
             strokes: self.strokes.clone(),
-            work: self.discretization.loads.work(&self.strokes, self.parameter),
+            work: self.discretization.terms.work(&self.strokes, self.parameter),
             direction,
             slope,
             iterate: *last,
@@ -208,9 +205,9 @@ impl<'a> Descent<'a> {
     /// Newton's direction, or the modified one.
     fn direction(&mut self, indefinite: bool) -> Vec<f64> {
         let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
-        if self.external.has_skew() && !indefinite {
-            let Self { tangent, placement, external, discretization, .. } = self;
-            let solved = external.solve(discretization, placement, &tangent.solver, &direction);
+        if self.assembled.has_skew() && !indefinite {
+            let Self { tangent, placement, assembled, discretization, .. } = self;
+            let solved = tangent.solve_whole(discretization, placement, assembled, &direction);
             if product(&self.gradient, &solved) < 0.0 {
                 return solved;
             }
@@ -235,7 +232,7 @@ impl<'a> Descent<'a> {
 
     /// Where the descent ended, and what it cost.
     pub(super) fn finish(self) -> Ended {
-        let forces = self.external.subtract_from(&self.assembled.residual);
+        let forces = self.assembled.forces();
         Ended {
             reactions: self.placement.reactions(&forces),
             turns: self.placement.turns(),
@@ -295,15 +292,16 @@ impl<'a> Descent<'a> {
     /// Strain energy less work of the loads.
     fn energy_at(&self, from: &Start, length: f64) -> f64 {
         let displacement = self.discretization.unknowns.place(&from.moved(length), self.parameter).displacement();
-        let Discretization { tables, loads, free_strains, .. } = self.discretization;
-        let energy = strain_energy(tables, &displacement, free_strains.at(self.parameter));
-        energy - loads.work(&self.strokes_to(from, &displacement), self.parameter)
+        let Discretization { mesh, tables, terms, free_strains, .. } = self.discretization;
+        let at = At { mesh, displacement: &displacement, parameter: self.parameter };
+        let energy = strain_energy(tables, &displacement, free_strains.at(self.parameter)) + terms.energy(at);
+        energy - terms.work(&self.strokes_to(from, &displacement), self.parameter)
     }
 
     /// Strokes on the way that leads straight on from where a step started.
     fn strokes_to(&self, from: &Start, displacement: &[[f64; 3]]) -> Vec<f64> {
-        let Discretization { mesh, loads, .. } = self.discretization;
-        let last = loads.strokes(mesh, &from.displacement, displacement);
+        let Discretization { mesh, terms, .. } = self.discretization;
+        let last = terms.strokes(mesh, &from.displacement, displacement);
         from.strokes.iter().zip(last).map(|(before, stroke)| before + stroke).collect()
     }
 
@@ -312,34 +310,6 @@ impl<'a> Descent<'a> {
         self.go_to(from.moved(length));
         self.step_length = length;
         self.strokes = self.strokes_to(from, &self.displacement);
-        self.assembled.energy - self.discretization.loads.work(&self.strokes, self.parameter)
+        self.assembled.energy - self.discretization.terms.work(&self.strokes, self.parameter)
     }
-}
-
-/// Where a descent ended.
-pub(super) struct Ended {
-    /// Displacement of the control points, mm.
-    pub displacement: Vec<[f64; 3]>,
-    /// Rotation vectors of the sections, radians; see [`Placement::turns`].
-    pub turns: Vec<[f64; 3]>,
-    /// Strokes of the actions on the way, N·mm.
-    pub strokes: Vec<f64>,
-    /// Forces conjugate to the given coordinates, N.
-    pub reactions: Vec<f64>,
-    /// What it took.
-    pub effort: Effort,
-}
-
-pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-/// Euclidean length of forces on all control points.
-pub(super) fn length(forces: &[[f64; 3]]) -> f64 {
-    forces.iter().map(|force| dot(*force, *force)).sum::<f64>().sqrt()
-}
-
-/// Index of the largest magnitude; the first of equals.
-pub(super) fn largest(vector: &[f64]) -> usize {
-    (0..vector.len()).fold(0, |best, i| if vector[i].abs() > vector[best].abs() { i } else { best })
 }

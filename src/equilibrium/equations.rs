@@ -1,13 +1,13 @@
 //! The equations R(q, λ) = 0 at a point: residual, its rate with the parameter, and the factor of the stiffness.
 
 use crate::equilibrium::assembly::{Assembled, Want};
-use crate::equilibrium::descent::Ended;
-use crate::equilibrium::external::External;
 use crate::equilibrium::force_scale::ForceScale;
-use crate::equilibrium::newton::{Effort, Iterate, Standing, Workspace};
+use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::solve_error::SolveError;
+use crate::equilibrium::solved::Ended;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
-use crate::model::{Discretization, Placement};
+use crate::equilibrium::workspace::{Standing, Workspace};
+use crate::model::{At, Discretization, Placement};
 use crate::shell::add;
 
 /// The pieces of a workspace that the equations take.
@@ -27,7 +27,6 @@ pub(super) struct Point<'w> {
     pub parameter: f64,
     pub placement: Placement<'w>,
     pub displacement: Vec<[f64; 3]>,
-    pub external: External,
     /// R: forces on the free unknowns, N.
     pub gradient: Vec<f64>,
     /// ∂R/∂λ.
@@ -46,11 +45,9 @@ impl<'w> Equations<'w> {
     }
 
     /// Ready for [`Self::at_standing`] at this state, with the stiffness and factor that a solve left there if there are
-    /// any. Where sections turn freely or loads follow the shell all is formed anew: what the state holds decides the
-    /// unknowns to rounding only, and the stiffness of loads is added to that of the shell.
+    /// any. Where sections turn freely all is formed again: what the state holds decides the unknowns to rounding only.
     pub fn factored_at(work: &'w mut Workspace, at: Standing) -> Result<Self, SolveError> {
-        let discretization = &work.discretization;
-        if discretization.unknowns.turns_are_unknown() || discretization.loads.follow() {
+        if work.discretization.unknowns.turns_are_unknown() {
             return Ok(Self::of(work, at));
         }
         let negative = work.factorize_at(at)?;
@@ -71,21 +68,19 @@ impl<'w> Equations<'w> {
         let placement = discretization.unknowns.place(&free, parameter);
         let displacement = placement.displacement();
         let ready = std::mem::take(&mut self.ready);
-        let mut external = if ready.is_some() {
-            External::dead(discretization, &displacement, parameter)
-        } else {
+        if ready.is_none() {
             self.assembled.assemble(discretization, &displacement, parameter, Want::Stiffness);
-            External::new(discretization, &displacement, parameter, self.assembled)
-        };
-        let forces = external.subtract_from(&self.assembled.residual);
+        }
+        let forces = self.assembled.forces();
         let gradient = placement.restrict(&forces);
-        let scale = ForceScale::at(discretization, self.assembled, &external.forces, &displacement, self.largest_force);
-        let mut iterate = Iterate::at(&discretization.unknowns, self.assembled.energy, scale, &gradient, *effort)?;
+        let scale = ForceScale::at(discretization, self.assembled, &displacement, self.largest_force);
+        let iterate = Iterate::at(&discretization.unknowns, self.assembled.energy, scale, &gradient, *effort);
+        let mut iterate = SolveError::unless_finite(iterate, *effort)?;
         if let Some(negative) = ready {
             iterate.negative_pivots = negative;
         } else {
             effort.factorizations += 1;
-            let factored = self.tangent.factorize(discretization, &placement, self.assembled, &mut external);
+            let factored = self.tangent.factorize(discretization, &placement, self.assembled);
             let negative = factored.map_err(|cause| SolveError::Factor { cause, effort: *effort })?;
             iterate.negative_pivots = negative.count;
             iterate.shift = 2.0 * negative.largest;
@@ -93,8 +88,9 @@ impl<'w> Equations<'w> {
         let given_rates = discretization.unknowns.given_rates_at(parameter);
         let motion = placement.velocity(&[], &given_rates);
         let mut force_rates = self.assembled.multiply(discretization, &motion);
-        let loads = discretization.loads.rates(&discretization.mesh, &displacement, parameter);
-        let skew = external.multiply_skew(discretization, &motion);
+        let at = At { mesh: &discretization.mesh, displacement: &displacement, parameter };
+        let loads = discretization.terms.rates(at);
+        let skew = self.assembled.multiply_skew(discretization, &motion);
         for (point, rate) in force_rates.iter_mut().enumerate() {
             (0..3).for_each(|c| rate[c] += skew[point][c] - loads[point][c]);
         }
@@ -106,17 +102,17 @@ impl<'w> Equations<'w> {
         for (sum, turned) in gradient_rate.iter_mut().zip(placement.restrict_rate(&forces, &given_rates)) {
             *sum += turned;
         }
-        Ok(Point { free, parameter, placement, displacement, external, gradient, gradient_rate, given_rates, iterate })
+        Ok(Point { free, parameter, placement, displacement, gradient, gradient_rate, given_rates, iterate })
     }
 
     /// Solves ∂R/∂q x = b at a point.
     pub fn solve(&mut self, point: &Point, right_hand_side: &[f64]) -> Vec<f64> {
-        let Self { discretization, tangent: TangentStiffness { solver, .. }, .. } = self;
-        match point.external.has_skew() {
-            true => point.external.solve(discretization, &point.placement, solver, right_hand_side),
+        let Self { discretization, tangent, assembled, .. } = self;
+        match assembled.has_skew() {
+            true => tangent.solve_whole(discretization, &point.placement, assembled, right_hand_side),
             false => {
                 let mut solution = right_hand_side.to_vec();
-                solver.solve(&mut solution);
+                tangent.solver.solve(&mut solution);
                 solution
             }
         }
@@ -126,12 +122,12 @@ impl<'w> Equations<'w> {
 impl Point<'_> {
     /// What a solve from a state that ends here leaves.
     pub fn ended(self, equations: &Equations, from: Standing, effort: Effort) -> Ended {
-        let forces = self.external.subtract_from(&equations.assembled.residual);
-        let Discretization { mesh, loads, .. } = equations.discretization;
+        let forces = equations.assembled.forces();
+        let Discretization { mesh, terms, .. } = equations.discretization;
         Ended {
             reactions: self.placement.reactions(&forces),
             turns: self.placement.turns(),
-            strokes: loads.strokes(mesh, from.displacement, &self.displacement),
+            strokes: terms.strokes(mesh, from.displacement, &self.displacement),
             displacement: self.displacement,
             effort,
         }

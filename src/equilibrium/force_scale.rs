@@ -16,7 +16,7 @@
 //! not.
 
 use crate::equilibrium::assembly::Assembled;
-use crate::equilibrium::descent::length;
+use crate::equilibrium::vector::length;
 use crate::model::Discretization;
 
 /// Share of the forces of the elements that counts.
@@ -55,14 +55,13 @@ impl ForceScale {
     pub(super) fn at(
         discretization: &Discretization,
         assembled: &Assembled,
-        loads: &[[f64; 3]],
         displacement: &[[f64; 3]],
         met: f64,
     ) -> Self {
         let own = assembled.stiffness.diagonal(&discretization.blocks).zip(displacement);
         let squares = own.flat_map(|(block, u)| [0, 1, 2].map(|c| (block[4 * c] * u[c]).powi(2)));
         let rounding = ROUNDINGS * f64::EPSILON * squares.sum::<f64>().sqrt();
-        let (reactions, loads) = (length(&assembled.residual), length(loads));
+        let (reactions, loads) = (length(&assembled.residual), length(&assembled.external));
         // Loads are known, and so are reactions that stand out of the rounding.
         let known = match loads > 0.0 {
             true => loads,

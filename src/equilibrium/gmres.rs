@@ -1,7 +1,7 @@
 //! GMRES with a preconditioner (Saad & Schultz 1986; Saad, *Iterative Methods for Sparse Linear Systems*, 2nd ed.,
 //! algorithms 6.9 and 9.5), for stiffnesses with a skew part: the symmetric part, factored, leaves few iterations.
 
-use crate::equilibrium::descent::product;
+use crate::equilibrium::vector::product;
 
 /// Solves A x = b to a residual of `tolerance` |b|, or in `most` iterations as far as it gets. `precondition` is applied
 /// from the right, in place.

@@ -1,8 +1,8 @@
 //! The balance of energy of a solve: what the model stored before, and what has been done on it since.
 
 use crate::equilibrium::assembly::strain_energy;
-use crate::equilibrium::descent::product;
-use crate::equilibrium::newton::{Standing, Workspace};
+use crate::equilibrium::vector::product;
+use crate::equilibrium::workspace::{Standing, Workspace};
 use crate::model::{Discretization, Placement};
 
 /// The start of a solve.
@@ -50,11 +50,11 @@ impl Before {
     /// Work on the model up to a value of the parameter, N·mm: of the given motions by the means of reactions before and after,
     /// of the loads by the means of their factors and their strokes on the way.
     pub fn work(&self, discretization: &Discretization, parameter: f64, reactions: &[f64], strokes: &[f64]) -> f64 {
-        let Discretization { unknowns, loads, .. } = discretization;
+        let Discretization { unknowns, terms, .. } = discretization;
         let (given, target) = (unknowns.given_at(self.parameter), unknowns.given_at(parameter));
         let half: Vec<f64> = given.iter().zip(&target).map(|(m0, m1)| 0.5 * (m1 - m0)).collect();
         let of_motions = product(&self.reactions, &half) + product(reactions, &half);
-        of_motions + loads.mean_work(strokes, [self.parameter, parameter])
+        of_motions + terms.mean_work(strokes, [self.parameter, parameter])
     }
 
     /// Energy of the model that has left the balance on the way, if reactions stay what they were, N·mm.

@@ -1,8 +1,8 @@
 //! The energy that a state out of balance releases on its way to equilibrium, to first order.
 
-use crate::equilibrium::descent::product;
-use crate::equilibrium::newton::{Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
+use crate::equilibrium::vector::product;
+use crate::equilibrium::workspace::{Standing, Workspace};
 use crate::shell::norm;
 
 /// What the way to equilibrium comes to, to first order, with the residual r on the free unknowns and the stiffness K.

@@ -1,14 +1,13 @@
 //! Equilibrium: assembly, the sparse solver, Newton's method as a descent on the energy.
 
 mod assembly;
-mod blocks;
 mod condition;
 mod continuation;
 mod descent;
 mod equations;
-mod external;
 mod force_scale;
 mod gmres;
+mod iterate;
 mod kernel;
 mod ledger;
 mod linear_release;
@@ -16,25 +15,30 @@ mod metric;
 mod newton;
 mod pattern;
 mod solve_error;
+mod solved;
 mod sparse;
 mod stability;
 mod symmetry;
 mod tangent_stiffness;
 mod timing;
+mod vector;
+mod workspace;
 
 pub use assembly::{Assembled, Part, Want, strain_energy};
-pub use blocks::Blocks;
 pub use condition::Condition;
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};
 pub use force_scale::ForceScale;
+pub use iterate::{Effort, Iterate, Observer};
 pub use linear_release::LinearRelease;
-pub use newton::{Effort, Equilibrium, Iterate, Observer, Solved, Standing, Workspace};
+pub use newton::Equilibrium;
 pub use solve_error::{SolveError, WorkspaceError};
+pub use solved::Solved;
 pub use sparse::DenseProduct;
 pub use sparse::FactorError;
 pub use stability::{LinearBuckling, SoftMode, soft_mode};
 pub use symmetry::SymmetryError;
 pub use timing::{KernelCost, KernelRun};
+pub use workspace::{Standing, Workspace};
 
 /// Build of the element kernel that this machine runs.
 pub fn kernel_name() -> &'static str {

@@ -5,9 +5,8 @@
 
 use rayon::prelude::*;
 
-use crate::equilibrium::blocks::{BLOCK, Blocks};
 use crate::equilibrium::sparse::{Couplings, SparseSolver};
-use crate::model::{Discretization, Placement};
+use crate::model::{BLOCK, Blocks, Discretization, Placement};
 
 /// Numbers of the matrix that a thread fills at a time.
 const SHARE: usize = 1 << 14;

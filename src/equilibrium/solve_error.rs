@@ -1,6 +1,6 @@
 //! Why a solve found no equilibrium, or could not begin.
 
-use crate::equilibrium::newton::{Effort, Iterate};
+use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::sparse::FactorError;
 use crate::model::ModelError;
 
@@ -60,6 +60,11 @@ pub enum SolveError {
 }
 
 impl SolveError {
+    /// An iterate, where its energy and residual are numbers.
+    pub(super) fn unless_finite(last: Iterate, effort: Effort) -> Result<Iterate, Self> {
+        if last.is_finite() { Ok(last) } else { Err(Self::NotANumber { last, effort }) }
+    }
+
     /// What the failed solve cost.
     pub fn effort(&self) -> Effort {
         match self {

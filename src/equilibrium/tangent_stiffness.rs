@@ -1,17 +1,23 @@
 //! The tangent stiffness on the free unknowns, and its factor.
 
 use crate::equilibrium::assembly::Assembled;
-use crate::equilibrium::blocks::Blocks;
-use crate::equilibrium::external::External;
+use crate::equilibrium::gmres::gmres;
 use crate::equilibrium::pattern::{Pattern, couplings};
 use crate::equilibrium::sparse::{FactorError, NegativePivots, SparseSolver};
-use crate::model::{Discretization, Placement};
+use crate::model::{Blocks, Discretization, Placement};
+
+/// Residual of a solution where the tangent has a skew part, relative; Newton's convergence asks for no more.
+const SKEW_TOLERANCE: f64 = 1e-9;
+/// Iterations at most there: the skew part comes from free edges alone, so that its rank, in effect, is small.
+const SKEW_ITERATIONS: usize = 100;
 
 /// Where its entries come from, and the solver that holds them.
 #[derive(Debug)]
 pub(super) struct TangentStiffness {
     pattern: Pattern,
     pub(super) solver: SparseSolver,
+    /// The symmetric part of the matrix, which its factor takes the place of; empty where there is no skew one.
+    symmetric: Vec<f64>,
 }
 
 impl TangentStiffness {
@@ -21,7 +27,7 @@ impl TangentStiffness {
     /// Where the factor does not fit in memory.
     pub(super) fn new(discretization: &Discretization) -> Result<Self, FactorError> {
         let solver = SparseSolver::new(&couplings(discretization))?;
-        Ok(Self { pattern: Pattern::new(discretization, &solver), solver })
+        Ok(Self { pattern: Pattern::new(discretization, &solver), solver, symmetric: Vec::new() })
     }
 
     /// The matrix at a point, Tᵀ K T and what the curvature of the supports adds: its symmetric part where loads turn with
@@ -31,14 +37,13 @@ impl TangentStiffness {
         discretization: &Discretization,
         placement: &Placement,
         assembled: &Assembled,
-        external: &External,
     ) -> &[f64] {
         self.pattern.fill(discretization, placement, &assembled.stiffness, self.solver.matrix_mut());
-        self.solver.add(&placement.curvature(&external.subtract_from(&assembled.residual)));
+        self.solver.add(&placement.curvature(&assembled.forces()));
         self.solver.matrix_mut()
     }
 
-    /// Forms the matrix at a point and factors it; where loads turn with the shell, they keep a copy of it.
+    /// Forms the matrix at a point and factors it; where the tangent has a skew part, a copy of it is kept.
     ///
     /// # Errors
     /// Where a pivot is zero or not a number.
@@ -47,13 +52,28 @@ impl TangentStiffness {
         discretization: &Discretization,
         placement: &Placement,
         assembled: &Assembled,
-        external: &mut External,
     ) -> Result<NegativePivots, FactorError> {
-        let matrix = self.form(discretization, placement, assembled, external);
-        if external.has_skew() {
-            external.keep(matrix);
-        }
+        let matrix = self.form(discretization, placement, assembled);
+        self.symmetric = if assembled.has_skew() { matrix.to_vec() } else { Vec::new() };
         self.solver.factorize()
+    }
+
+    /// Solves the whole system at a point where the tangent has a skew part: the factor of the symmetric one is at hand.
+    pub(super) fn solve_whole(
+        &self,
+        discretization: &Discretization,
+        placement: &Placement,
+        assembled: &Assembled,
+        right_hand_side: &[f64],
+    ) -> Vec<f64> {
+        let whole = |x: &[f64]| {
+            let mut product = self.solver.multiply(&self.symmetric, x);
+            let moved = placement.velocity(x, &[]);
+            let skew = placement.restrict(&assembled.multiply_skew(discretization, &moved));
+            product.iter_mut().zip(skew).for_each(|(a, b)| *a += b);
+            product
+        };
+        gmres(right_hand_side, whole, |x| self.solver.solve(x), SKEW_TOLERANCE, SKEW_ITERATIONS)
     }
 
     /// Tᵀ A T for blocks A, as the numbers of a matrix.

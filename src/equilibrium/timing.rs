@@ -1,9 +1,8 @@
 //! The pieces of a Newton iteration one by one, for timing.
 
 use crate::equilibrium::assembly::Want;
-use crate::equilibrium::external::External;
-use crate::equilibrium::newton::{Standing, Workspace};
 use crate::equilibrium::solve_error::SolveError;
+use crate::equilibrium::workspace::{Standing, Workspace};
 use crate::model::PointTable;
 
 /// What the pieces have to do.
@@ -88,9 +87,8 @@ impl<'a> KernelRun<'a> {
     /// The matrix on the unknowns, from what was assembled last.
     pub fn form(&mut self) {
         let Workspace { discretization, tangent, assembled, .. } = &mut *self.work;
-        let external = External::new(discretization, self.at.displacement, self.at.parameter, assembled);
         let placement = discretization.unknowns.place(&self.free, self.at.parameter);
-        tangent.form(discretization, &placement, assembled, &external);
+        tangent.form(discretization, &placement, assembled);
     }
 
     /// Its factor, in place of it.

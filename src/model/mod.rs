@@ -1,6 +1,7 @@
 //! A scene made discrete: the patch that it starts from, and for a mesh its tables, supports and free unknowns.
 
 mod block_pattern;
+mod blocks;
 mod connectivity;
 mod direction;
 mod edge;
@@ -25,22 +26,23 @@ mod rigid_support;
 mod rotation;
 mod shape;
 mod soundness;
-mod strokes;
 mod subdivision;
 mod supports;
 mod symmetric_line;
 mod symmetry_plane;
 mod tables;
+mod term;
 mod thinness;
 mod unknowns;
 
 pub use block_pattern::BlockPattern;
+pub(crate) use blocks::BLOCK;
+pub use blocks::Blocks;
 pub use connectivity::{Connectivity, Strand};
 pub(crate) use direction::{Site, direction_at};
 pub use error::ModelError;
 pub(crate) use expressions::control_expressions;
 pub use free_strains::{FreeStrains, NaturalState};
-pub use loads::Loads;
 pub use patch::{MOST_CONTROL_POINTS, starting_mesh};
 pub(crate) use place::{line_place, parameters_of};
 pub use placement::Placement;
@@ -51,6 +53,7 @@ pub(crate) use rigid_support::check_balance;
 pub use supports::Supports;
 pub(crate) use tables::{BATCH, LANES};
 pub use tables::{PointTable, Tables};
+pub use term::{At, Tangent, Term, TermSource, Terms};
 pub use unknowns::{Entry, Unknowns};
 
 use std::sync::Arc;
@@ -69,8 +72,8 @@ pub struct Discretization {
     pub blocks: BlockPattern,
     /// Free unknowns and how control points follow from them.
     pub unknowns: Unknowns,
-    /// What acts on the shell.
-    pub loads: Loads,
+    /// Loads and energies beside the shell's own.
+    pub terms: Terms,
     /// Strains without energy.
     pub free_strains: FreeStrains,
 }
@@ -81,15 +84,32 @@ impl Discretization {
     /// # Errors
     /// Where supports or loads do not fit the mesh.
     pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, ModelError> {
-        let (unknowns, loads) = (Unknowns::new(scene, mesh)?, Loads::new(scene, mesh)?);
+        Self::with_terms(scene, mesh, &[])
+    }
+
+    /// The same with terms of the caller's own.
+    ///
+    /// # Errors
+    /// Where supports, loads or those terms do not fit the mesh.
+    pub fn with_terms(scene: &Scene, mesh: &Arc<Mesh>, own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
+        let unknowns = Unknowns::new(scene, mesh)?;
         let tables = Tables::new(scene, mesh);
+        let terms = Terms::new(scene, mesh, &tables, own)?;
         Ok(Self {
             mesh: mesh.clone(),
-            blocks: BlockPattern::new(&[&tables.connectivity], &[]),
+            blocks: BlockPattern::new(&[&tables.connectivity], &terms.pairs()),
             tables,
             unknowns,
-            loads,
+            terms,
             free_strains: FreeStrains::new(scene, mesh),
         })
+    }
+
+    /// Forces that loads and other terms exert on the control points, N; empty where there are no terms.
+    pub fn external_forces(&self, displacement: &[[f64; 3]], parameter: f64) -> Vec<[f64; 3]> {
+        match self.terms.is_empty() {
+            true => Vec::new(),
+            false => self.terms.forces(At { mesh: &self.mesh, displacement, parameter }),
+        }
     }
 }

@@ -4,7 +4,7 @@ use crate::model::mirror::Mirror;
 use crate::model::place::parameters_of;
 use crate::model::symmetry_plane::ROUNDING;
 use crate::model::thinness::{ERROR_OF_OFFSET, Extent, THICK};
-use crate::model::{FreeStrains, Loads, ModelError, Unknowns};
+use crate::model::{At, FreeStrains, ModelError, Terms, Unknowns};
 use crate::scene::{Action, ActionKind, ForceVector, Geometry, History, Scene, SurfaceDirection};
 use crate::shell::{FreeStrain, cross, dot, norm, scaled};
 use crate::spline::{Mesh, Spans, mid_surface_point};
@@ -99,7 +99,7 @@ fn of_degree_2(scene: &Scene, mesh: &Mesh) -> Option<String> {
 
 /// Loads, given motions and free strains that are zero throughout, or on places that are held.
 fn of_nothing(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<Option<String>, ModelError> {
-    let (loads, free_strains) = (Loads::new(scene, mesh)?, FreeStrains::new(scene, mesh));
+    let (loads, free_strains) = (Terms::of_actions(scene, mesh)?, FreeStrains::new(scene, mesh));
     let still = vec![[0.0; 3]; mesh.control_points.len()];
     let histories = scene.actions.iter().map(|action| &action.history);
     let kinks = histories.chain(scene.supports.iter().map(|support| &support.history)).flat_map(History::kinks);
@@ -107,7 +107,7 @@ fn of_nothing(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<Option<
     for load_factor in kinks.chain([scene.load.target()]) {
         let moves = unknowns.given_at(load_factor).iter().any(|value| *value != 0.0);
         let strained = free_strains.at(load_factor).is_some_and(|state| state.strain != FreeStrain::default());
-        let forces = loads.forces(mesh, &still, load_factor);
+        let forces = loads.forces(At { mesh, displacement: &still, parameter: load_factor });
         let all: f64 = forces.iter().map(|force| norm(*force)).sum();
         let placement = unknowns.place(&vec![0.0; unknowns.count()], load_factor);
         let pushes = placement.restrict(&forces).iter().any(|force| force.abs() > ROUNDING * all);

@@ -15,7 +15,7 @@ use crate::model::expressions::control_expressions;
 use crate::model::place::parameters_of;
 use crate::model::rigid_motion::{Body, FreeMotions};
 use crate::model::supports::Supports;
-use crate::model::{Loads, ModelError, Unknowns};
+use crate::model::{At, ModelError, Terms, Unknowns};
 use crate::scene::{Place, Scene};
 use crate::shell::{cross, dot, norm, sub};
 use crate::spline::{Mesh, mid_surface_point};
@@ -121,11 +121,11 @@ fn on_one_line(points: &[[f64; 3]]) -> bool {
 /// Where they do, at the end or at a kink of a history.
 pub fn check_balance(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<(), ModelError> {
     let Some(held) = &unknowns.supports().held_motions else { return Ok(()) };
-    let loads = Loads::new(scene, mesh)?;
+    let loads = Terms::of_actions(scene, mesh)?;
     let still = vec![[0.0; 3]; unknowns.points.len()];
     let kinks = scene.actions.iter().flat_map(|action| action.history.kinks());
     for load_factor in kinks.chain([scene.load.target()]) {
-        let forces = loads.forces(mesh, &still, load_factor);
+        let forces = loads.forces(At { mesh, displacement: &still, parameter: load_factor });
         let mut work = DVector::<f64>::zeros(6);
         for (force, point) in forces.iter().zip(&unknowns.points) {
             let fields = held.free.body.fields(*point);

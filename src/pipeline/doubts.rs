@@ -66,7 +66,7 @@ impl Stages {
         if self.refining_has_shown(state) {
             return None;
         }
-        let mut halved = Halved::of(&self.scene, state)?;
+        let mut halved = Halved::of(&self.scene, &self.own, state)?;
         let halving = halved.halving();
         let (parameter, elements) = (state.parameter, state.mesh.element_counts());
         let energy_share = halving.energy_share();

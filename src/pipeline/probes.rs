@@ -3,7 +3,7 @@
 use crate::adapt::element_strains;
 use crate::equilibrium::{Standing, Workspace};
 use crate::model::{
-    Discretization, Exerted, Loads, Placement, Site, control_expressions, direction_at, line_place, parameters_of,
+    At, Discretization, Exerted, Placement, Site, Terms, control_expressions, direction_at, line_place, parameters_of,
 };
 use crate::pipeline::Reading;
 use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene, SurfaceDirection};
@@ -113,8 +113,9 @@ impl Reader<'_> {
         let Some(line) = line_place(self.scene, mesh, on) else { return f64::NAN };
         let mut limits = [f64::INFINITY; 2];
         limits[line.way] = line.parameter;
-        let Ok(loads) = Loads::below(self.scene, mesh, limits) else { return f64::NAN };
-        let loads = loads.forces(mesh, self.at.displacement, self.at.parameter);
+        let Ok(loads) = Terms::of_actions_below(self.scene, mesh, limits) else { return f64::NAN };
+        let at = At { mesh, displacement: self.at.displacement, parameter: self.at.parameter };
+        let loads = loads.forces(at);
         let places = control_expressions(self.scene, mesh, on).unwrap_or_default();
         let count = places.len() as f64;
         let middle = places

@@ -44,7 +44,7 @@ pub struct Run {
 impl Run {
     /// A run that goes on from `state`, which the stage of `last` made (`None`: the scene's start).
     pub fn new(stages: Stages, state: State, last: Option<Commit>) -> Self {
-        let scene_hash = stages.scene().hash();
+        let scene_hash = stages.hash();
         let mut mesh_hash = MeshHash::default();
         let state_hash = state.hash_on(mesh_hash.of(&state.mesh));
         Self { state_hash, mesh_hash, scene_hash, stages, state, last }

@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use crate::adapt::{evaluate_indicators, project_displacements};
+use crate::digest::{Feed, Hash};
 use crate::equilibrium::{Effort, Iterate, SolveError, Solved, Standing, Workspace, WorkspaceError, strain_energy};
 use crate::model::{
-    FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, Unknowns, check_balance, free_motion, remarks, starting_mesh,
+    At, FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, TermSource, Unknowns, check_balance, free_motion,
+    remarks, starting_mesh,
 };
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::{Outcome, Parameter, Reading, Report, StageError, Warning};
@@ -17,13 +19,34 @@ use crate::state::{PathMemory, Previous, Refinement, State, StepControl};
 #[derive(Debug)]
 pub struct Stages {
     pub(super) scene: Scene,
+    pub(super) own: Vec<Arc<dyn TermSource>>,
     pub(super) work: Option<Workspace>,
 }
 
 impl Stages {
     /// Stages of a scene.
     pub fn new(scene: Scene) -> Self {
-        Self { scene, work: None }
+        Self::with_terms(scene, Vec::new())
+    }
+
+    /// Stages of a scene with energies or loads of the caller's own.
+    pub fn with_terms(scene: Scene, own: Vec<Arc<dyn TermSource>>) -> Self {
+        Self { scene, own, work: None }
+    }
+
+    /// Hash of what decides the results: of the scene, and of the terms where there are any of the caller's own.
+    pub fn hash(&self) -> Hash {
+        if self.own.is_empty() {
+            return self.scene.hash();
+        }
+        let mut feed = Feed::new("foldline scene with terms");
+        feed.bytes(self.scene.hash().as_bytes());
+        for source in &self.own {
+            feed.integer(source.name().len() as u64);
+            feed.bytes(source.name().as_bytes());
+            feed.bytes(source.hash().as_bytes());
+        }
+        feed.finish()
     }
 
     /// The scene.
@@ -102,7 +125,7 @@ impl Stages {
         });
         let work = match kept {
             Some(work) => work,
-            None => Workspace::new(&self.scene, mesh).map_err(|cause| match cause {
+            None => Workspace::with_terms(&self.scene, mesh, &self.own).map_err(|cause| match cause {
                 WorkspaceError::Factor(cause) => {
                     StageError::TooLarge { step, stage, elements: mesh.element_counts(), cause }
                 }
@@ -140,7 +163,7 @@ impl Stages {
         let tables = Tables::on_elements_of(&self.scene, &state.mesh, &finer);
         let natural = FreeStrains::new(&self.scene, &state.mesh).at(state.parameter);
         let parts = self.scene.symmetry.copies() as f64;
-        let energy = parts * strain_energy(&tables, &state.displacement, natural);
+        let energy = parts * (strain_energy(&tables, &state.displacement, natural) + self.stored_by_terms(state)?);
         let mut report = self.report(state, state.step);
         report.marked = [state.marked[0].len(), state.marked[1].len()];
         report.elements = finer.element_counts();
@@ -164,6 +187,16 @@ impl Stages {
             ..state.clone()
         };
         Ok((next, report))
+    }
+
+    /// Energy that terms of the caller's own store in the model, N·mm.
+    fn stored_by_terms(&mut self, state: &State) -> Result<f64, StageError> {
+        if self.own.is_empty() {
+            return Ok(0.0);
+        }
+        let (_, work) = self.workspace(&state.mesh, state.step, Stage::RefineKnots)?;
+        let at = At { mesh: &state.mesh, displacement: &state.displacement, parameter: state.parameter };
+        Ok(work.discretization().terms.energy(at))
     }
 
     fn project(&mut self, state: &State) -> Result<(State, Report), StageError> {

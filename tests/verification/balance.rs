@@ -90,7 +90,7 @@ fn a_jump_under_a_moment_releases_energy() {
         assert!(record.report.negative_pivots == 0 && released > 0.0, "{released}");
         // Between the shapes alone an angle is known up to whole turns.
         let work = Workspace::new(&scene, &before.mesh).unwrap();
-        let loads = &work.discretization().loads;
+        let loads = &work.discretization().terms;
         let strokes = loads.strokes(&before.mesh, &before.displacement, &after.displacement);
         let [wrapped, turn] = [loads.work(&strokes, after.parameter), 2.0 * PI * after.parameter * MOMENT];
         let done = after.strain_energy_n_mm + released - before.strain_energy_n_mm;

@@ -106,7 +106,7 @@ fn halving_is_foreseen() {
     scene.mesh.elements = [4, 4];
     scene.load.set_target(0.4);
     let (state, _) = run(scene.clone()).pop().unwrap();
-    let foreseen = Halved::of(&scene, &state).unwrap().halving();
+    let foreseen = Halved::of(&scene, &[], &state).unwrap().halving();
     let middles = [0, 1].map(|way| {
         let bounds = Spans::of(&state.mesh.knots[way], state.mesh.degree[way]).bounds;
         bounds.iter().map(|[from, to]| 0.5 * (from + to)).collect()

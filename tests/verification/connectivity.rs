@@ -1,7 +1,7 @@
 //! Patches that share control points, assembled into one matrix.
 
-use foldline::equilibrium::{Assembled, Blocks, Part, Want};
-use foldline::model::{BlockPattern, Discretization, Tables, starting_mesh};
+use foldline::equilibrium::{Assembled, Part, Want};
+use foldline::model::{BlockPattern, Blocks, Discretization, Tables, starting_mesh};
 use foldline::scene::{Quadrature, Scene};
 use foldline::spline::Mesh;
 use std::sync::Arc;

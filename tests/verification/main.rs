@@ -10,6 +10,7 @@ mod coarse;
 mod connectivity;
 mod cured_plate;
 mod extreme;
+mod foundation;
 mod free_strain;
 mod house;
 mod mirrors;

@@ -14,44 +14,17 @@
 //! the edges of the pressed surface are free, the load has no potential, and the strokes are integrals along the very way
 //! that they were summed on.
 
-use crate::model::Loads;
-use crate::model::loads::{Kind, LoadPoint};
+use crate::model::loads::following::Kind;
+use crate::model::loads::points::LoadPoint;
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
 /// Sums of two unit tangents shorter than this have no direction but rounding.
 const TURNED_ROUND: f64 = 1e-9;
 
-impl Loads {
-    /// Strokes of all actions, N·mm.
-    pub fn strokes(&self, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
-        let dead = self.dead.iter().map(|dead| {
-            let motion = |(point, force): &(usize, [f64; 3])| dot(*force, sub(to[*point], from[*point]));
-            dead.forces.iter().map(motion).sum()
-        });
-        let following = self.following.iter().map(|following| {
-            let stroke = |point: &LoadPoint| point.weight * following.kind.stroke(point, mesh, from, to);
-            following.points.iter().map(stroke).sum()
-        });
-        dead.chain(following).collect()
-    }
-
-    /// Work of the actions over strokes with their factors at a parameter, N·mm.
-    pub fn work(&self, strokes: &[f64], parameter: f64) -> f64 {
-        let dead = self.dead.iter().map(|dead| &dead.history);
-        let following = self.following.iter().map(|following| &following.history);
-        dead.chain(following).zip(strokes).map(|(history, stroke)| history.at(parameter) * stroke).sum()
-    }
-
-    /// The same with the means of their factors at two parameters, N·mm.
-    pub fn mean_work(&self, strokes: &[f64], parameters: [f64; 2]) -> f64 {
-        0.5 * parameters.map(|parameter| self.work(strokes, parameter)).iter().sum::<f64>()
-    }
-}
-
 impl Kind {
     /// Of a point, at weight 1.
-    fn stroke(self, point: &LoadPoint, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
+    pub fn stroke(self, point: &LoadPoint, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
         let ends = [from, to].map(|displacement| point.deformed(mesh, displacement));
         let normals = ends.map(|[a1, a2]| cross(a1, a2));
         match self {
@@ -73,26 +46,19 @@ impl Kind {
     }
 }
 
-impl LoadPoint {
-    /// Motion of the surface there, mm.
-    fn motion(&self, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> [f64; 3] {
-        let shares = self.controls(mesh).zip(&self.functions[0]);
-        shares.fold([0.0; 3], |sum, (control, share)| add(sum, scaled(*share, sub(to[control], from[control]))))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;
     use std::sync::Arc;
 
     use super::*;
-    use crate::model::{Discretization, starting_mesh};
+    use crate::model::{At, Discretization, starting_mesh};
     use crate::scene::{Action, ActionKind, History, parse};
 
     /// A plate of 12 × 1 mm with a moment of 52.36 N·mm per mm on the end of its length, and one more action.
     fn plate(kind: ActionKind) -> Discretization {
-        let mut scene = parse(include_str!("../../pipelines/verification/rolled-cantilever.toml"), "x.toml").unwrap();
+        let mut scene =
+            parse(include_str!("../../../pipelines/verification/rolled-cantilever.toml"), "x.toml").unwrap();
         scene.actions.push(Action { name: "more".into(), kind, history: History::default() });
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
         Discretization::new(&scene, &mesh).unwrap()
@@ -118,11 +84,11 @@ mod tests {
             ActionKind::Force { on: [0.3, 0.6], force_n: [1.0, -2.0, 0.5].into() },
         ] {
             let plate = plate(kind);
-            let Discretization { mesh, loads, .. } = &plate;
+            let Discretization { mesh, terms: loads, .. } = &plate;
             let (from, motion) = (field(&plate, 0.02, 1), field(&plate, 1e-6, 2));
             let to: Vec<[f64; 3]> = from.iter().zip(&motion).map(|(u, v)| add(*u, *v)).collect();
             let middle: Vec<[f64; 3]> = from.iter().zip(&motion).map(|(u, v)| add(*u, scaled(0.5, *v))).collect();
-            let forces = loads.forces(mesh, &middle, 0.8);
+            let forces = loads.forces(At { mesh, displacement: &middle, parameter: 0.8 });
             let expected: f64 = forces.iter().zip(&motion).map(|(f, v)| dot(*f, *v)).sum();
             let found = loads.work(&loads.strokes(mesh, &from, &to), 0.8);
             assert!((found - expected).abs() < 1e-7 * expected.abs(), "{found} {expected}");
@@ -133,7 +99,7 @@ mod tests {
     #[test]
     fn a_moment_does_work_by_its_angle_however_far_it_turns() {
         let plate = plate(ActionKind::Force { on: [0.0, 0.0], force_n: [0.0; 3].into() });
-        let Discretization { mesh, loads, .. } = &plate;
+        let Discretization { mesh, terms: loads, .. } = &plate;
         let step = 5.0 * PI / 9.0;
         let sweep = |angles: &[f64]| -> f64 {
             let pieces = angles.windows(2);
@@ -154,7 +120,7 @@ mod tests {
     #[test]
     fn a_moment_whose_edge_turns_round_does_finite_work() {
         let plate = plate(ActionKind::Force { on: [0.0, 0.0], force_n: [0.0; 3].into() });
-        let Discretization { mesh, loads, .. } = &plate;
+        let Discretization { mesh, terms: loads, .. } = &plate;
         let still = vec![[0.0; 3]; mesh.control_points.len()];
         let about_z: Vec<[f64; 3]> = mesh.control_points.iter().map(|[x, y, _, _]| [-2.0 * x, -2.0 * y, 0.0]).collect();
         let about_x: Vec<[f64; 3]> = mesh.control_points.iter().map(|[_, y, z, _]| [0.0, -2.0 * y, -2.0 * z]).collect();
@@ -167,7 +133,7 @@ mod tests {
     #[test]
     fn a_pressure_does_work_by_the_volume_between() {
         let plate = plate(ActionKind::Pressure { pressure_mpa: 0.7, follower: true });
-        let Discretization { mesh, loads, .. } = &plate;
+        let Discretization { mesh, terms: loads, .. } = &plate;
         let grid = mesh.grid();
         let held = |size: f64, seed: usize| -> Vec<[f64; 3]> {
             let mut field = field(&plate, size, seed);

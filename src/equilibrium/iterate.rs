@@ -1,0 +1,72 @@
+//! What is known of a solve under way.
+
+use crate::equilibrium::force_scale::ForceScale;
+use crate::equilibrium::vector::largest;
+use crate::model::Unknowns;
+
+/// What is known after an iteration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iterate {
+    /// Newton steps taken.
+    pub iteration: usize,
+    /// Strain energy of the model, N·mm.
+    pub energy: f64,
+    /// |Tᵀ (g − f)|, N.
+    pub residual: f64,
+    /// What the residual is held against.
+    pub forces: ForceScale,
+    /// Negative pivots of the last factored stiffness.
+    pub negative_pivots: usize,
+    /// Step length along the last direction; 1 is a full Newton step.
+    pub step_length: f64,
+    /// Twice the largest magnitude of a negative pivot: what turning it positive adds, N/mm; 0 where there is none.
+    pub shift: f64,
+    /// Control point with the largest residual.
+    pub worst_point: usize,
+    /// Of a descent: energy of the model that has left the balance since its start, if reactions stay what they were, N·mm.
+    pub released: f64,
+}
+
+impl Iterate {
+    /// At a point with this gradient on the free unknowns, whose stiffness is not factored yet.
+    pub(super) fn at(unknowns: &Unknowns, energy: f64, forces: ForceScale, gradient: &[f64], effort: Effort) -> Self {
+        Self {
+            iteration: effort.iterations,
+            energy,
+            residual: gradient.iter().map(|g| g * g).sum::<f64>().sqrt(),
+            forces,
+            negative_pivots: 0,
+            step_length: 1.0,
+            shift: 0.0,
+            worst_point: unknowns.home_of(largest(gradient)),
+            released: 0.0,
+        }
+    }
+
+    /// Whether energy and residual are numbers.
+    pub fn is_finite(&self) -> bool {
+        self.energy.is_finite() && self.residual.is_finite()
+    }
+
+    /// |residual| over the forces that it is held against.
+    pub fn relative_residual(&self) -> f64 {
+        self.forces.share(self.residual)
+    }
+
+    /// Whether forces balance to this tolerance.
+    pub fn is_equilibrium(&self, tolerance: f64) -> bool {
+        self.forces.balances(self.residual, tolerance)
+    }
+}
+
+/// What a solve cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Numeric factorizations.
+    pub factorizations: usize,
+}
+
+/// Watches iterates; `true` stops the solve.
+pub type Observer<'o> = &'o mut dyn FnMut(&Iterate) -> bool;

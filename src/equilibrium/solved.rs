@@ -1,0 +1,88 @@
+//! What a solve leaves.
+
+use crate::equilibrium::iterate::{Effort, Iterate};
+use crate::equilibrium::ledger::Before;
+use crate::equilibrium::vector::{length, product};
+use crate::equilibrium::workspace::{Factored, Standing, Workspace};
+use crate::scene::Scene;
+
+/// A point of equilibrium.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// Displacement of the control points, mm.
+    pub displacement: Vec<[f64; 3]>,
+    /// Rotation vectors of the rigid sections where one of them turns freely, radians.
+    pub turns: Vec<[f64; 3]>,
+    /// Strain energy of the whole shell, N·mm.
+    pub energy: f64,
+    /// Work of loads, given motions and changes of the natural state on the whole shell since the start of the solve, N·mm: reactions, and factors of the
+    /// actions, by their means before and after; strokes of the actions along the way that the solve took.
+    pub work: f64,
+    /// What the change of the natural state would have put into the whole shell had it stayed, and at least a hundred times
+    /// what rounding of the displacement is worth, N·mm. Where a shell follows its natural state, or is carried off without
+    /// strain, this is the measure of energies, not the little that it stores.
+    pub put_in: f64,
+    /// Turning ends: moment at each end of the whole shell, dΠ/dθ / 2, N·mm. Otherwise 0.
+    pub moment: f64,
+    /// Negative pivots of the stiffness there; 0 where the equilibrium is stable.
+    pub negative_pivots: usize,
+    /// |residual| over the forces that it is held against.
+    pub residual: f64,
+    /// The largest force met so far, N; see [`ForceScale::met`].
+    pub largest_force: f64,
+    /// What it took.
+    pub effort: Effort,
+}
+
+/// Where a solve ended.
+pub(super) struct Ended {
+    /// Displacement of the control points, mm.
+    pub displacement: Vec<[f64; 3]>,
+    /// Rotation vectors of the sections, radians; see [`Placement::turns`].
+    pub turns: Vec<[f64; 3]>,
+    /// Strokes of the actions on the way, N·mm.
+    pub strokes: Vec<f64>,
+    /// Forces conjugate to the given coordinates, N.
+    pub reactions: Vec<f64>,
+    /// What it took.
+    pub effort: Effort,
+}
+
+impl Workspace {
+    /// What a solve has found; remembers that stiffness and factor stand there.
+    pub(super) fn solved(
+        &mut self,
+        scene: &Scene,
+        parameter: f64,
+        before: &Before,
+        ended: Ended,
+        last: &Iterate,
+    ) -> Solved {
+        let largest_force = last.forces.met_here();
+        let at = Standing { displacement: &ended.displacement, turns: &ended.turns, parameter, largest_force };
+        let put_in = before.put_in(&self.discretization, parameter, &ended.displacement);
+        let rounding = last.forces.rounding * length(&ended.displacement);
+        self.factored_at = Some(Factored::new(at, last.negative_pivots));
+        let unknowns = &self.discretization.unknowns;
+        let parts = scene.symmetry.copies() as f64;
+        let moment = match scene.end_rotation() {
+            // All given motions are proportional to θ in degrees.
+            Some(_) => 0.5 * parts * product(&ended.reactions, &unknowns.given_at(1.0)) * 1.0_f64.to_degrees(),
+            None => 0.0,
+        };
+        Solved {
+            energy: parts * last.energy,
+            work: parts
+                * (before.work(&self.discretization, parameter, &ended.reactions, &ended.strokes)
+                    + 0.5 * (put_in[0] + put_in[1])),
+            put_in: parts * put_in[0].abs().max(put_in[1].abs()).max(100.0 * rounding),
+            moment,
+            negative_pivots: last.negative_pivots,
+            residual: last.relative_residual(),
+            largest_force,
+            effort: ended.effort,
+            displacement: ended.displacement,
+            turns: ended.turns,
+        }
+    }
+}

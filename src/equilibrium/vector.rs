@@ -1,0 +1,18 @@
+//! Plain sums over vectors.
+
+use crate::shell::dot;
+
+/// Σ a b.
+pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Euclidean length of forces on all control points.
+pub(super) fn length(forces: &[[f64; 3]]) -> f64 {
+    forces.iter().map(|force| dot(*force, *force)).sum::<f64>().sqrt()
+}
+
+/// Index of the largest magnitude; the first of equals.
+pub(super) fn largest(vector: &[f64]) -> usize {
+    (0..vector.len()).fold(0, |best, i| if vector[i].abs() > vector[best].abs() { i } else { best })
+}

@@ -1,0 +1,141 @@
+//! Tables, matrix and factor for one mesh, and the state that they are asked about.
+
+use std::sync::Arc;
+
+use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
+use crate::equilibrium::iterate::Effort;
+use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
+use crate::equilibrium::sparse::NegativePivots;
+use crate::equilibrium::tangent_stiffness::TangentStiffness;
+use crate::model::{At, Discretization, TermSource};
+use crate::scene::Scene;
+use crate::spline::Mesh;
+use crate::state::State;
+
+/// Where a solve starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct Standing<'s> {
+    /// Displacement of the control points, mm.
+    pub displacement: &'s [[f64; 3]],
+    /// Rotation vectors of the rigid sections where one of them turns freely; empty otherwise.
+    pub turns: &'s [[f64; 3]],
+    /// The scene's parameter.
+    pub parameter: f64,
+    /// The largest force met so far, N; see [`ForceScale::met`].
+    pub largest_force: f64,
+}
+
+impl<'s> Standing<'s> {
+    /// A state.
+    pub fn of(state: &'s State) -> Self {
+        Self {
+            displacement: &state.displacement,
+            turns: &state.turns,
+            parameter: state.parameter,
+            largest_force: state.largest_force_n,
+        }
+    }
+}
+
+/// Buffers for one mesh. Holds nothing that decides a result: a new one gives the same bits.
+#[derive(Debug)]
+pub struct Workspace {
+    pub(super) discretization: Discretization,
+    pub(super) tangent: TangentStiffness,
+    pub(super) assembled: Assembled,
+    /// Where the stiffness in `assembled` and its factor were formed, and its negative pivots.
+    pub(super) factored_at: Option<Factored>,
+}
+
+#[derive(Debug)]
+pub(super) struct Factored {
+    parameter: f64,
+    displacement: Vec<[f64; 3]>,
+    turns: Vec<[f64; 3]>,
+    negative: usize,
+}
+
+impl Workspace {
+    /// Tables, structure and symbolic factor for a mesh.
+    ///
+    /// # Errors
+    /// Where supports or loads do not fit the mesh, or the factor does not fit in memory.
+    pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, WorkspaceError> {
+        Self::with_terms(scene, mesh, &[])
+    }
+
+    /// The same with terms of the caller's own.
+    ///
+    /// # Errors
+    /// Where supports, loads or those terms do not fit the mesh, or the factor does not fit in memory.
+    pub fn with_terms(scene: &Scene, mesh: &Arc<Mesh>, own: &[Arc<dyn TermSource>]) -> Result<Self, WorkspaceError> {
+        let discretization = Discretization::with_terms(scene, mesh, own)?;
+        let tangent = TangentStiffness::new(&discretization)?;
+        let assembled = Assembled::new(&discretization);
+        Ok(Self { discretization, tangent, assembled, factored_at: None })
+    }
+
+    /// The mesh's tables and unknowns.
+    pub fn discretization(&self) -> &Discretization {
+        &self.discretization
+    }
+
+    /// Energy that the model stores at a displacement and a value of the parameter, N·mm.
+    pub fn energy(&self, displacement: &[[f64; 3]], parameter: f64) -> f64 {
+        let Discretization { mesh, tables, free_strains, terms, .. } = &self.discretization;
+        strain_energy(tables, displacement, free_strains.at(parameter))
+            + terms.energy(At { mesh, displacement, parameter })
+    }
+
+    /// Internal forces less loads on the control points, N: at equilibrium, the reactions of the supports.
+    pub fn forces(&mut self, at: Standing) -> Vec<[f64; 3]> {
+        let known = self.factored_at.as_ref().is_some_and(|known| known.is_at(&at));
+        if !known {
+            self.factored_at = None;
+            self.assembled.assemble(&self.discretization, at.displacement, at.parameter, Want::Residual);
+        }
+        self.assembled.forces()
+    }
+
+    /// Stiffness and factor at a displacement, unless the last solve left them there; returns the negative pivots. Not
+    /// counted in the effort of a solve, which would then depend on what ran before in the same process.
+    pub(super) fn factorize_at(&mut self, at: Standing) -> Result<usize, SolveError> {
+        // Where sections turn freely the state decides the unknowns to rounding only: those that a solve ended with would
+        // give other bits than those of the same state read from a log.
+        let exact = !self.discretization.unknowns.turns_are_unknown();
+        if let Some(known) = self.factored_at.as_ref().filter(|known| exact && known.is_at(&at)) {
+            return Ok(known.negative);
+        }
+        self.form_at(at);
+        let negative = self.factorize_formed()?.count;
+        self.factored_at = Some(Factored::new(at, negative));
+        Ok(negative)
+    }
+
+    /// Factors the matrix that was formed or filled in; not counted in the effort of a solve.
+    pub(super) fn factorize_formed(&mut self) -> Result<NegativePivots, SolveError> {
+        let factored = self.tangent.solver.factorize();
+        factored.map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })
+    }
+
+    /// The matrix on the free unknowns at a state, not factored.
+    pub(super) fn form_at(&mut self, at: Standing) -> &[f64] {
+        self.factored_at = None;
+        let Self { discretization, tangent, assembled, .. } = self;
+        assembled.assemble(discretization, at.displacement, at.parameter, Want::Stiffness);
+        let free = discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
+        let placement = discretization.unknowns.place(&free, at.parameter);
+        tangent.form(discretization, &placement, assembled)
+    }
+}
+
+impl Factored {
+    pub(super) fn new(at: Standing, negative: usize) -> Self {
+        let (displacement, turns) = (at.displacement.to_vec(), at.turns.to_vec());
+        Self { parameter: at.parameter, displacement, turns, negative }
+    }
+
+    fn is_at(&self, at: &Standing) -> bool {
+        self.parameter == at.parameter && self.displacement == at.displacement && self.turns == at.turns
+    }
+}
