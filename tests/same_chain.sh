@@ -41,6 +41,9 @@ compare pipelines/baseline-path.toml "s/^elements = .*/elements = [16, 4]/" "on 
 compare pipelines/equal-sense.toml "s/^elements = .*/elements = [32, 8]/
 s/^rotation_deg = .*/rotation_deg = 5.0/" "to 5° on 32 × 8"
 compare pipelines/verification/rolled-cantilever.toml
+compare tests/verification/scenes/follower-ring.toml
+compare tests/verification/scenes/follower-ring.toml "/^factor/a [continuation]\\
+control = \"arc-length\"" "by arc length"
 compare pipelines/verification/hinged-roof-12.7.toml
 compare pipelines/verification/hinged-roof-6.35-snap.toml
 compare pipelines/verification/slit-annular-plate.toml

@@ -31,7 +31,7 @@ impl TangentStiffness {
     }
 
     /// The matrix at a point, Tᵀ K T and what the curvature of the supports adds: its symmetric part where loads turn with
-    /// the shell. What factor there was is lost.
+    /// the shell, and a copy of that is kept. What factor there was is lost.
     pub(super) fn form(
         &mut self,
         discretization: &Discretization,
@@ -40,10 +40,11 @@ impl TangentStiffness {
     ) -> &[f64] {
         self.pattern.fill(discretization, placement, &assembled.stiffness, self.solver.matrix_mut());
         self.solver.add(&placement.curvature(&assembled.forces()));
+        self.symmetric = if assembled.has_skew() { self.solver.matrix_mut().to_vec() } else { Vec::new() };
         self.solver.matrix_mut()
     }
 
-    /// Forms the matrix at a point and factors it; where the tangent has a skew part, a copy of it is kept.
+    /// Forms the matrix at a point and factors it.
     ///
     /// # Errors
     /// Where a pivot is zero or not a number.
@@ -53,8 +54,7 @@ impl TangentStiffness {
         placement: &Placement,
         assembled: &Assembled,
     ) -> Result<NegativePivots, FactorError> {
-        let matrix = self.form(discretization, placement, assembled);
-        self.symmetric = if assembled.has_skew() { matrix.to_vec() } else { Vec::new() };
+        self.form(discretization, placement, assembled);
         self.solver.factorize()
     }
 
