@@ -1,7 +1,7 @@
 //! A path of equilibria as curves over its length, for the tests that follow one.
 
 use foldline::pipeline::{CriticalPoint, Outcome, Record, Report};
-use foldline::scene::{ArcLength, ArcLengthWord, Scene};
+use foldline::scene::{ArcLength, ArcLengthWord, Scene, parse};
 
 use crate::support::run;
 
@@ -101,4 +101,17 @@ fn lagrange(abscissas: &[f64], values: &[f64], at: f64) -> f64 {
         others.fold(values[i], |product, j| product * (at - abscissas[j]) / (abscissas[i] - abscissas[j]))
     };
     (0..abscissas.len()).map(term).sum()
+}
+
+/// Loads that follow the shell have a tangent that is not symmetric: by arc length the path leads where load steps lead.
+#[test]
+fn follower_loads_by_arc_length_end_where_load_steps_do() {
+    let mut scene = parse(include_str!("scenes/follower-ring.toml"), "follower-ring.toml").unwrap();
+    let by_load = run(scene.clone()).pop().unwrap().0;
+    scene.continuation = Some(ARC_LENGTH);
+    let by_path = run(scene).pop().unwrap().0;
+    assert!((by_load.parameter - by_path.parameter).abs() < 1e-9);
+    let pairs = || by_load.displacement.as_flattened().iter().zip(by_path.displacement.as_flattened());
+    let largest = pairs().fold(0.0_f64, |most, (u, _)| most.max(u.abs()));
+    assert!(largest > 1.0 && pairs().all(|(u, v)| (u - v).abs() < 1e-6 * largest));
 }
