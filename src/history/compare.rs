@@ -226,7 +226,7 @@ impl Found<'_> {
 /// What a stage came to, in words.
 fn outcome(state: &State) -> String {
     match state.control.rejection {
-        None => format!("a solve that reached {}°", state.parameter),
+        None => format!("a solve that reached {}", state.parameter),
         Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
         Some(Rejection::Jump) => "a solve that was turned down as unstable on the way".to_string(),
         Some(Rejection::CriticalPoint) => "a solve that was turned down for a critical point".to_string(),
