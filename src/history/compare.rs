@@ -362,7 +362,7 @@ mod tests {
             ("0 negative pivots against 1", |s| s.negative_pivots = 1),
             ("an increment halved 1 times for the next step against the scene's increment", |s| s.control.halvings = 0),
             ("a jump seen ahead in the first only", |s| s.control.jump_seen_at_deg = None),
-            ("a solve that reached 8° against a solve that found no equilibrium", |s| {
+            ("a solve that reached 8 against a solve that found no equilibrium", |s| {
                 s.control.rejection = Some(Rejection::NoEquilibrium)
             }),
             ("a step by arc length in the first only", |s| s.path = None),
