@@ -8,6 +8,7 @@ pub mod history;
 pub mod journal;
 pub mod model;
 pub mod pipeline;
+mod printable;
 pub mod scene;
 pub mod shell;
 pub mod spline;

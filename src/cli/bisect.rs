@@ -11,7 +11,6 @@ use super::replay::place;
 use super::stage_table::stage_table;
 use crate::history::{
     Comparison, Condition, ConditionError, SnapReport, find_parting, find_snap, first_loss_of_stability, first_where,
-    shown_value,
 };
 use crate::journal::{LongLog, LongLogError};
 use crate::pipeline::{Parameter, Record};
@@ -71,14 +70,21 @@ impl Arguments {
             Some(parting) => {
                 let report = &a.log.entries()[parting.index].record.report;
                 text.push_str(&format!(
-                    "part at stage {}: step {} {} at {}° (found in {} looks)\n",
-                    parting.index, report.step, report.stage, report.attempted_parameter, parting.looks
+                    "part at stage {}: step {} {} at {} (found in {} looks)\n",
+                    parting.index,
+                    report.step,
+                    report.stage,
+                    report.driven_by.shown(report.attempted_parameter),
+                    parting.looks
                 ));
                 text.push_str(&compared(&parting.comparison));
             }
         }
+        for (read, log) in [(a, &*self.log), (b, other)] {
+            text.extend(read.older_scene().map(|line| format!("  {}: {line}\n", log.display())));
+        }
         for difference in a.scene.differences(&b.scene) {
-            let (x, y) = (shown_value(&difference.a), shown_value(&difference.b));
+            let [x, y] = difference.values();
             text.push_str(&format!("  scene: {} is {x} and {y}\n", difference.path));
         }
         if let (Some(x), Some(y)) = (a.log.manifests().first(), b.log.manifests().first()) {

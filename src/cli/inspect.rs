@@ -26,13 +26,16 @@ pub(super) struct Arguments {
     /// Print a JSON object for each stage
     #[arg(long)]
     json: bool,
+    /// Read the probes of the last scene anew on every equilibrium: also on those that were run without them
+    #[arg(long)]
+    probes: bool,
 }
 
 impl Arguments {
     /// Reads the log and shows it.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Self { log, step, json } = self;
-        if let Some(step) = step
+        let Self { log, step, json, probes } = self;
+        if let Some(step) = step.filter(|_| !probes)
             && let Some((found, known)) = ask_long(&log, |long| Ok((stages_of_step(long, step)?, steps_of(long)?)))?
         {
             return match found.is_empty() {
@@ -41,7 +44,10 @@ impl Arguments {
             };
         }
         let read = read_log(&log)?;
-        let records = read.records();
+        let records = match probes || (step.is_none() && !json) {
+            true => read.records_of_scene(&log, probes)?,
+            false => read.records(),
+        };
         let wanted: Vec<Record> =
             records.iter().filter(|record| step.is_none_or(|step| record.report.step == step)).cloned().collect();
         if let (Some(step), true) = (step, wanted.is_empty()) {
@@ -52,7 +58,9 @@ impl Arguments {
             None if json => return print(&json_lines(&wanted)),
             None => {}
         }
-        let mut text = format!("{}\n{}", stage_table(&records), Summary::new(&read.scene, &records));
+        let older = read.older_scene().map_or_else(String::new, |line| line + "\n");
+        let summary = Summary::new(&read.scene, &records);
+        let mut text = format!("{}\n{}{older}{summary}", stage_table(&records), read.mixed());
         if let Some(kept) = read.log.thinned() {
             let states: Vec<usize> = (0..records.len()).filter(|index| read.log.keeps_state(*index)).collect();
             text.push_str(&format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states)));

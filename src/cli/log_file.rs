@@ -5,25 +5,56 @@ use std::path::Path;
 use super::failure::Failure;
 use super::output::say;
 use super::scene_file::rendered;
+use crate::history::{LoggedSceneError, keep_apart, logged_scene, read_probes, redefined_probes};
 use crate::journal::{Completeness, Log, LongLog, LongLogError, Manifest, ReadError, SceneInLogError};
-use crate::pipeline::Record;
-use crate::scene::Scene;
-
-/// Defaults as they once were, for scenes in logs of that time that leave them out: any of them, as not all changed at once.
-/// Laid over any other scene they would change its hash, which the log holds.
-const DEFAULTS_BEFORE: [&str; 3] =
-    ["mesh.quadrature=patch", "mesh.quadrature=full", "adapt.length_limit=sqrt-radius-thickness"];
+use crate::pipeline::{Record, Stages};
+use crate::scene::{Reach, Scene};
 
 /// A log as far as it can be trusted, with the scene that its last stretch was run with.
 pub(super) struct ReadLog {
     pub(super) log: Log,
     pub(super) scene: Scene,
+    /// Whether that one is lost, and this is the last one that is not.
+    pub(super) scene_is_older: bool,
 }
 
 impl ReadLog {
-    /// Every stage whose hashes hold.
+    /// Every stage whose hashes hold, as it stands in the log.
     pub(super) fn records(&self) -> Vec<Record> {
         self.log.entries().iter().map(|entry| entry.record.clone()).collect()
+    }
+
+    /// The same with the readings of the probes of [`Self::scene`] alone; those that the log lacks are made where `anew`.
+    pub(super) fn records_of_scene(&self, path: &Path, anew: bool) -> Result<Vec<Record>, Failure> {
+        let mut records = self.records();
+        keep_apart(&redefined_probes(&self.log), &mut records);
+        if anew {
+            let read = read_probes(&self.log, &mut Stages::new(self.scene.clone()), &mut records);
+            read.map_err(|source| Failure::WrongLog { log: path.to_path_buf(), source: Box::new(source) })?;
+        }
+        Ok(records)
+    }
+
+    /// Where what steps are made with changed: a line for each setting, without which all would seem to be of one kind.
+    pub(super) fn mixed(&self) -> String {
+        let mut text = String::new();
+        for (ordinal, differences) in self.log.scene_changes() {
+            for difference in differences.iter().filter(|difference| difference.reach == Reach::Steps) {
+                let [was, is] = difference.values();
+                text.push_str(&format!("mixed: {} is {is} from stage {ordinal} on, and was {was}\n", difference.path));
+            }
+        }
+        text
+    }
+
+    /// What is shown as the scene's where that is lost: a line that says so.
+    pub(super) fn older_scene(&self) -> Option<String> {
+        let lost = self.log.lost_manifests().last().filter(|_| self.scene_is_older)?;
+        Some(format!(
+            "what the run was asked for from stage {} on is lost: its target, settings and probes are not known, and those below are \
+             of the scene before",
+            lost.ordinal
+        ))
     }
 
     /// Whether the run came to its end.
@@ -41,7 +72,8 @@ impl ReadLog {
     pub(super) fn warnings_of(log: &Log) -> Vec<String> {
         let mut warnings: Vec<String> =
             log.notes().iter().map(|note| format!("at byte {}: {}", note.at, note.text)).collect();
-        warnings.extend(log.lost_manifests().iter().map(ToString::to_string));
+        warnings.extend(log.missed_manifests().map(ToString::to_string));
+        warnings.extend(redefined_probes(log).iter().map(ToString::to_string));
         match log.completeness() {
             Completeness::Finished | Completeness::Unfinished => {}
             Completeness::Truncated { at, dropped } => warnings.push(format!(
@@ -49,7 +81,7 @@ impl ReadLog {
             )),
             Completeness::Damaged { at, dropped, later_commits } => warnings.push(format!(
                 "damaged at byte {at}: {dropped} bytes beyond, with {later_commits} stages that have lost what they follow \
-                 on, are not used; `foldline verify` tells more"
+                 on, are not used; `foldline verify` tells more, and `foldline recover --remake` may run again what they follow on"
             )),
         }
         warnings
@@ -84,14 +116,14 @@ pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
         ReadError::Io { source, .. } => Failure::Read { path: path.to_path_buf(), source },
         error => wrong(Box::new(error)),
     })?;
-    let scene = match (scene_of(&log, path), log.manifests().last()) {
-        (Err(Failure::SceneLost { .. }), Some(manifest)) => scene_in(manifest, path, &[])?,
-        (scene, _) => scene?,
+    let (scene, scene_is_older) = match (scene_of(&log, path), log.manifests().last()) {
+        (Err(Failure::SceneLost { .. }), Some(manifest)) => (scene_in(manifest, path, &[])?, true),
+        (scene, _) => (scene?, false),
     };
     for warning in ReadLog::warnings_of(&log) {
         say(&format!("foldline: {}: {warning}", path.display()));
     }
-    Ok(ReadLog { log, scene })
+    Ok(ReadLog { log, scene, scene_is_older })
 }
 
 /// The scene that the log was last gone on with.
@@ -108,22 +140,12 @@ pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
     }
 }
 
-/// The scene that stage `index` was run with, with settings laid over it: that of its stretch, and held against the
-/// hash in its commit, so that no other takes its place where it is lost.
+/// The scene that stage `index` was run with, with settings laid over it.
 pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
-    let lost = || Failure::SceneLost { log: path.to_path_buf(), ordinal: index };
-    let expected = log.entry(index).ok_or_else(lost)?.record.commit.scene_hash;
-    for manifest in log.manifests_of(index) {
-        for chosen in 0..1 << DEFAULTS_BEFORE.len() {
-            let is_chosen = |index: usize| chosen >> index & 1 == 1;
-            let defaults = DEFAULTS_BEFORE.iter().enumerate().filter(|(index, _)| is_chosen(*index));
-            let as_then: Vec<String> = defaults.map(|(_, default)| default.to_string()).collect();
-            if scene_in(manifest, path, &as_then).is_ok_and(|scene| scene.hash() == expected) {
-                return scene_in(manifest, path, &[&as_then[..], settings].concat());
-            }
-        }
-    }
-    Err(lost())
+    logged_scene(log, index, settings).map_err(|error| match error {
+        LoggedSceneError::Lost { ordinal } => Failure::SceneLost { log: path.to_path_buf(), ordinal },
+        LoggedSceneError::Unreadable(error) => unreadable_scene(error, path),
+    })
 }
 
 /// Says which stretches of a log another revision of the numerics or another kind of kernel wrote than this one: what they
@@ -138,8 +160,12 @@ pub(super) fn say_other_numerics(log: &Log) {
 }
 
 fn scene_in(manifest: &Manifest, path: &Path, settings: &[String]) -> Result<Scene, Failure> {
-    manifest.scene(settings).map_err(|error| match error {
+    manifest.scene(settings).map_err(|error| unreadable_scene(error, path))
+}
+
+fn unreadable_scene(error: SceneInLogError, path: &Path) -> Failure {
+    match error {
         SceneInLogError::Wrong(error) => Failure::WrongScene { rendered: rendered(&error) },
         source => Failure::WrongLog { log: path.to_path_buf(), source: Box::new(source) },
-    })
+    }
 }

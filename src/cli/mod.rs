@@ -73,7 +73,10 @@ impl Command {
     fn run(self) -> Result<u8, Failure> {
         session::outlive_file_limits()?;
         // Commands that compute without being told on how many threads.
-        if matches!(self, Command::Plot(_) | Command::Bisect(_) | Command::Stability(_) | Command::Converge(_)) {
+        if matches!(
+            self,
+            Command::Plot(_) | Command::Bisect(_) | Command::Stability(_) | Command::Recover(_) | Command::Converge(_)
+        ) {
             session::use_threads(None)?;
         }
         match self {

@@ -1,11 +1,11 @@
 //! Standard output that may be closed, text that no terminal obeys, and files that are whole or not there.
 
 use std::io::{self, ErrorKind, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
-use crate::view::is_obeyed;
-pub(super) use crate::view::printable;
+use crate::printable::is_obeyed;
+pub(super) use crate::printable::printable;
 use crate::whole_file::write_new;
 
 /// Writes to standard output. A reader that has closed its end (`| head`) has what it wanted: that is no failure.
@@ -56,17 +56,29 @@ pub(super) fn escaped(json: String) -> String {
 /// is written.
 pub(super) fn write_files(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
     refuse_what_is_there(files.iter().map(|(path, _)| path))?;
-    for (path, content) in files {
-        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-            let failed = |source| Failure::Write { path: folder.to_path_buf(), source };
-            std::fs::create_dir_all(folder).map_err(failed)?;
+    files.iter().try_for_each(|(path, content)| {
+        let made = make_folder_of(path)?;
+        let written = write_new(path, content);
+        if written.is_err() {
+            // One that holds something by now stays.
+            made.iter().take_while(|folder| std::fs::remove_dir(folder).is_ok()).for_each(drop);
         }
-        write_new(path, content).map_err(|source| match source.kind() {
+        written.map_err(|source| match source.kind() {
             ErrorKind::AlreadyExists => Failure::InTheWay { path: path.clone() },
             _ => Failure::Write { path: path.clone(), source },
-        })?;
+        })
+    })
+}
+
+/// Makes the folder that a file is to lie in; gives back the folders that were not there, the innermost first.
+fn make_folder_of(path: &Path) -> Result<Vec<&Path>, Failure> {
+    let folders = path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty());
+    let missing: Vec<&Path> = folders.take_while(|folder| !folder.exists()).collect();
+    for folder in missing.iter().rev() {
+        let failed = |source| Failure::Write { path: folder.to_path_buf(), source };
+        std::fs::create_dir(folder).map_err(failed)?;
     }
-    Ok(())
+    Ok(missing)
 }
 
 /// Refuses to write where anything is: nothing is written over, whatever it is.
@@ -87,5 +99,8 @@ mod tests {
         assert_eq!(printable("\u{1b}[31mred\u{9b}0m\u{7f}\r"), "␛[31mred\u{fffd}0m␡␍");
         let json = serde_json::to_string("\u{1b}[31m\u{9b}\u{7f}").unwrap();
         assert_eq!(escaped(json), r#""\u001b[31m\u009b\u007f""#);
+        assert_eq!(escaped("\"a\u{202e}b\"".to_owned()), r#""a\u202eb""#);
+        assert_eq!(printable("a\u{202e}b\u{2066}"), "a\u{fffd}b\u{fffd}");
+        assert_eq!(crate::printable::one_line("tip\n\tone"), "tip␊␉one");
     }
 }

@@ -7,9 +7,11 @@ use clap::Args;
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
 use super::output::{file_name, print, write_files};
+use crate::history::States;
 use crate::pipeline::{Parameter, Report};
+use crate::scene::Scene;
 use crate::spline::Mesh;
-use crate::study::TapeSpring;
+use crate::study::{TapeSpring, equilibria};
 use crate::units::rounded;
 use crate::view::{Picture, ViewDirection, deformed_surface, load_probe_plot, mesh_picture, moment_rotation_plot, vtu};
 
@@ -39,7 +41,11 @@ impl Arguments {
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, output, step, view } = self;
         let read = read_log(&log)?;
-        let (scene, records) = (&read.scene, read.records());
+        let scene = &read.scene;
+        let mut records = read.records_of_scene(&log, false)?;
+        if equilibria(&records).any(|record| lacks_first_probe(scene, &record.report)) {
+            records = read.records_of_scene(&log, true)?;
+        }
         let folder = output.unwrap_or_else(|| log.with_extension(""));
         let name = log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let last = records.iter().rposition(|record| step.is_none_or(|step| record.report.step == step));
@@ -56,7 +62,7 @@ impl Arguments {
         };
         let record = &records[last];
         let unusable = |source| Failure::WrongLog { log: log.clone(), source: Box::new(source) };
-        let state = read.log.state(last).map_err(unusable)?;
+        let state = States::of(&read.log).at(last).map_err(unusable)?;
         let samples = deformed_surface(scene, &state.mesh, &state.displacement, cells_per_element(&state.mesh))?;
         let picture = Picture {
             direction: view.unwrap_or_default(),
@@ -70,6 +76,12 @@ impl Arguments {
         write_files(&files)?;
         print(&files.iter().map(|(path, _)| format!("{}\n", path.display())).collect::<String>())
     }
+}
+
+/// Whether a report has no reading of the probe that is drawn, as where the run began without it.
+fn lacks_first_probe(scene: &Scene, report: &Report) -> bool {
+    let first = scene.probes.first().filter(|_| TapeSpring::of_scene(scene).is_none());
+    first.is_some_and(|first| report.probes.iter().all(|reading| reading.name != first.name))
 }
 
 /// Cells that make a coarse mesh look smooth and a fine one no larger than need be.

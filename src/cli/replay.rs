@@ -11,7 +11,7 @@ use super::scene_file::stage_named;
 use super::session::use_threads;
 use super::trace;
 use crate::equilibrium::Iterate;
-use crate::history::{Comparison, ReplayError, Replayed, Verdict, replay_stage, verdict};
+use crate::history::{Comparison, ReplayError, Replayed, States, Verdict, replay_stage, verdict};
 use crate::journal::TraceRow;
 use crate::pipeline::Stages;
 use crate::scene::{Scene, Stage};
@@ -52,6 +52,7 @@ impl Arguments {
         }
         let read = read_log(&self.log)?;
         say_other_numerics(&read.log);
+        let mut states = States::of(&read.log);
         let mut stages: Option<Stages> = None;
         let mut rows: Vec<TraceRow> = Vec::new();
         let mut worst = 0;
@@ -71,7 +72,7 @@ impl Arguments {
                 }
             };
             let (ordinal, stage, step) = (commit.ordinal, commit.stage, commit.step);
-            let replayed = match replay_stage(&read.log, index, stages, &mut observer) {
+            let replayed = match replay_stage(&mut states, index, stages, &mut observer) {
                 Ok(replayed) => replayed,
                 // It did not fail when the log was written.
                 Err(ReplayError::Stage(error)) => {

@@ -7,7 +7,7 @@ use clap::Args;
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{ReadLog, scene_of};
 use super::new_probes;
-use super::output::say;
+use super::output::{print, say};
 use super::progress::Manner;
 use super::session::{RunOptions, drive, watch_signals};
 use crate::history::{basis, plan, read_probes, restored_scene};
@@ -123,7 +123,10 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let new_probes = new_probes::names(&was, &scene);
     if !new_probes.is_empty() {
         read_probes(log, &mut stages, &mut before).map_err(|source| unusable(Box::new(source)))?;
-        options.show(&new_probes::table(&new_probes, &before))?;
+        match options.manner {
+            Manner::Json => print(&new_probes::json_lines(&before))?,
+            _ => print(&new_probes::table(&new_probes, &before))?,
+        }
     }
     let run = Run::new(stages, basis.state, basis.commit);
     let reached = run.state().parameter;
@@ -139,7 +142,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     }
     let finished = log.completeness() == Completeness::Finished && plan.keep == all;
     // One that lost its summary is closed anew.
-    if next.is_none() && finished && log.has_summary() {
+    if next.is_none() && finished && log.has_summary() && !log.last_manifest_is_lost() {
         return options.sum_up(&Summary::new(&scene, &before));
     }
     let resumed =
@@ -155,7 +158,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
 fn found(log: &Log, keep: usize) -> String {
     match log.commits() {
         0 => "the log holds no stage".to_string(),
-        all if keep == all && !log.lost_manifests().is_empty() => {
+        all if keep == all && log.missed_manifests().next().is_some() => {
             format!("the log holds {all} stages, and has lost a manifest")
         }
         all if keep == all => format!("the log holds {all} stages, all good"),

@@ -73,6 +73,7 @@ impl Job {
     pub(super) fn run(self) -> Result<(), Failure> {
         let Job { file, scene: SceneFile { scene, text }, options, resume } = self;
         let manifest = Manifest::here(&file, &text, options.use_threads()?);
+        manifest.check_size().map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         let is_there = resume && options.log.exists();
         if is_there {
             if let Some(old) = OldLog::open_unless_empty(&options.log)? {

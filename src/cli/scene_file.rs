@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal};
 use std::path::Path;
 
 use super::failure::Failure;
-use crate::scene::{Geometry, Scene, SceneError, Stage, parse_with_settings};
+use crate::scene::{Geometry, SCENE_BYTES_LIMIT, Scene, SceneError, Stage, parse_with_settings};
 
 /// A scene with the text that it came from.
 pub(super) struct SceneFile {
@@ -24,9 +24,6 @@ pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
     };
     Ok(SceneFile { scene, text })
 }
-
-/// Largest scene file, bytes.
-const SCENE_BYTES_LIMIT: u64 = 64 << 20;
 
 /// What a scene file holds. A pipe would hang, and a device never end.
 fn bytes_of(path: &Path) -> io::Result<Vec<u8>> {

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
-use super::log_file::{ReadLog, read_log, scene_at};
+use super::log_file::{read_log, scene_at};
 use super::output::{file_name, print, refuse_what_is_there, write_files};
 use super::plot::cells_per_element;
-use crate::history::{StabilityReport, stability_at};
+use crate::history::{StabilityReport, States, stability_at};
 use crate::pipeline::{Outcome, Record};
 use crate::scene::Scene;
 use crate::shell::{add, norm, scaled, sub};
@@ -41,18 +41,19 @@ impl Arguments {
         let read = read_log(&self.log)?;
         let records = read.records();
         let ends = ends_of_steps(&records);
+        let mut states = States::of(&read.log);
         let Some(step) = self.step else {
             print(HEAD)?;
             // Each as soon as it is known: a long log takes its time.
             return ends.into_iter().try_for_each(|index| {
-                let (report, _) = self.report(&read, index)?;
+                let (report, _) = self.report(&mut states, index)?;
                 print(&row(&records[index], &report))
             });
         };
         let found = ends.into_iter().find(|index| records[*index].report.step == step);
         let no_step = || Failure::NoSuchStep { log: self.log.clone(), step, known: read.steps() };
         let index = found.ok_or_else(no_step)?;
-        let (report, scene) = self.report(&read, index)?;
+        let (report, scene) = self.report(&mut states, index)?;
         print(&in_full(&records[index], &report))?;
         match &self.output {
             Some(folder) => draw(folder, &scene, &records[index], &report),
@@ -60,10 +61,10 @@ impl Arguments {
         }
     }
 
-    fn report(&self, read: &ReadLog, index: usize) -> Result<(StabilityReport, Scene), Failure> {
-        let scene = scene_at(&read.log, &self.log, index, &[])?;
+    fn report(&self, states: &mut States, index: usize) -> Result<(StabilityReport, Scene), Failure> {
+        let scene = scene_at(states.log(), &self.log, index, &[])?;
         let failed = |source| Failure::Stability { log: self.log.clone(), index, source: Box::new(source) };
-        Ok((stability_at(&read.log, index, &scene).map_err(failed)?, scene))
+        Ok((stability_at(states, index, &scene).map_err(failed)?, scene))
     }
 }
 

@@ -34,7 +34,7 @@ pub fn stage_table(records: &[Record]) -> String {
     let steps = records.first().is_some_and(|record| record.report.driven_by == Parameter::LoadFactor);
     // Where no ends turn, the first probe stands in the place of their moment.
     let probe = records.iter().find_map(|record| record.report.probes.first()).map(|reading| reading.name.clone());
-    let rows: Vec<[String; COLUMNS.len()]> = records.iter().map(cells).collect();
+    let rows: Vec<[String; COLUMNS.len()]> = records.iter().map(|record| cells(record, probe.as_deref())).collect();
     let width_of = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
         cells.chain([COLUMNS[column].0.chars().count()]).max().unwrap_or(0)
@@ -59,7 +59,8 @@ pub fn stage_table(records: &[Record]) -> String {
     table
 }
 
-fn cells(record: &Record) -> [String; COLUMNS.len()] {
+/// The cells of a stage; `probe` is the name of the one that has a column.
+fn cells(record: &Record, probe: Option<&str>) -> [String; COLUMNS.len()] {
     let Record { report, commit, wall_s } = record;
     let unless_zero = |number: u64| if number == 0 { String::new() } else { number.to_string() };
     [
@@ -69,7 +70,10 @@ fn cells(record: &Record) -> [String; COLUMNS.len()] {
         format!("{:.3}", report.parameter),
         match report.driven_by {
             Parameter::Rotation => reading(report.moment_n_mm, 3),
-            Parameter::LoadFactor => report.probes.first().map_or(String::new(), |probe| reading(probe.value, 4)),
+            Parameter::LoadFactor => {
+                let shown = report.probes.iter().find(|found| Some(&*found.name) == probe);
+                shown.map_or(String::new(), |probe| reading(probe.value, 4))
+            }
         },
         reading(report.strain_energy_n_mm, 3),
         format!("{}×{}", report.elements[0], report.elements[1]),

@@ -6,13 +6,13 @@ use std::str::FromStr;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{file_name, print};
+use super::output::{file_name, print, say};
 use crate::journal::{ThinError, thin};
 
 /// Write a smaller log that holds every stage and every report, but the states of some load steps alone
 ///
-/// The chain of hashes stays as it is. `replay` goes from the last kept state before a stage, `resume` from the last one, which
-/// is always kept.
+/// The chain of hashes stays as it is. A state that is not kept is made again, where one is asked for, from the last kept one
+/// before it; `resume` goes from the last one, which is always kept.
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// Log to read (MCAP)
@@ -36,6 +36,14 @@ impl Arguments {
             }
             source => Failure::WrongLog { log: log.clone(), source: Box::new(source) },
         })?;
+        for (text, choice) in &keep.choices {
+            if !thinned.steps.iter().any(|step| choice.has(*step)) {
+                let last = thinned.last_step;
+                say(&format!(
+                    "--keep {text} keeps nothing: the log has no state of such a load step; it goes from 1 to {last}"
+                ));
+            }
+        }
         let [before, after] = thinned.bytes.map(|bytes| bytes as f64 / 1e6);
         print(&format!(
             "{}: all {} stages, {} of them with their states; {after:.2} MB of {before:.2} MB\n",
@@ -50,7 +58,8 @@ impl Arguments {
 #[derive(Clone, Debug, PartialEq)]
 struct Steps {
     text: String,
-    choices: Vec<Choice>,
+    /// Each as it was written.
+    choices: Vec<(String, Choice)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,10 +70,16 @@ enum Choice {
 
 impl Steps {
     fn has(&self, step: u64) -> bool {
-        self.choices.iter().any(|choice| match choice {
-            Choice::Every(each) => step.is_multiple_of(*each),
-            Choice::FromTo(from, to) => (*from..=*to).contains(&step),
-        })
+        self.choices.iter().any(|(_, choice)| choice.has(step))
+    }
+}
+
+impl Choice {
+    fn has(self, step: u64) -> bool {
+        match self {
+            Choice::Every(each) => step.is_multiple_of(each),
+            Choice::FromTo(from, to) => (from..=to).contains(&step),
+        }
     }
 }
 
@@ -84,7 +99,8 @@ impl FromStr for Steps {
             },
             _ => number(text).map(|step| Choice::FromTo(step, step)),
         };
-        let choices = text.split(',').map(|part| choice(part.trim())).collect::<Result<_, _>>()?;
+        let parts = text.split(',').map(str::trim);
+        let choices = parts.map(|part| Ok((part.to_owned(), choice(part)?))).collect::<Result<_, String>>()?;
         Ok(Self { text: text.to_owned(), choices })
     }
 }

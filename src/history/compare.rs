@@ -226,7 +226,7 @@ impl Found<'_> {
 /// What a stage came to, in words.
 fn outcome(state: &State) -> String {
     match state.control.rejection {
-        None => format!("a solve that reached {}°", state.parameter),
+        None => format!("a solve that reached {}", state.parameter),
         Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
         Some(Rejection::Jump) => "a solve that was turned down as unstable on the way".to_string(),
         Some(Rejection::CriticalPoint) => "a solve that was turned down for a critical point".to_string(),
@@ -362,7 +362,7 @@ mod tests {
             ("0 negative pivots against 1", |s| s.negative_pivots = 1),
             ("an increment halved 1 times for the next step against the scene's increment", |s| s.control.halvings = 0),
             ("a jump seen ahead in the first only", |s| s.control.jump_seen_at_deg = None),
-            ("a solve that reached 8° against a solve that found no equilibrium", |s| {
+            ("a solve that reached 8 against a solve that found no equilibrium", |s| {
                 s.control.rejection = Some(Rejection::NoEquilibrium)
             }),
             ("a step by arc length in the first only", |s| s.path = None),

@@ -170,6 +170,10 @@ fn parse_term(term: &str, fields: &[(String, Value)]) -> Result<Term, ConditionE
         (_, Value::String(_)) => {
             return Err(ConditionError::NotANumber { field, value, problem: "holds a word: compare it with == or !=" });
         }
+        (Ok(number), _) if number.is_nan() => {
+            let problem = "compares with none: with what is no number nothing does";
+            return Err(ConditionError::NotANumber { field, value, problem });
+        }
         (Ok(number), _) => Operand::Number(number),
         (Err(_), _) if value == "true" => Operand::Number(1.0),
         (Err(_), _) if value == "false" => Operand::Number(0.0),

@@ -2,7 +2,8 @@
 
 use crate::history::bisection::IndexBisection;
 use crate::history::compare::{Comparison, compare};
-use crate::journal::{Log, StateError};
+use crate::history::states::{RemakeError, States};
+use crate::journal::Log;
 
 /// The first stage at which two runs differ.
 #[derive(Clone, Debug)]
@@ -23,8 +24,8 @@ pub struct Parting {
 /// parted do not meet again.
 ///
 /// # Errors
-/// Where a state cannot be read.
-pub fn find_parting(a: &Log, b: &Log) -> Result<Option<Parting>, StateError> {
+/// Where a state cannot be had.
+pub fn find_parting(a: &Log, b: &Log) -> Result<Option<Parting>, RemakeError> {
     let len = a.entries().len().min(b.entries().len());
     let commit = |log: &Log, index: usize| log.entries()[index].record.commit;
     let same_scene = len > 0 && commit(a, 0).scene_hash == commit(b, 0).scene_hash;
@@ -42,6 +43,6 @@ pub fn find_parting(a: &Log, b: &Log) -> Result<Option<Parting>, StateError> {
     if index == len {
         return Ok(None);
     }
-    let comparison = compare(&a.state(index)?, &b.state(index)?);
+    let comparison = compare(&States::of(a).at(index)?, &States::of(b).at(index)?);
     Ok(Some(Parting { index, looks, comparison }))
 }

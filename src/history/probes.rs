@@ -1,14 +1,19 @@
-//! The probes of a scene on the states of a log that was written without them.
+//! The probes of a scene on the states of a log that was written without them, or with others of the same names.
 
-use crate::journal::{Log, StateError};
+use std::fmt;
+use std::ops::Range;
+
+use crate::history::states::{RemakeError, States};
+use crate::journal::{Log, Manifest};
 use crate::pipeline::{Outcome, Record, StageError, Stages};
+use crate::scene::{Probe, Scene, shown_values};
 
 /// Why a probe cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ProbeError {
     /// The state cannot be had.
     #[error(transparent)]
-    State(#[from] StateError),
+    State(#[from] RemakeError),
     /// The scene cannot be made discrete on its mesh.
     #[error("the probes cannot be read on the states of the log")]
     Stage(#[from] StageError),
@@ -20,10 +25,67 @@ pub enum ProbeError {
 /// # Errors
 /// Where a state cannot be read.
 pub fn read_probes(log: &Log, stages: &mut Stages, records: &mut [Record]) -> Result<(), ProbeError> {
+    let mut states = States::of(log);
     for (index, Record { report, .. }) in records.iter_mut().enumerate() {
         if report.outcome == Outcome::Done && report.stage.finds_equilibrium() {
-            report.probes = stages.read_probes(&log.state(index)?)?;
+            report.probes = stages.read_probes(&states.at(index)?)?;
         }
     }
     Ok(())
+}
+
+/// A probe that measured something else under the same name before.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Redefined {
+    /// Ordinals of the stages that were run with another one.
+    pub stages: Range<u64>,
+    /// What it was there.
+    pub was: Probe,
+    /// What it is in the last scene of the log.
+    pub is: Probe,
+}
+
+impl fmt::Display for Redefined {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [was, is] = [&self.was, &self.is].map(|probe| serde_json::to_value(&probe.kind).ok());
+        let [was, is] = shown_values(&was, &is);
+        let Range { start, end } = self.stages;
+        write!(
+            f,
+            "probe `{}` of stages {start} to {} is not the one of the last scene ({was} there, {is} in the end): they are not put \
+             together; `foldline inspect LOG --probes` reads the last one on all states",
+            self.is.name,
+            end.saturating_sub(1)
+        )
+    }
+}
+
+/// Probes of the last scene of a log that other stretches have under the same name, and other.
+pub fn redefined_probes(log: &Log) -> Vec<Redefined> {
+    let [before @ .., last] = log.manifests() else { return Vec::new() };
+    let probes = |manifest: &Manifest| manifest.scene(&[]).map_or_else(|_| Vec::new(), |scene: Scene| scene.probes);
+    let mut found = Vec::new();
+    let is_other = |manifest: &&Manifest| manifest.scene_text != last.scene_text;
+    if !before.iter().any(|manifest| is_other(&manifest)) {
+        return found;
+    }
+    let wanted = probes(last);
+    let ends = log.manifests().iter().skip(1).map(|next| next.first_ordinal);
+    for (manifest, end) in
+        before.iter().zip(ends).filter(|(manifest, end)| manifest.first_ordinal < *end && is_other(manifest))
+    {
+        for was in probes(manifest) {
+            let is = wanted.iter().find(|is| is.name == was.name && **is != was);
+            found.extend(is.map(|is| Redefined { stages: manifest.first_ordinal..end, is: is.clone(), was }));
+        }
+    }
+    found
+}
+
+/// Takes out of records the readings that are not of the probes of the last scene.
+pub fn keep_apart(redefined: &[Redefined], records: &mut [Record]) {
+    for Record { report, commit, .. } in records {
+        let here = redefined.iter().filter(|other| other.stages.contains(&commit.ordinal));
+        here.for_each(|other| report.probes.retain(|reading| reading.name != other.is.name));
+    }
 }

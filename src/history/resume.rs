@@ -15,9 +15,6 @@ const STARTS_HERE: [&str; 2] = ["probes", "output.mesh_history"];
 /// Targets that differ by less than this, relatively, are one.
 const TARGET_ROUNDING: f64 = 1e-12;
 
-/// Characters of a scene's value that are shown at most.
-const LONGEST_SHOWN: usize = 60;
-
 /// What a run goes on from.
 #[derive(Clone, Debug)]
 pub struct Basis {
@@ -77,10 +74,11 @@ pub struct NothingStands {
 pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, NothingStands>, StateError> {
     let differences = old.differences(new);
     let shown = |difference: &Difference| {
-        format!("{} changed ({} → {})", difference.path, shown_value(&difference.a), shown_value(&difference.b))
+        let [from, to] = difference.values();
+        format!("{} changed ({from} → {to})", difference.path)
     };
     let fatal = differences.iter().filter(|difference| difference.reach == Reach::Everything).map(|difference| {
-        let (from, to) = (shown_value(&difference.a), shown_value(&difference.b));
+        let [from, to] = difference.values();
         format!("{} changed ({from} in the log, {to} now)", difference.path)
     });
     let fatal: Vec<String> = fatal.collect();
@@ -113,22 +111,14 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
                 format!("{what}: every stage stands")
             }
             _ if last_step == 0 => format!("{what}: no complete step stands"),
+            Reach::Steps => {
+                let next = last_step + 1;
+                format!("{what}: steps 1 to {last_step} stand, {next} on is new: the log is mixed from there on")
+            }
             _ => format!("{what}: steps 1 to {last_step} stand, {} on is new", last_step + 1),
         });
     }
     Ok(Ok(ResumePlan { keep, changes }))
-}
-
-/// A value of a scene as it stands in its file, in one line: of a long list only how it begins and how much there is of it.
-pub fn shown_value(value: &Option<serde_json::Value>) -> String {
-    let Some(value) = value else { return "not set".to_string() };
-    let text = value.to_string();
-    if text.chars().count() <= LONGEST_SHOWN {
-        return text;
-    }
-    let head: String = text.chars().take(LONGEST_SHOWN).collect();
-    let more = text.chars().count() - LONGEST_SHOWN;
-    format!("{head} … {more} characters more")
 }
 
 /// Number of stages before the first solve that the new target would not try: the old one cut it short, or the new one
@@ -182,19 +172,4 @@ pub fn restored_scene(log: &Log, scene: &Scene) -> Option<Scene> {
     let mut restored = scene.clone();
     restored.load.set_target(attempts.fold(f64::MIN, |most, attempt| most.max(attempt.abs())));
     (last.scene_hash == scene.hash()).then_some(restored)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_value_is_a_line() {
-        assert_eq!(shown_value(&None), "not set");
-        assert_eq!(shown_value(&Some(serde_json::json!([4, 8]))), "[4,8]");
-        let net = serde_json::json!(vec![[0.25, 1.5, 2.0]; 1000]);
-        let shown = shown_value(&Some(net));
-        assert!(shown.starts_with("[[0.25,1.5,2.0],[0.25") && shown.ends_with(" characters more"), "{shown}");
-        assert!(shown.len() < 100, "{shown}");
-    }
 }

@@ -6,7 +6,8 @@ use crate::equilibrium::{
 };
 use crate::history::bisection::LoadBisection;
 use crate::history::stability::mode_of;
-use crate::journal::{Log, StateError};
+use crate::history::states::{RemakeError, States};
+use crate::journal::Log;
 use crate::pipeline::{CriticalPoint, Outcome, Parameter, is_jump, known_release};
 use crate::scene::Scene;
 use crate::state::State;
@@ -46,7 +47,7 @@ pub enum SnapError {
     },
     /// A state of the log cannot be had.
     #[error(transparent)]
-    State(#[from] StateError),
+    State(#[from] RemakeError),
     /// The jump is in the first step: there is no stable state before it.
     #[error(
         "the run jumps or loses its stability in its first step: there is no stable state in the log to go back to; run it with a smaller increment"
@@ -104,7 +105,7 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
         let report = &entries[*index].record.report;
         report.parameter < reached || (report.path_length_mm.is_some() && report.negative_pivots == 0)
     });
-    let start = log.state(before.ok_or(SnapError::NothingBefore)?)?;
+    let start = States::of(log).at(before.ok_or(SnapError::NothingBefore)?)?;
     let mut work = Workspace::new(scene, &start.mesh)?;
     let mut tries = Tries { scene, work: &mut work, count: 0 };
 

@@ -1,7 +1,7 @@
 //! How stable the states of a log are.
 
 use crate::equilibrium::{SoftMode, SolveError, Standing, Workspace, WorkspaceError, soft_mode};
-use crate::journal::{Log, StateError};
+use crate::history::states::{RemakeError, States};
 use crate::scene::Scene;
 use crate::state::State;
 
@@ -21,7 +21,7 @@ pub struct StabilityReport {
 pub enum StabilityError {
     /// The state cannot be had.
     #[error(transparent)]
-    State(#[from] StateError),
+    State(#[from] RemakeError),
     /// The equations do not fit in memory, or the scene not the mesh.
     #[error(transparent)]
     Workspace(#[from] WorkspaceError),
@@ -34,8 +34,8 @@ pub enum StabilityError {
 ///
 /// # Errors
 /// Where the state cannot be had, or its stiffness has no factor.
-pub fn stability_at(log: &Log, index: usize, scene: &Scene) -> Result<StabilityReport, StabilityError> {
-    let state = log.state(index)?;
+pub fn stability_at(states: &mut States, index: usize, scene: &Scene) -> Result<StabilityReport, StabilityError> {
+    let state = states.at(index)?;
     let mut work = Workspace::new(scene, &state.mesh)?;
     let (mode, mode_at) = mode_of(scene, &mut work, &state)?;
     Ok(StabilityReport { mode_at, mode, state })

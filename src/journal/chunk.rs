@@ -63,14 +63,44 @@ pub(super) fn records<'b>(bytes: &'b [u8], chunk: &Frame) -> Result<impl Iterato
 }
 
 /// Opens a chunk and checks all that can be checked without its neighbours. `channels` gains those it describes.
-pub(super) fn open(bytes: &[u8], chunk: &Frame, channels: &mut Channels) -> Result<Content, Damage> {
+///
+/// Where the chunk is damaged beside its messages, or the descriptions of its channels are lost, the commit says what they are;
+/// that is given back as well.
+pub(super) fn open(bytes: &[u8], chunk: &Frame, channels: &mut Channels) -> Result<(Content, Option<Damage>), Damage> {
     if chunk.body.len() > CHUNK_BYTES_LIMIT {
         return Err(Damage::ChunkTooLarge { bytes: chunk.body.len() as u64 });
     }
     let records = records(bytes, chunk)?;
-    check_crc(&bytes[chunk.body.clone()])?;
+    let described = check_crc(&bytes[chunk.body.clone()]).and_then(|()| describe(bytes, records.clone(), channels));
+    let described = match described {
+        Ok(described) => described,
+        Err(beside) => {
+            let (Damage::Unreadable { opcode: op::CHUNK, .. } | Damage::UnknownChannel { .. }) = beside else {
+                return Err(beside);
+            };
+            let Some(Committed { messages: named, .. }) = as_committed(bytes, chunk) else { return Err(beside) };
+            let messages = named.iter().map(|(topic, data)| Message { topic, data: data.clone() });
+            return Ok((content(bytes, messages)?, Some(beside)));
+        }
+    };
+    let topic = |id: u16| described.get(&id).or_else(|| channels.get(&id)).map_or("", |channel| &channel.topic[..]);
+    let messages = records.filter(|record| record.opcode == op::MESSAGE).map(|record| {
+        let [low, high] = [0, 1].map(|byte| bytes[record.body.start + byte]);
+        Message { topic: topic(u16::from_le_bytes([low, high])), data: data_of(&record) }
+    });
+    let content = content(bytes, messages)?;
+    channels.extend(described);
+    Ok((content, None))
+}
+
+fn data_of(message: &Frame) -> Range<usize> {
+    message.body.start + MESSAGE_HEADER_LEN..message.body.end
+}
+
+/// The channels that a chunk describes, once those of all its messages are known.
+fn describe(bytes: &[u8], records: impl Iterator<Item = Frame>, channels: &Channels) -> Result<Channels, Damage> {
     let mut described = Channels::new();
-    for record in records.clone() {
+    for record in records {
         let body = &bytes[record.body.clone()];
         let number = body.first_chunk().map(|number| u16::from_le_bytes(*number));
         match (record.opcode, number) {
@@ -98,15 +128,45 @@ pub(super) fn open(bytes: &[u8], chunk: &Frame, channels: &mut Channels) -> Resu
             (opcode, _) => return Err(Damage::Misplaced { opcode, bytes: body.len() as u64 }),
         }
     }
-    let topic = |id: u16| described.get(&id).or_else(|| channels.get(&id)).map_or("", |channel| &channel.topic[..]);
-    let messages = records.filter(|record| record.opcode == op::MESSAGE).map(|record| {
-        let [low, high] = [0, 1].map(|byte| bytes[record.body.start + byte]);
-        let data = record.body.start + MESSAGE_HEADER_LEN..record.body.end;
-        Message { topic: topic(u16::from_le_bytes([low, high])), data }
-    });
-    let content = content(bytes, messages)?;
-    channels.extend(described);
-    Ok(content)
+    Ok(described)
+}
+
+/// What a commit says of its chunk.
+#[derive(Default)]
+pub(super) struct Committed {
+    /// Ordinal of the stage.
+    pub ordinal: u64,
+    /// Topic of every message of the chunk, and where its data lie.
+    pub messages: Vec<(String, Range<usize>)>,
+}
+
+/// The messages of a chunk with the topics under which its commit, the last of them, names them by their hashes, whatever the
+/// chunk says of its channels; and the ordinal of that commit. `None` where one is not as it was committed, or where a damaged
+/// chunk lacks one: it may have had it.
+pub(super) fn as_committed(bytes: &[u8], chunk: &Frame) -> Option<Committed> {
+    let is_message = |record: &Frame| record.opcode == op::MESSAGE && record.body.len() >= MESSAGE_HEADER_LEN;
+    let messages = records(bytes, chunk).ok()?.filter(is_message).map(|record| data_of(&record));
+    let (place, last) = messages.clone().enumerate().last()?;
+    if let Ok(end) = unseal::<FinishedMessage>(&bytes[last.clone()]) {
+        let messages = vec![(FINISHED_TOPIC.to_owned(), last)];
+        return (place == 0).then_some(Committed { ordinal: end.commits.saturating_sub(1), messages });
+    }
+    let commit: CommitMessage = unseal(&bytes[last.clone()]).ok()?;
+    let mut named = commit.messages.iter();
+    let mut messages_named = Vec::new();
+    for data in messages.take(place) {
+        let hash = HexHash(blake3::hash(&bytes[data.clone()]));
+        let message = named.find(|message| message.blake3 == hash && message.bytes == data.len() as u64)?;
+        messages_named.push((message.topic.clone(), data));
+    }
+    let is_whole = messages_named.len() == commit.messages.len() || has_its_checksum(bytes, chunk);
+    messages_named.push((COMMIT_TOPIC.to_owned(), last));
+    is_whole.then_some(Committed { ordinal: commit.ordinal, messages: messages_named })
+}
+
+/// Whether a chunk is as it was written as far as its checksum tells.
+pub(super) fn has_its_checksum(bytes: &[u8], chunk: &Frame) -> bool {
+    frame::chunk_records(bytes, chunk).is_some() && check_crc(&bytes[chunk.body.clone()]).is_ok()
 }
 
 fn unreadable(opcode: u8) -> impl Fn(mcap::McapError) -> Damage {

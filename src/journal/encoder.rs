@@ -1,6 +1,6 @@
 //! Commits and manifests as MCAP bytes, in memory; nothing here touches a file, so nothing here can fail halfway.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::io::{self, Write};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -18,7 +18,7 @@ use super::format::{
 use super::frame::{self, Frame};
 use super::index::{Mark, Piece};
 use super::ledger::{ChunkPlace, Ledger};
-use super::manifest::{Manifest, SCENE_VALUES_LIMIT, has_too_many_values};
+use super::manifest::{Manifest, SCENE_VALUES_LIMIT};
 use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, ReportMessage, schema_of, seal};
 use super::summary;
 use crate::pipeline::{Commit, Record};
@@ -79,11 +79,15 @@ pub enum EncodeError {
     },
     /// A scene that no reader would take.
     #[error(
-        "the scene takes {bytes} bytes, and one in a log has no more than {MANIFEST_BYTES_LIMIT}, or {SCENE_VALUES_LIMIT} values: use a coarser net"
+        "the scene takes {bytes} bytes with {values} values, and one in a log has no more than {MANIFEST_BYTES_LIMIT} bytes and \
+         {SCENE_VALUES_LIMIT} values, so that no log takes much memory to read: use a net of fewer control points, which the mesh \
+         then refines"
     )]
     SceneTooLarge {
         /// Bytes that it takes.
         bytes: usize,
+        /// Values in it.
+        values: usize,
     },
     /// MCAP refused.
     #[error("MCAP refused a record")]
@@ -121,6 +125,8 @@ pub(super) struct Encoder {
     /// Hash of the manifest that began the stretch.
     stretch: Hash,
     ledger: Ledger,
+    /// Numbers of the channels that are described so far.
+    described: HashSet<u16>,
     /// Length of the log so far.
     length: u64,
     /// Bytes that the log lacks and the ledger has.
@@ -157,6 +163,7 @@ impl Encoder {
             writer_made_at: 0,
             stretch,
             ledger: Ledger::default(),
+            described: HashSet::new(),
             length: 0,
             in_front: Vec::new(),
         })
@@ -166,7 +173,8 @@ impl Encoder {
     pub(super) fn behind(ledger: Ledger, length: u64) -> Result<Self, McapError> {
         let (writer, outbox) = writer_that_knows(&ledger)?;
         let stretch = Hash::from_bytes([0; 32]);
-        Ok(Self { writer, outbox, writer_made_at: ledger.chunks.len(), stretch, ledger, length, in_front: Vec::new() })
+        let (writer_made_at, described) = (ledger.chunks.len(), ledger.channels.keys().copied().collect());
+        Ok(Self { writer, outbox, writer_made_at, stretch, ledger, described, length, in_front: Vec::new() })
     }
 
     /// The bytes made so far, whole records, which are then gone from here.
@@ -199,13 +207,14 @@ impl Encoder {
 
     /// Begins a stretch.
     pub(super) fn manifest(&mut self, manifest: &Manifest) -> Result<(), EncodeError> {
-        let record = manifest.to_record();
-        let bytes: usize = record.metadata.iter().map(|(key, value)| key.len() + value.len() + 8).sum();
-        if bytes > MANIFEST_BYTES_LIMIT - 64 || has_too_many_values(&manifest.scene_text) {
-            return Err(EncodeError::SceneTooLarge { bytes });
-        }
+        manifest.check_size()?;
         self.stretch = manifest.hash();
-        Ok(self.writer.write_metadata(&record)?)
+        Ok(self.writer.write_metadata(&manifest.to_record())?)
+    }
+
+    /// Goes on with a stretch, whose manifest has this hash.
+    pub(super) fn go_on_with(&mut self, stretch: Hash) {
+        self.stretch = stretch;
     }
 
     /// One stage as one chunk.
@@ -275,6 +284,7 @@ impl Encoder {
             encoding => self.writer.add_schema(&topic.schema_name, encoding, &topic.schema)?,
         };
         let channel = self.writer.add_channel(schema, &topic.topic, &topic.message_encoding, &BTreeMap::new())?;
+        self.described.insert(channel);
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let header = MessageHeader {
             channel_id: channel,
@@ -308,12 +318,53 @@ impl Encoder {
         {
             return self.writer.write_metadata(&record);
         }
+        if !self.describes(bytes, part) {
+            return self.again_as_committed(bytes, part, keeps);
+        }
         for record in chunk::records(bytes, part).into_iter().flatten() {
             let data = record.body.start + chunk::MESSAGE_HEADER_LEN;
             match frame::parse(record.opcode, &bytes[record.body])? {
                 McapRecord::Message { .. } if !keeps(data) => {}
                 McapRecord::Message { header, data } => self.writer.write_to_known_channel(&header, &data)?,
-                record => describe(&mut self.writer, &record)?,
+                record => {
+                    if let McapRecord::Channel(channel) = &record {
+                        self.described.insert(channel.id);
+                    }
+                    describe(&mut self.writer, &record)?;
+                }
+            }
+        }
+        self.writer.flush()
+    }
+
+    /// Whether what a chunk says about its channels, or those before it said, can be gone by.
+    fn describes(&self, bytes: &[u8], part: &Frame) -> bool {
+        let mut described: Vec<u16> = Vec::new();
+        let is_described = |record: Frame| {
+            let Some(id) = bytes[record.body.clone()].first_chunk().map(|id| u16::from_le_bytes(*id)) else {
+                return false;
+            };
+            if record.opcode == frame::op::CHANNEL {
+                described.push(id);
+            }
+            record.opcode != frame::op::MESSAGE || described.contains(&id) || self.described.contains(&id)
+        };
+        chunk::has_its_checksum(bytes, part) && chunk::records(bytes, part).into_iter().flatten().all(is_described)
+    }
+
+    /// A chunk of which no more can be gone by than the hashes in its commit: its messages under topics described anew.
+    fn again_as_committed(
+        &mut self,
+        bytes: &[u8],
+        part: &Frame,
+        keeps: impl Fn(usize) -> bool,
+    ) -> Result<(), McapError> {
+        let chunk::Committed { ordinal, messages } = chunk::as_committed(bytes, part).unwrap_or_default();
+        for (topic, data) in messages.into_iter().filter(|(_, data)| keeps(data.start)) {
+            match OWN.named(&topic) {
+                Some(own) => self.message(own, ordinal, &bytes[data])?,
+                // What viewers' topics were is lost.
+                None => self.message(&binary_topic(&topic), ordinal, &bytes[data])?,
             }
         }
         self.writer.flush()
@@ -384,6 +435,13 @@ struct OwnTopics {
     report: ViewerTopic,
     commit: ViewerTopic,
     finished: ViewerTopic,
+}
+
+impl OwnTopics {
+    fn named(&self, name: &str) -> Option<&ViewerTopic> {
+        let Self { mesh, displacement, state, report, commit, finished } = self;
+        [mesh, displacement, state, report, commit, finished].into_iter().find(|topic| topic.topic == name)
+    }
 }
 
 static OWN: LazyLock<OwnTopics> = LazyLock::new(|| OwnTopics {

@@ -80,7 +80,7 @@ pub const CHUNK_BYTES_LIMIT: usize = 48 << 20;
 pub const REPORT_BYTES_LIMIT: usize = 1 << 20;
 
 /// Largest manifest that is written or read, bytes: room for the net of a hundred thousand control points.
-pub const MANIFEST_BYTES_LIMIT: usize = 8 << 20;
+pub const MANIFEST_BYTES_LIMIT: usize = crate::scene::SCENE_BYTES_LIMIT as usize;
 
 /// Most bytes of manifests that are kept of one log.
 pub(super) const MANIFESTS_BYTES_LIMIT: usize = 24 << 20;

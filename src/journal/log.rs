@@ -10,7 +10,7 @@ use super::manifest::Manifest;
 use super::soundness::check_made_by;
 use super::stretch::{LostManifest, Stretches};
 use crate::pipeline::{Commit, Record};
-use crate::scene::Scene;
+use crate::scene::{Difference, Scene};
 use crate::state::{Hash, Mesh, State};
 
 /// A stage in a log. Its bytes have the hashes that its commit names, and its commit follows from the one before it.
@@ -140,17 +140,54 @@ impl Log {
     pub fn manifests_of(&self, index: usize) -> impl Iterator<Item = &Manifest> {
         let entry = self.entry(index);
         let named = entry.filter(|entry| entry.names_stretch).map(|entry| entry.stretch);
+        let lost = self.lost_manifests().iter().rfind(|lost| lost.ordinal <= index as u64);
         let may = move |place: usize, manifest: &Manifest| match named {
-            Some(stretch) => stretch == Some(place),
+            Some(Some(stretch)) => stretch == place,
+            // One that was given anew once it was lost.
+            Some(None) => lost.is_some_and(|lost| place >= lost.before),
             None => manifest.first_ordinal <= index as u64,
         };
         let manifests = self.manifests().iter().enumerate().rev();
         manifests.filter(move |(place, manifest)| may(*place, manifest)).map(|(_, manifest)| manifest)
     }
 
+    /// What changed of the scene between two stretches: ordinal of the first stage of the second, and every key that differs.
+    pub fn scene_changes(&self) -> Vec<(u64, Vec<Difference>)> {
+        let manifests = self.manifests();
+        let ends = manifests.iter().skip(1).map(|next| next.first_ordinal).chain([u64::MAX]);
+        // Those under which no stage was run changed nothing.
+        let stretches = manifests.iter().zip(ends).filter(|(manifest, end)| manifest.first_ordinal < *end);
+        let stretches: Vec<&Manifest> = stretches.map(|(manifest, _)| manifest).collect();
+        let pairs = stretches.windows(2).filter(|pair| pair[0].scene_text != pair[1].scene_text);
+        let changes = pairs.filter_map(|pair| {
+            let [was, is] = [pair[0], pair[1]].map(|manifest| manifest.scene(&[]).ok());
+            Some((pair[1].first_ordinal, was?.differences(&is?)))
+        });
+        changes.collect()
+    }
+
     /// Manifests that are lost, in the order of the file.
     pub fn lost_manifests(&self) -> &[LostManifest] {
         &self.stretches.lost
+    }
+
+    /// Those of them whose place none takes: the run was not gone on with, behind them, with a scene that makes the same states.
+    pub fn missed_manifests(&self) -> impl Iterator<Item = &LostManifest> {
+        self.lost_manifests().iter().filter(|lost| {
+            let behind = &self.manifests()[lost.before..];
+            let end = behind.first().map_or(self.commits() as u64, |next| next.first_ordinal);
+            let made = (lost.ordinal..end).filter_map(|ordinal| self.entry(ordinal as usize));
+            let mut hashes: Vec<Hash> = made.map(|entry| entry.record.commit.scene_hash).collect();
+            hashes.dedup();
+            let scenes = || behind.iter().filter_map(|manifest| manifest.scene(&[]).ok());
+            behind.is_empty() || !hashes.iter().all(|hash| scenes().any(|scene| scene.hash() == *hash))
+        })
+    }
+
+    /// A manifest that the log ends in, that cannot be read, and under which no stage was run.
+    pub(super) fn unused_manifest(&self) -> Option<&Note> {
+        let at = self.stretches.unused?;
+        self.notes.iter().rfind(|note| note.at == at)
     }
 
     /// Whether the last of them is behind the last good one: what the run last went on with is not known.
@@ -250,7 +287,11 @@ impl Log {
 
     /// Bytes behind the good part that may be worth keeping; empty where they are only MCAP's summary.
     pub(super) fn tail(&self) -> &[u8] {
-        if self.loss().is_some() { &self.bytes[self.good_end..self.walked] } else { &[] }
+        let unused = self.stretches.unused.map(|at| (at - self.base) as usize);
+        match unused.or(self.loss().map(|_| self.good_end)) {
+            Some(from) => &self.bytes[from.min(self.good_end)..self.walked],
+            None => &[],
+        }
     }
 
     /// Whether the log holds the state that stage `index` made: all of them, but in a log that was thinned.

@@ -126,7 +126,7 @@ impl LongLog {
         let (bytes, record) = record_at(&self.file, at)?.ok_or_else(changed)?;
         let mut channels = super::checkpoint::channels(&self.ledger);
         match chunk::open(&bytes, &record, &mut channels) {
-            Ok(Content::Commit(content)) if content.commit.ordinal == ordinal as u64 => {
+            Ok((Content::Commit(content), _)) if content.commit.ordinal == ordinal as u64 => {
                 let commit = content.commit.commit();
                 Ok(Record { wall_s: content.report.wall_s, report: content.report.report, commit })
             }

@@ -8,8 +8,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use super::format::{FORMAT_VERSION, MANIFEST};
+use super::encoder::EncodeError;
+use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT};
 use crate::pipeline::NUMERICS_REVISION;
+use crate::printable::one_line;
 use crate::scene::{Scene, SceneError, parse_with_settings};
 use crate::state::Hash;
 
@@ -138,7 +140,7 @@ impl Manifest {
     /// # Errors
     /// Where it is no scene, in the words of the parser.
     pub fn scene(&self, settings: &[String]) -> Result<Scene, SceneInLogError> {
-        if has_too_many_values(&self.scene_text) {
+        if values(&self.scene_text) > SCENE_VALUES_LIMIT {
             return Err(SceneInLogError::TooManyValues);
         }
         let names_a_file = |text: &str| {
@@ -150,6 +152,20 @@ impl Manifest {
             return Err(SceneInLogError::NamesAFile);
         }
         Ok(parse_with_settings(&self.scene_text, "the scene in the log", settings).map_err(Box::new)?)
+    }
+
+    /// Looks whether a log can hold it.
+    ///
+    /// # Errors
+    /// Where the scene is larger than any that a reader takes.
+    pub fn check_size(&self) -> Result<(), EncodeError> {
+        let record = self.to_record();
+        let bytes: usize = record.metadata.iter().map(|(key, value)| key.len() + value.len() + 8).sum();
+        let values = values(&self.scene_text);
+        match bytes <= MANIFEST_BYTES_LIMIT - 64 && values <= SCENE_VALUES_LIMIT {
+            true => Ok(()),
+            false => Err(EncodeError::SceneTooLarge { bytes, values }),
+        }
     }
 
     /// The name of this manifest in the commits of its stretch.
@@ -202,17 +218,19 @@ impl Manifest {
         if text(CHECK)? != name.to_string() {
             return Err(ManifestError::Check);
         }
+        // All but the scene is shown in lines.
+        let line = |key: &'static str| text(key).map(|text| one_line(&text).into_owned());
         let manifest = Self {
             format_version: number("format_version", text("format_version")?)?,
-            program_version: text("program_version")?,
-            scene_file: text("scene_file")?,
+            program_version: line("program_version")?,
+            scene_file: line("scene_file")?,
             scene_text: text("scene")?,
-            cpu: text("cpu")?,
-            cpu_features: text("cpu_features")?.split_whitespace().map(str::to_owned).collect(),
-            kernel: record.metadata.get("kernel").cloned().unwrap_or_default(),
+            cpu: line("cpu")?,
+            cpu_features: text("cpu_features")?.split_whitespace().map(|name| one_line(name).into_owned()).collect(),
+            kernel: line("kernel").unwrap_or_default(),
             numerics: number("numerics", record.metadata.get("numerics").cloned().unwrap_or("0".to_owned()))?,
             threads: number("threads", text("threads")?)?,
-            host: text("host")?,
+            host: line("host")?,
             started_unix_s: number("started_unix_s", text("started_unix_s")?)?,
             first_ordinal: number("first_ordinal", text("first_ordinal")?)?,
             same_scene: record.metadata.get(AGAIN).is_some_and(|what| what == SAME_SCENE),
@@ -224,9 +242,9 @@ impl Manifest {
 /// Most values of a scene in a log: the parser takes 160 bytes for each, where two may stand for it in the text.
 pub(super) const SCENE_VALUES_LIMIT: usize = 350_000;
 
-/// Whether a scene has more values than are written or read: what may begin one is counted.
-pub(super) fn has_too_many_values(scene_text: &str) -> bool {
-    scene_text.bytes().filter(|byte| b",=[{".contains(byte)).nth(SCENE_VALUES_LIMIT).is_some()
+/// Values of a scene, or somewhat more: what may begin one is counted.
+fn values(scene_text: &str) -> usize {
+    scene_text.bytes().filter(|byte| b",=[{".contains(byte)).count()
 }
 
 /// Fewer bytes than any manifest takes: its name and those of its entries, and the hash. A gap that is shorter held none.

@@ -12,7 +12,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 use super::format::FORMAT_VERSION;
-use crate::pipeline::{Commit, Parameter, Record, Report, WrittenReport};
+use crate::pipeline::{Commit, Parameter, Reading, Record, Report, WrittenReport};
+use crate::printable::one_line;
 use crate::scene::Stage;
 use crate::state::Hash;
 
@@ -270,6 +271,10 @@ impl ReportMessage {
         let Bound { state_hash, chain_hash, wall_s } = parsed(&json)?;
         let report = parsed::<WrittenReport>(&json)?.into();
         let mut message = Self { report, state_hash, chain_hash, wall_s, not_finite };
+        for Reading { name, unit, .. } in &mut message.report.probes {
+            *name = one_line(name).into_owned();
+            *unit = one_line(unit).into_owned();
+        }
         for NotFinite { entry, value } in message.not_finite.clone() {
             let number: f64 = value.parse().map_err(|_| brief(format!("{entry}: {value}")))?;
             if let Some((_, place)) = message.numbers().into_iter().find(|(name, _)| *name == entry) {
@@ -309,6 +314,7 @@ fn brief(text: String) -> serde_json::Error {
 /// The beginning of a text: as much as fits a line.
 pub(super) fn in_brief(text: String) -> String {
     const LONGEST: usize = 300;
+    let text = one_line(&text).into_owned();
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{} …", &text[..end]),
         None => text,

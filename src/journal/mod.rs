@@ -23,6 +23,7 @@
 //! | `checkpoint`, `index`, `index_keeper`, `long` | a long log, of which only the end is read |
 //! | `resume`, `recovery` | going on with a log, copying what is good of one |
 //! | `thin` | a log without some of its states |
+//! | `mending` | a log with stages put back that it had lost |
 //! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
 //! | `rewriting`, `agreement`, `verify` | all that can be checked, all of it |
 //!
@@ -91,6 +92,7 @@ mod lock;
 mod log;
 mod long;
 mod manifest;
+mod mending;
 pub mod message;
 mod reader;
 mod recovery;
@@ -116,8 +118,9 @@ pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
 pub use long::{LongLog, LongLogError};
 pub use manifest::{Manifest, ManifestError, SceneInLogError};
+pub use mending::MendError;
 pub use reader::ReadError;
-pub use recovery::{RecoverError, RecoverOutcome, recover};
+pub use recovery::{RecoverError, RecoverOutcome, recover, recover_mended};
 pub use resume::{Resume, ResumeError, Resumed};
 pub use soundness::{Flaw, check_mesh, check_state};
 pub use still_ours::Estranged;

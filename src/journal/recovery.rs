@@ -140,14 +140,29 @@ pub enum RecoverError {
 /// Where the log cannot be read at all, or the new file exists or cannot be written. That nothing is good of the log is
 /// an outcome.
 pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> {
+    recover_mended(path, new, |_| None)
+}
+
+/// The same; of a log in which whole commits have lost what they follow on `mend` may give back one in which they have not.
+///
+/// # Errors
+/// Those of [`recover`].
+pub fn recover_mended(
+    path: &Path,
+    new: &Path,
+    mend: impl FnOnce(&Log) -> Option<Log>,
+) -> Result<RecoverOutcome, RecoverError> {
     let log = match Log::read(path) {
         Ok(log) => log,
         Err(error @ ReadError::Io { .. }) => return Err(RecoverError::Read(error)),
         Err(error) => return Ok(RecoverOutcome::Hopeless { why: error.to_string() }),
     };
+    let mended = if log.later_commits().is_empty() { None } else { mend(&log) };
+    let log = mended.unwrap_or(log);
     let commits = log.entries().len() as u64;
     let finished = log.completeness() == Completeness::Finished;
-    let lost_manifest = log.lost_manifests().first().map(ToString::to_string);
+    let lost_manifest = log.missed_manifests().next().map(ToString::to_string);
+    let lost_manifest = lost_manifest.or(log.unused_manifest().map(|note| note.text.clone()));
     let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
     if let (0, Some(why)) = (commits, &loss) {
         return Ok(RecoverOutcome::Hopeless { why: why.clone() });

@@ -284,7 +284,7 @@ fn keep_whole(path: &Path) -> Result<PathBuf, ResumeError> {
 
 /// Writes what a damaged log loses to `LOG.dropped-N`, if it might still be worth something.
 fn keep_dropped(path: &Path, log: &Log) -> Result<Option<PathBuf>, ResumeError> {
-    if !matches!(log.completeness(), Completeness::Damaged { .. }) {
+    if !matches!(log.completeness(), Completeness::Damaged { .. }) && log.unused_manifest().is_none() {
         return Ok(None);
     }
     for number in 1_u32.. {

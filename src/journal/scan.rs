@@ -141,7 +141,12 @@ impl Scan {
         }
         let good = self.commits();
         if !goes_on || self.closed {
-            self.stretches.end(good);
+            self.stretches.end(good, self.problems.last().map(|problem| problem.at));
+            if let Some(at) = self.stretches.unused {
+                let text = "the log ends in a manifest that cannot be read: no stage was run under it, and what it asked for is not \
+                            known; the scene before it holds";
+                self.note(at, text.to_owned());
+            }
         }
         self.later.retain(|commit| commit.ordinal >= good);
     }
@@ -199,9 +204,17 @@ impl Scan {
                     return misplaced();
                 }
                 self.in_vain += body.len();
-                if let McapRecord::Metadata(record) = parse()? {
-                    self.in_vain -= body.len();
-                    self.metadata(frame, &record);
+                match parse() {
+                    Ok(McapRecord::Metadata(record)) => {
+                        self.in_vain -= body.len();
+                        self.metadata(frame, &record);
+                    }
+                    // Its length is right, so that nothing but its content is lost.
+                    Err(damage) if is_before_another(bytes, frame) && frame::name(body) == Some(MANIFEST) => {
+                        self.stretches.suspect_alone(self.place(frame.at));
+                        self.note(self.place(frame.at), format!("{damage}; it is left out"));
+                    }
+                    parsed => drop(parsed?),
                 }
                 Ok(())
             }
@@ -241,7 +254,7 @@ impl Scan {
                 self.thinned = Some(in_brief(record.metadata.get("kept").cloned().unwrap_or_default()));
             }
             Err(error) if record.name == MANIFEST => {
-                self.stretches.suspect(self.place(frame.at));
+                self.stretches.suspect_alone(self.place(frame.at));
                 self.note(self.place(frame.at), format!("{}; it is left out", in_brief(error.to_string())));
             }
             Err(_) => {
@@ -253,7 +266,8 @@ impl Scan {
 
     /// Takes a chunk if it follows from what was taken before, whatever lies in between.
     fn chunk(&mut self, bytes: &[u8], frame: &Frame) -> Result<(), Damage> {
-        let kept = match chunk::open(bytes, frame, &mut self.channels)? {
+        let (content, beside) = chunk::open(bytes, frame, &mut self.channels)?;
+        let kept = match content {
             Content::Commit(content) => {
                 let (ordinal, stage, step) = (content.commit.ordinal, content.commit.stage, content.commit.step);
                 let manifest = content.commit.manifest_hash.map(|hash| hash.0);
@@ -264,7 +278,11 @@ impl Scan {
                         self.later.push(LaterCommit { at, ordinal, stage, step });
                     }
                     // Behind a loss it goes without saying that the chain is broken.
-                    return if self.has_lost() { Ok(()) } else { Err(damage) };
+                    if !self.has_lost() {
+                        return Err(damage);
+                    }
+                    self.beside(frame.at, beside);
+                    return Ok(());
                 }
                 Kept::Commit
             }
@@ -282,7 +300,17 @@ impl Scan {
         };
         self.good_end = frame.body.end;
         self.parts.push(Part { at: frame.at, end: frame.body.end, kept });
+        self.beside(frame.at, beside);
         Ok(())
+    }
+
+    /// What is damaged of a chunk beside its messages; that channels are not described is told once.
+    fn beside(&mut self, at: usize, beside: Option<Damage>) {
+        let is_told = |problem: &Problem| matches!(problem.damage, Damage::UnknownChannel { .. });
+        let again = matches!(beside, Some(Damage::UnknownChannel { .. })) && self.problems.iter().any(is_told);
+        if let Some(beside) = beside.filter(|_| !again) {
+            self.problem(at, beside);
+        }
     }
 
     /// Holds a commit against the one before it, and keeps it.
@@ -334,6 +362,15 @@ impl Scan {
             names_stretch,
         });
         Ok(())
+    }
+}
+
+/// Whether what stands behind a record is one that may stand behind a manifest, or the end.
+fn is_before_another(bytes: &[u8], frame: &Frame) -> bool {
+    match frame::next(bytes, frame.body.end) {
+        None => true,
+        Some(Ok(next)) => [op::CHUNK, op::METADATA, op::DATA_END].contains(&next.opcode),
+        Some(Err(_)) => false,
     }
 }
 

@@ -16,11 +16,13 @@ pub struct LostManifest {
     pub at: u64,
     /// Ordinal of the first commit that it would say something about.
     pub ordinal: u64,
+    /// Manifests before it that are there.
+    pub(super) before: usize,
 }
 
 impl std::fmt::Display for LostManifest {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { at, ordinal } = self;
+        let Self { at, ordinal, .. } = self;
         write!(
             f,
             "the manifest at byte {at} is lost: what the run was asked for from commit {ordinal} on is not known, and no other scene \
@@ -37,8 +39,12 @@ pub(super) struct Stretches {
     pub lost: Vec<LostManifest>,
     /// Whether the manifest of the stretch that is being read is lost.
     pub last_is_lost: bool,
+    /// A manifest that cannot be read and that the log ends in: no stage was run under it.
+    pub unused: Option<u64>,
     /// Something that may have been a manifest, since the last one that was read.
     suspect: Option<u64>,
+    /// Whether that was a manifest and nothing more: whole but for its content, or torn.
+    suspect_is_alone: bool,
     /// Manifests that lie behind a loss of commits: whole, and about commits that are not used.
     later: Vec<(u64, Hash, String)>,
 }
@@ -52,13 +58,25 @@ impl Stretches {
         self.suspect = None;
     }
 
+    /// The name of the manifest of the stretch that was read last.
+    pub fn last_hash(&self) -> Option<Hash> {
+        self.hashes.last().copied()
+    }
+
     /// A manifest that does not: commits before it are lost.
     pub fn begin_later(&mut self, at: u64, manifest: Manifest, hash: Hash) {
         self.later.push((at, hash, manifest.scene_text));
     }
 
-    /// Something at `at` that may have been a manifest.
+    /// Something at `at` that may have been a manifest, and more beside it.
     pub fn suspect(&mut self, at: u64) {
+        self.suspect_is_alone = false;
+        self.suspect.get_or_insert(at);
+    }
+
+    /// A record at `at` that was a manifest, and nothing more.
+    pub fn suspect_alone(&mut self, at: u64) {
+        self.suspect_is_alone = self.suspect.is_none();
         self.suspect.get_or_insert(at);
     }
 
@@ -72,8 +90,13 @@ impl Stretches {
         }
         let large = gap.len() >= MANIFEST_LEN_AT_LEAST;
         let zeroed = || opcode != Some(op::CHUNK) && gap.windows(ZEROED).any(|window| window == [0; ZEROED]);
-        if torn || (large && (has_piece_of_manifest(gap) || zeroed())) {
+        if !torn && !(large && (has_piece_of_manifest(gap) || zeroed())) {
+            return;
+        }
+        if zeroed() || has_piece_of_commit(gap) {
             self.suspect(at);
+        } else {
+            self.suspect_alone(at);
         }
     }
 
@@ -101,8 +124,13 @@ impl Stretches {
         }
     }
 
-    /// The end of the log, behind `commits` commits.
-    pub fn end(&mut self, commits: u64) {
+    /// The end of the log, behind `commits` commits and the last thing that is not as it was written. It may end in the manifest
+    /// of a stretch that came to no stage.
+    pub fn end(&mut self, commits: u64, last_problem: Option<u64>) {
+        let ends_in_it = self.suspect.is_some_and(|at| last_problem.is_none_or(|last| last <= at));
+        if ends_in_it && self.suspect_is_alone && self.later.is_empty() && !self.manifests.is_empty() {
+            self.unused = self.suspect.take();
+        }
         let scene = self.manifests.last().map(|manifest| &manifest.scene_text);
         let other = self.later.iter().find(|(_, _, text)| Some(text) != scene).map(|(at, _, _)| *at);
         if let Some(at) = self.suspect.take().or(other) {
@@ -119,10 +147,16 @@ impl Stretches {
 
     fn lose(&mut self, at: u64, ordinal: u64) {
         if !self.last_is_lost {
-            self.lost.push(LostManifest { at, ordinal });
+            self.lost.push(LostManifest { at, ordinal, before: self.manifests.len() });
         }
         self.last_is_lost = true;
     }
+}
+
+/// Whether bytes that cannot be read hold a piece of a commit or of a report, other than of their schemas.
+fn has_piece_of_commit(bytes: &[u8]) -> bool {
+    const ENTRY: &[u8] = b"\"chain_hash\":\"";
+    bytes.windows(ENTRY.len()).any(|window| window == ENTRY)
 }
 
 /// Zeros in a row that may have been a manifest: a quarter of the smallest piece of a disk that is lost at once.

@@ -5,7 +5,7 @@
 //! hashed to. A metadata record in front says that this was meant, so that a state which is lost otherwise is told from one that
 //! was dropped.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::io;
 use std::path::Path;
 
@@ -14,16 +14,21 @@ use super::format::THINNED;
 use super::frame;
 use super::log::{Kept, Log};
 use super::reader::ReadError;
+use super::stretch::LostManifest;
 use crate::state::Hash;
 use crate::whole_file::WholeFile;
 
 /// What became of a log that was thinned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Thinned {
     /// Stages in the new log: all.
     pub commits: usize,
     /// Those that have their state.
     pub states: usize,
+    /// Load steps whose last state is kept.
+    pub steps: BTreeSet<u64>,
+    /// The last load step of the log.
+    pub last_step: u64,
     /// Length of the log and of the new one, bytes.
     pub bytes: [u64; 2],
 }
@@ -39,6 +44,17 @@ pub enum ThinError {
     NotWhole {
         /// What is wrong with it.
         why: String,
+    },
+    /// The scene of some stages is lost.
+    #[error(
+        "{lost}, and states of these stages that are dropped could not be made again: `foldline run SCENE -o {log} --resume` with the \
+         scene's file brings it back"
+    )]
+    SceneLost {
+        /// The log.
+        log: String,
+        /// Its manifest.
+        lost: LostManifest,
     },
     /// There is a file where the new log should go.
     #[error("{new} exists and is not overwritten: choose another name")]
@@ -67,9 +83,12 @@ pub enum ThinError {
 /// Where the log cannot be read or is damaged, or the new one exists or cannot be written.
 pub fn thin(path: &Path, new: &Path, kept_as: &str, keeps: impl Fn(u64) -> bool) -> Result<Thinned, ThinError> {
     let log = Log::read(path)?;
-    let lost = log.lost_manifests().first().map(ToString::to_string);
-    if let Some(why) = log.problems().first().map(ToString::to_string).or(lost) {
+    let unused = log.unused_manifest().map(|note| note.text.clone());
+    if let Some(why) = log.problems().first().map(ToString::to_string).or(unused) {
         return Err(ThinError::NotWhole { why });
+    }
+    if let Some(lost) = log.missed_manifests().next() {
+        return Err(ThinError::SceneLost { log: path.display().to_string(), lost: *lost });
     }
     let name = new.display().to_string();
     let failed = |source: io::Error| match source.kind() {
@@ -98,7 +117,10 @@ pub fn thin(path: &Path, new: &Path, kept_as: &str, keeps: impl Fn(u64) -> bool)
     encoder.close(log.commits() as u64, emit).map_err(failed)?;
     let length = whole.file().metadata().map_err(failed)?.len();
     whole.keep_as(new).map_err(failed)?;
-    Ok(Thinned { commits: log.commits(), states: kept.len(), bytes: [log.file_len(), length] })
+    let step = |index: &usize| log.entries()[*index].record.report.step;
+    let (steps, last_step) =
+        (kept.iter().map(step).collect(), log.entries().len().checked_sub(1).as_ref().map_or(0, step));
+    Ok(Thinned { commits: log.commits(), states: kept.len(), steps, last_step, bytes: [log.file_len(), length] })
 }
 
 fn marker(kept_as: &str) -> mcap::records::Metadata {

@@ -123,9 +123,13 @@ fn of_the_whole(log: &Log) -> Vec<Finding> {
         let text = format!("whole at byte {}, but what it follows on is lost: it is not used", commit.at);
         findings.push(finding(Level::Warning, place, text));
     }
+    let missed: Vec<_> = log.missed_manifests().collect();
     for lost in log.lost_manifests() {
-        let way_out = "`foldline run SCENE -o LOG --resume` goes on with the scene's file";
-        findings.push(finding(Level::Error, format!("commit {}", lost.ordinal), format!("{lost}. {way_out}")));
+        let (level, rest) = match missed.contains(&lost) {
+            true => (Level::Error, ". `foldline run SCENE -o LOG --resume` with the scene's file brings it back"),
+            false => (Level::Info, "; a scene that was given anew behind it makes the same states"),
+        };
+        findings.push(finding(level, format!("commit {}", lost.ordinal), format!("{lost}{rest}")));
     }
     findings.extend(manifests(log));
     findings
@@ -214,9 +218,13 @@ fn manifests(log: &Log) -> Vec<Finding> {
             let text = format!("from here on computed on another machine: {} after {}", pair[1].host, pair[0].host);
             findings.push(finding(Level::Info, place.clone(), text));
         }
-        if pair[0].scene_text != pair[1].scene_text {
-            findings.push(finding(Level::Info, place, "from here on the scene reads differently"));
-        }
+    }
+    for (ordinal, differences) in log.scene_changes() {
+        findings.extend(differences.iter().map(|difference| {
+            let [was, is] = difference.values();
+            let text = format!("from here on {} is {is}, and was {was}", difference.path);
+            finding(Level::Info, format!("commit {ordinal}"), text)
+        }));
     }
     findings
 }

@@ -70,6 +70,15 @@ pub enum WriteError {
         #[source]
         source: io::Error,
     },
+    /// The system would not even let it begin.
+    #[error("cannot begin {log}, and it is not there: nothing was run. Once that is mended, start the run again")]
+    NotBegun {
+        /// The log.
+        log: String,
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
     /// The log is not the file any more that was written, or not as it was left.
     #[error("{log} {estranged}. This run stops, and adds nothing to it")]
     Estranged {
@@ -103,7 +112,7 @@ pub enum WriteError {
         "cannot {action} {log}; it holds {commits} stages. `foldline resume {log}` goes on behind the last good one"
     )]
     Io {
-        /// "write", "sync" or "begin".
+        /// "write", "sync" or "begin anew".
         action: &'static str,
         /// The log.
         log: String,
@@ -161,6 +170,7 @@ impl From<WriteError> for SinkError {
         let source: Option<Box<dyn std::error::Error + Send + Sync>> = match error {
             WriteError::DiskFull { source, .. }
             | WriteError::NoRoom { source, .. }
+            | WriteError::NotBegun { source, .. }
             | WriteError::Io { source, .. }
             | WriteError::Estranged { estranged: Estranged::Unknown { source }, .. }
             | WriteError::Lock(LockError::Io { source, .. } | LockError::Unreadable { source, .. }) => {
@@ -226,7 +236,7 @@ impl JournalWriter {
     /// As for [`Self::create`]; a file that holds more is left alone.
     pub fn create_anew(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
         let log = path.display().to_string();
-        let begin = |source| WriteError::Io { action: "begin", log: log.clone(), commits: 0, source };
+        let begin = |source| WriteError::Io { action: "begin anew", log: log.clone(), commits: 0, source };
         // Through links, as it was found to hold nothing.
         let path = path.canonicalize().map_err(begin)?;
         let lock = LogLock::take(&path)?;
@@ -239,8 +249,8 @@ impl JournalWriter {
 
     fn begin(path: &Path, lock: LogLock, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
         let log = path.display().to_string();
-        let begin = |source| WriteError::Io { action: "begin", log: log.clone(), commits: 0, source };
-        let backend = FileBackend::create_new(path).map_err(begin)?;
+        let not_begun = |source| WriteError::NotBegun { log: log.clone(), source };
+        let backend = FileBackend::create_new(path).map_err(not_begun)?;
         match Self::on(Box::new(backend), &log, manifest, sync) {
             Ok(writer) => {
                 let index = Some(IndexKeeper::new(beside(path, ".index")));
@@ -252,6 +262,7 @@ impl JournalWriter {
             Err(WriteError::DiskFull { wanted, room, source, .. }) => {
                 Err(WriteError::NoRoom { log, wanted, room, source })
             }
+            Err(WriteError::Io { source, .. }) => Err(not_begun(source)),
             Err(error) => Err(error),
         }
     }

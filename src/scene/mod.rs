@@ -50,6 +50,7 @@ pub use data::{
 };
 pub use error::{Direction, Problem, SceneError, StageOrderProblem, SyntaxSlip, ValueType};
 pub use help::help_text;
-pub use identity::{Difference, Reach};
+pub use identity::{Difference, Reach, shown_values};
 pub use key_table::{KEYS, SECTIONS};
 pub use keys::{Choice, Key, Kind, Limit, Limits, Presence, Section, Unit};
+pub use nurbs::SCENE_BYTES_LIMIT;

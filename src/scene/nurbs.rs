@@ -6,6 +6,9 @@ use super::general::SEAMS;
 use super::keys::number;
 use super::table::Table;
 
+/// Largest scene file, and largest file of a surface, bytes: a log holds the one with the other, and reads no larger ones.
+pub const SCENE_BYTES_LIMIT: u64 = 8 << 20;
+
 /// Knots that differ by less than this share of their range are meant to be one: text of six digits does not say more, and
 /// elements so short leave nothing of the digits of a displacement.
 const NEAR: f64 = 1e-5;
@@ -31,9 +34,14 @@ pub(super) fn nurbs(table: &Table<'_, '_>, folder: &std::path::Path) -> Checked<
                 let problem = format!("{} cannot be read: {error}", path.display());
                 table.wrong(table.place_of("file").as_ref(), problem, "the path is relative to the scene file; the file is a JSON object with the keys degrees, knots_u, knots_v, control_points_mm, weights")
             };
-            // A device or a pipe may never end.
-            if std::fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
-                return Err(wrong("it is no regular file".into()));
+            match std::fs::metadata(&path) {
+                // A device or a pipe may never end.
+                Ok(found) if !found.is_file() => return Err(wrong("it is no regular file".into())),
+                Ok(found) if found.len() > SCENE_BYTES_LIMIT => {
+                    let bytes = found.len();
+                    return Err(wrong(format!("it has {bytes} bytes, and no more than {SCENE_BYTES_LIMIT} are taken")));
+                }
+                _ => {}
             }
             let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
             // Some programs put a byte-order mark in front, which JSON does not know.

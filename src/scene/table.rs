@@ -10,6 +10,7 @@ use super::error::{Checked, Fault, Place, Problem};
 use super::keys::number;
 use super::names;
 use super::read::{as_float, value_type};
+use crate::printable::breaks_a_line;
 
 /// The entries of one table.
 pub(super) struct Table<'d, 't> {
@@ -174,7 +175,13 @@ impl<'d, 't> Table<'d, 't> {
     pub fn maybe_text(&self, name: &'static str) -> Checked<Option<String>> {
         let Some(entry) = self.entry(name) else { return Ok(None) };
         let text = entry.value.get_ref().as_str().ok_or_else(|| self.not_a(entry, "text in quotes"))?;
-        Ok(Some(text.to_owned()))
+        match text.chars().find(|c| breaks_a_line(*c)) {
+            None => Ok(Some(text.to_owned())),
+            Some(c) => {
+                let problem = format!("`{name}` holds the character U+{:04X}, which cannot be seen", u32::from(c));
+                Err(self.wrong(self.place_of(name).as_ref(), problem, "names are one line of ordinary characters"))
+            }
+        }
     }
 
     /// One of some words, if it is given.

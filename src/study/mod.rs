@@ -18,7 +18,7 @@ mod wuest;
 pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_one_structure, measure};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use convergence::{ConvergenceError, ConvergenceRow, check_spring, converge};
-pub use path::{Passed, PathPoint, Snap, equilibrium_path, snaps};
+pub use path::{Passed, PathPoint, Snap, equilibria, equilibrium_path, snaps};
 pub use stress::{StressRow, StressSuite};
 pub use stress_fault::StressFault;
 pub use stress_run::StressEnd;

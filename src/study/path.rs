@@ -117,7 +117,7 @@ pub fn snaps(records: &[Record]) -> Vec<Snap> {
 }
 
 /// The stages that ended in an equilibrium.
-fn equilibria(records: &[Record]) -> impl Iterator<Item = &Record> {
+pub fn equilibria(records: &[Record]) -> impl Iterator<Item = &Record> {
     records.iter().filter(|record| {
         let Record { report, .. } = record;
         report.outcome == Outcome::Done && report.stage.finds_equilibrium()

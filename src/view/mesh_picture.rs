@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 
 use super::camera::{Camera, DepthBuffer, Projected, ViewDirection};
 use super::colour::Colour;
-use super::printable::printable;
 use super::samples::SurfaceSamples;
 use super::ticks::ticks;
+use crate::printable::one_line;
 
 /// How a picture is made.
 #[derive(Clone, Debug, PartialEq)]
@@ -255,5 +255,5 @@ fn text(svg: &mut String, [x, y]: [f64; 2], anchor: &str, size: u32, words: &str
 
 /// Text as XML.
 pub(super) fn escaped(text: &str) -> String {
-    printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    one_line(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -12,8 +12,8 @@ use plotters::series::{DashedLineSeries, LineSeries};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle, WHITE};
 
-use super::printable::printable;
 use crate::pipeline::Record;
+use crate::printable::one_line;
 use crate::scene::Scene;
 use crate::study::{PathPoint, TapeSpring, equilibrium_path, snaps};
 
@@ -120,7 +120,7 @@ fn draw_moment(
     let lowest = measured.iter().map(|point| point.1).fold(0.0, f64::min);
 
     let mut chart = ChartBuilder::on(area)
-        .caption(printable(title), text(19))
+        .caption(one_line(title), text(19))
         .margin(16)
         .margin_right(28)
         .x_label_area_size(28)
@@ -235,6 +235,10 @@ fn draw_path(chart: &mut Chart, path: &[PathPoint], points: &[(f64, f64)]) -> Re
 /// Where there is no equilibrium yet.
 pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result<Option<String>, PlotError> {
     let Some(probe) = scene.probes.first() else { return Ok(None) };
+    // Others may stand in front of it, in stages that were run with them.
+    let mut records = records.to_vec();
+    records.iter_mut().for_each(|record| record.report.probes.retain(|reading| reading.name == probe.name));
+    let records = &records[..];
     drawable(records)?;
     let path = equilibrium_path(records);
     let reading = records.iter().rev().find_map(|record| record.report.probes.first());
@@ -256,14 +260,14 @@ pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result
         let root = SVGBackend::with_string(&mut svg, (SIZE.0, UPPER_HEIGHT + 40)).into_drawing_area();
         root.fill(&WHITE)?;
         let mut chart = ChartBuilder::on(&root)
-            .caption(printable(title), text(19))
+            .caption(one_line(title), text(19))
             .margin(16)
             .margin_right(28)
             .x_label_area_size(48)
             .y_label_area_size(LEFT)
             .build_cartesian_2d(span(|point| point.0), span(|point| point.1))?;
         let along = format!("{} ({})", probe.name, reading.unit);
-        draw_axes(&mut chart, Some(printable(&along).into_owned()), "load factor")?;
+        draw_axes(&mut chart, Some(one_line(&along).into_owned()), "load factor")?;
         draw_path(&mut chart, &path, &points)?;
         chart
             .configure_series_labels()

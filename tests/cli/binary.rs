@@ -143,3 +143,39 @@ fn a_shell_that_is_held_everywhere() {
     said.says(&["hold every control point of 1 × 1 elements", "write more in mesh.elements, or hold less"]);
     assert!(place.logs().is_empty());
 }
+
+/// A name that would break a line or turn its direction is refused, and itself not shown.
+#[test]
+fn names_are_lines_of_what_can_be_seen() {
+    let place = crate::program::Place::new();
+    for (name, character) in [("tip\\nstage 9", "U+000A"), ("tip\\u202e9", "U+202E"), ("tip\u{2066}", "U+2066")] {
+        let probe = format!("\n[[probe]]\nname = \"{name}\"\nkind = \"energy\"\n");
+        place.write("named.toml", format!("{}{probe}", crate::program::SMALL));
+        let said = place.foldline("run named.toml -o a.mcap").ends(2).says(&[character, "cannot be seen"]);
+        assert!(!said.err.contains(['\u{202e}', '\u{2066}']), "{}", said.err);
+    }
+}
+
+/// Surfaces and scenes that no log could hold are refused before anything is done.
+#[test]
+fn scenes_that_no_log_can_hold() {
+    let place = crate::program::Place::new();
+    let rest = include_str!("../verification/scenes/net-u-fastest.toml").split_once("[material]").unwrap().1;
+    place.write("plate.toml", format!("[geometry]\nkind = \"nurbs\"\nfile = \"plate.json\"\n[material]{rest}"));
+    let count = 350;
+    let knots: Vec<usize> = [0].into_iter().chain(0..count).chain([count - 1]).collect();
+    let points: Vec<[usize; 3]> = (0..count * count).map(|index| [index / count, index % count, 0]).collect();
+    let json = format!(
+        "{{\"degrees\": [1, 1], \"knots_u\": {knots:?}, \"knots_v\": {knots:?}, \"control_points_mm\": {points:?}}}"
+    );
+    place.write("plate.json", json);
+    place.foldline("run plate.toml -o a.mcap").ends(2).says(&["values, and one in a log has no more than", "350000"]);
+    place.write("plate.json", vec![b' '; 9 << 20]);
+    place
+        .foldline("run plate.toml -o a.mcap")
+        .ends(2)
+        .says(&["plate.json", "it has 9437184 bytes, and no more than 8388608"]);
+    place.write("long.toml", format!("{}# {}", crate::program::SMALL, " ".repeat(9 << 20)));
+    place.foldline("run long.toml -o a.mcap").ends(2).says(&["a scene has no more than 8388608"]);
+    assert_eq!(place.logs(), ["plate.json"]);
+}

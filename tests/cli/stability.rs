@@ -208,5 +208,6 @@ fn a_condition_on_a_probe() {
     let table = when("w_c < -5").ends(0).out;
     assert!(table.lines().last().unwrap().split_whitespace().any(|word| word == step.to_string()), "{step}: {table}");
     when("w_c > 1e9").ends(1);
+    when("w_c > nan").ends(2).says(&["`nan` is not a number"]);
     when("probes < -5").ends(2).says(&["reports have no field `probes`", "w_c"]);
 }

@@ -389,7 +389,7 @@ fn no_file_is_opened_for_a_log() {
 #[test]
 fn no_terminal_is_told_anything() {
     let ordinary = Ordinary::new();
-    let escape = "\u{1b}[31m\u{9b}2J\u{7f}";
+    let escape = "\u{1b}[31m\u{9b}2J\u{7f}\u{202e}\u{2066}\nforged";
     let mut report = ordinary.reports[0].clone();
     report["probes"] = json!([{ "name": escape, "value": 1.0, "unit": escape }]);
     let mut crafted = crafted::Crafted::of_entries(&[
@@ -404,7 +404,8 @@ fn no_terminal_is_told_anything() {
     crafted.bytes.extend(record(METADATA, &[text(escape), text("")].concat()));
     crafted.commit(ordinary.stages[0], 1, said);
     let place = Place::new();
-    let obeyed = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let obeyed = |c: char| turns(c) || (c.is_control() && !matches!(c, '\n' | '\t'));
     let commands = ["inspect LOG --json", "inspect LOG --step 1", "run scene.toml -o new.mcap"];
     for command in COMMANDS.iter().chain(&commands) {
         place.write("log.mcap", &crafted.bytes);
@@ -412,6 +413,8 @@ fn no_terminal_is_told_anything() {
         let said = place.foldline(&command.replace("LOG", "log.mcap"));
         let told = said.out.chars().chain(said.err.chars()).find(|c| obeyed(*c));
         assert_eq!(told, None, "{command}: {:?} {:?}", said.out, said.err);
+        let forged = said.out.lines().chain(said.err.lines()).find(|line| line.starts_with("forged"));
+        assert_eq!(forged, None, "{command}: a name breaks no line");
     }
     for picture in ["pictures/mesh.svg", "pictures/moment-rotation.svg", "pictures/mesh.vtu"] {
         let picture = String::from_utf8(place.read(picture)).unwrap();

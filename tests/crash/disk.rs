@@ -64,7 +64,6 @@ fn no_room_for_other_files() {
         command.args(arguments.split_whitespace()).current_dir(place.path());
         Said::new(arguments, command.output().unwrap()).ends(1).says(&[names, "File too large"]);
     }
-    std::fs::remove_dir(place.file("pictures")).expect("nothing is left in it");
     assert_eq!(place.logs(), ["run.mcap"]);
     assert_eq!(place.read("run.mcap"), whole.bytes);
 }
@@ -125,6 +124,25 @@ fn a_full_disk_and_a_read_only_one() {
     assert!(mount(&["-o", "remount,size=10m,rw"], &folder));
     place.foldline("resume disk/run.mcap").ends(0);
     assert_ends_with(&place.log("disk/run.mcap"), whole.chain, "with room again");
+}
+
+/// Limits under which a log cannot even be begun: none is named as if it were there.
+#[test]
+fn a_log_that_cannot_be_begun() {
+    let mut refused = 0;
+    for limit in ["-f 0", "-f 1", "-f 2", "-n 4", "-n 5", "-n 6", "-n 7"] {
+        let place = Place::new();
+        let mut command = Command::new("sh");
+        command.args(["-c", &format!("ulimit {limit}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_foldline")]);
+        command.args(["run", "small.toml", "-o", "run.mcap", "--quiet"]).current_dir(place.path());
+        let said = Said::new(limit, command.stdin(Stdio::null()).output().unwrap());
+        if said.code == Some(2) {
+            refused += 1;
+            assert!(!said.err.contains("foldline resume"), "{limit}: {}", said.err);
+            assert_eq!(place.logs(), Vec::<String>::new(), "{limit}");
+        }
+    }
+    assert!(refused >= 3, "{refused} refused");
 }
 
 /// A disk that is full before the run begins: no log is named that is not there, and what is missing is said.

@@ -3,11 +3,12 @@
 use std::time::{Duration, Instant};
 
 use foldline::journal::format::CHUNK_BYTES_LIMIT;
-use foldline::journal::{Completeness, Log};
+use foldline::journal::{Completeness, Level, Log, recover, verify_log};
 use foldline::pipeline::Record;
 use foldline::state::State;
 
 use crate::memory::peak;
+use crate::program::Place;
 use crate::support::{assert_prefix, assert_prefix_by_its_last_state, finished_log};
 use crate::synthetic;
 
@@ -121,6 +122,42 @@ fn every_bit_of_the_framing() {
     check(&tally);
 }
 
+/// Schemas and channels are described in the first chunk alone. That they are damaged there costs no stage, and a copy describes
+/// them again; that its stage is lost as well hides none of those behind it.
+#[test]
+fn descriptions_of_channels_are_not_missed() {
+    let run = synthetic::run(3, 6);
+    let bytes = finished_log(&run);
+    let first = Log::from_bytes(bytes.clone()).unwrap().entries()[0].bytes.clone();
+    let place_of = |text: &[u8]| {
+        let place = bytes.windows(text.len()).position(|window| window == text).unwrap();
+        assert!((first.start..first.end).contains(&(place as u64)));
+        place
+    };
+    let texts =
+        ["/foldline/mesh", "/foldline/state", "/foldline/report", "/foldline/commit", "foldline.Report", "jsonschema"];
+    for (text, bit) in texts.iter().flat_map(|text| [0, 7].map(|bit| (text, bit))) {
+        let mut damaged = bytes.clone();
+        damaged[place_of(text.as_bytes()) + 6] ^= 1 << bit;
+        let place = Place::new();
+        place.write("log.mcap", &damaged);
+        let log = place.log("log.mcap");
+        assert_eq!((log.entries().len(), log.completeness()), (run.len(), Completeness::Finished), "{text}");
+        assert_prefix(&log, &run);
+        place.foldline("verify log.mcap").ends(1).says(&["cannot be read"]);
+        recover(&place.file("log.mcap"), &place.file("new.mcap")).unwrap();
+        let copy = place.log("new.mcap");
+        assert_prefix(&copy, &run);
+        assert_eq!(copy.completeness(), Completeness::Finished);
+        let wrong: Vec<_> = verify_log(&copy).into_iter().filter(|finding| finding.level > Level::Info).collect();
+        assert!(wrong.is_empty(), "{text}: {wrong:?}");
+    }
+    let mut damaged = bytes.clone();
+    damaged[place_of(b"/foldline/mesh") + 200] ^= 1;
+    let log = Log::from_bytes(damaged).unwrap();
+    assert_eq!((log.entries().len(), log.later_commits().len()), (0, run.len() - 1));
+}
+
 /// A log of 12 MB: lengths that claim gigabytes, or most of the file, buy no memory.
 #[test]
 fn flipped_bits_in_a_large_log() {
@@ -177,7 +214,7 @@ fn chunks_out_of_place() {
         (&[0, 2, 1, 3], 2, 2),
         (&[0, 1, 1, 2, 3], 4, 0),
         (&[0, 1, 3], 2, 1),
-        (&[1, 2, 3], 0, 0),
+        (&[1, 2, 3], 0, 3),
         (&[0, 3, 2], 1, 2),
     ] {
         let log = build(order);

@@ -12,6 +12,7 @@ mod keepers;
 mod kill;
 mod long;
 mod memory;
+mod mending;
 mod power;
 mod resume;
 mod shim;

@@ -50,9 +50,12 @@ impl Stretches {
         let said: Said = place.foldline("resume log.mcap --quiet");
         if said.code == Some(0) {
             let log = place.log("log.mcap");
-            // Nothing of the second stretch is left, not even a piece.
-            let cut_before = bytes.len() <= self.manifest.start;
+            // No stage of the second stretch is left, and what a piece of its manifest asked for nobody knows: that is said.
+            let cut_before = bytes.len() < self.manifest.end;
             let right = if cut_before { self.near_end } else { self.far_end };
+            if cut_before && bytes.len() > self.manifest.start {
+                assert!(said.err.contains("the log ends in a manifest that cannot be read"), "{what}: {}", said.err);
+            }
             assert_eq!(log.completeness(), Completeness::Finished, "{what}");
             assert_eq!(log.last_commit().unwrap().chain_hash, right, "{what}: {}", said.err);
             return true;
@@ -123,8 +126,88 @@ fn a_lost_manifest_is_said_and_has_a_way_out() {
     place.foldline("recover log.mcap -o new.mcap").ends(3).says(&said);
     place.foldline("resume log.mcap").ends(1).says(&["the scene", "is lost", "--resume"]);
     place.write("far.toml", scene_to("3.0"));
+    place.foldline("thin log.mcap -o thin.mcap --keep 1").ends(1).says(&["foldline recover"]);
+    place.foldline("thin new.mcap -o thin.mcap --keep 1").ends(1).says(&["could not be made again", "--resume"]);
     let said = place.foldline("run far.toml -o log.mcap --resume").ends(0);
     said.says(&["has lost a manifest", "takes its place"]);
     assert_eq!(place.log("log.mcap").last_commit().unwrap().chain_hash, whole.far_end);
     assert!(Resume::open(&place.file("log.mcap")).unwrap().log().lost_manifests().len() == 1);
+    has_its_scene_again(&place);
+}
+
+/// Nothing is missed of a log to which a lost scene was given anew.
+#[track_caller]
+fn has_its_scene_again(place: &Place) {
+    place.foldline("verify log.mcap").ends(0).says(&["makes the same states", "log.mcap: good"]);
+    place.foldline("resume log.mcap").ends(0).says(&["nothing to do"]);
+    place.foldline("replay log.mcap --from-scratch").ends(0);
+    place.foldline("recover log.mcap -o copy.mcap").ends(0);
+    place.foldline("thin copy.mcap -o thinner.mcap --keep 1").ends(0);
+    place.foldline("verify thinner.mcap").ends(0);
+}
+
+/// The way out of a lost manifest is open for a finished log as well, and what recovery leaves takes it too.
+#[test]
+fn a_finished_log_gets_its_scene_again() {
+    for recovered in [false, true] {
+        let place = Place::new();
+        place.write("far.toml", scene_to("3.0"));
+        place.foldline("run far.toml -o log.mcap --quiet").ends(0);
+        let mut bytes = place.read("log.mcap");
+        let at = bytes.windows(18).position(|window| window == b"rotation_deg = 3.0").unwrap();
+        bytes[at + 15] = b'2';
+        place.write("log.mcap", &bytes);
+        place.foldline("verify log.mcap").ends(1).says(&["run SCENE -o LOG --resume"]);
+        if recovered {
+            place.foldline("recover log.mcap -o new.mcap").ends(3);
+            std::fs::rename(place.file("new.mcap"), place.file("log.mcap")).unwrap();
+        }
+        place.foldline("run far.toml -o log.mcap --resume").ends(0).says(&["takes its place"]);
+        has_its_scene_again(&place);
+    }
+}
+
+/// Where the scene of the last stretch is lost, nothing of the one before is shown as if it held.
+#[test]
+fn an_older_scene_is_said_to_be_one() {
+    let whole = Stretches::new();
+    let place = Place::new();
+    let mut bytes = whole.bytes.clone();
+    bytes[whole.manifest.start + 40] ^= 1;
+    place.write("log.mcap", &bytes);
+    place.write("whole.mcap", &whole.bytes);
+    for command in ["inspect log.mcap", "bisect log.mcap whole.mcap", "bisect whole.mcap log.mcap"] {
+        let said = place.foldline(command);
+        assert!(said.out.contains("what the run was asked for from stage"), "{command}: {}", said.out);
+    }
+}
+
+/// A damaged manifest at the end under which no stage was run keeps nobody from going on; it is said, and kept aside.
+#[test]
+fn a_manifest_that_nothing_depends_on() {
+    let whole = Stretches::new();
+    let kept = &whole.bytes[..whole.manifest.end];
+    let torn = &kept[..whole.manifest.start + 700];
+    let flipped = |at: usize| {
+        let mut bytes = kept.to_vec();
+        bytes[whole.manifest.start + at] ^= 1;
+        bytes
+    };
+    // In its head, in the length of its first text, in the scene.
+    for (what, bytes) in
+        [("torn", torn.to_vec()), ("head", flipped(0)), ("length", flipped(32)), ("scene", flipped(900))]
+    {
+        let place = Place::new();
+        place.write("log.mcap", &bytes);
+        let said = ["the log ends in a manifest that cannot be read: no stage was run under it"];
+        place.foldline("verify log.mcap").ends(1).says(&said);
+        place.foldline("recover log.mcap -o new.mcap").ends(3);
+        assert_eq!(place.log("new.mcap").lost_manifests(), [], "{what}");
+        let resumed = place.foldline("resume log.mcap --quiet").ends(0).says(&said);
+        resumed.says(&["what was dropped is kept in", "log.mcap.dropped-1"]);
+        assert!(bytes.ends_with(&place.read("log.mcap.dropped-1")), "{what}");
+        let log = place.log("log.mcap");
+        assert_eq!(log.last_commit().unwrap().chain_hash, whole.near_end, "{what}");
+        place.foldline("verify log.mcap").ends(0);
+    }
 }

@@ -53,7 +53,52 @@ fn new_probes_and_a_mesh_history() {
     for manner in ["--quiet", "--json"] {
         let said = place.foldline(&format!("run small.toml -o run.mcap --resume {manner}")).ends(0);
         assert_eq!(said.err.lines().filter(|line| line.contains(&stand)).count(), 2, "{manner}: {}", said.err);
+        if manner == "--json" {
+            let lines = said.out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+            let values = lines.map(|line| (line["probes"][0]["value"].clone(), line["strain_energy_n_mm"].clone()));
+            let values: Vec<_> = values.collect();
+            assert_eq!(values.len(), rows.len());
+            let near = |a: &serde_json::Value, b: &serde_json::Value| {
+                (a.as_f64().unwrap() / b.as_f64().unwrap() - 1.0).abs() < 1e-12
+            };
+            assert!(values.iter().all(|(probe, energy)| near(probe, energy)), "{values:?}");
+        }
     }
+}
+
+/// A probe that measures something else under the same name is not put together with the one before: neither in a table nor in
+/// a curve.
+#[test]
+fn a_probe_that_is_another_under_the_same_name() {
+    const ROOF: &str = include_str!("path.toml");
+    let other = ROOF.replace("on = [0.5, 0.5]\ncomponent", "on = [0.5, 0.25]\ncomponent");
+    assert_ne!(ROOF, other);
+    let (place, straight) = (Place::new(), Place::new());
+    straight.write("other.toml", &other);
+    straight.foldline("run other.toml -o run.mcap --quiet").ends(0);
+    place.write("roof.toml", ROOF);
+    place.write("other.toml", &other);
+    place.foldline("run roof.toml -o run.mcap --until 0.5 --quiet").ends(0);
+    let first = place.log("run.mcap").entries().len();
+    let said = place.foldline("run other.toml -o run.mcap --resume --quiet").ends(0);
+    // What differs is shown, however long the rest is.
+    said.says(&["probes changed (", "[0.5,0.5]", "[0.5,0.25]"]);
+    let names = format!("probe `w_c` of stages 0 to {} is not the one of the last scene", first - 1);
+    let table = place.foldline("inspect run.mcap").ends(0).says(&[&names]).out;
+    let probes = |place: &Place, command: &str| -> Vec<serde_json::Value> {
+        let out = place.foldline(command).ends(0).out;
+        out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap()["probes"].clone()).collect()
+    };
+    let right = probes(&straight, "inspect run.mcap --json");
+    assert_eq!(probes(&place, "inspect run.mcap --json --probes"), right);
+    assert_ne!(probes(&place, "inspect run.mcap --json"), right, "the log keeps what it has");
+    let cells = |table: &str, stage: usize| table.lines().nth(stage + 1).unwrap().split_whitespace().count();
+    let anew = place.foldline("inspect run.mcap --probes").ends(0).out;
+    assert_eq!((cells(&table, 0) + 1, cells(&table, first)), (cells(&anew, 0), cells(&anew, first)), "{table}{anew}");
+    for place in [&place, &straight] {
+        place.foldline("plot run.mcap -o pictures").ends(0);
+    }
+    assert_eq!(place.read("pictures/load-probe.svg"), straight.read("pictures/load-probe.svg"));
 }
 
 /// A finished run goes on to a farther target as if that had been the target from the start.
@@ -112,7 +157,8 @@ fn solver_tolerance() {
         if last_step == 0 {
             said.says(&["solver.tolerance changed", "no complete step stands"]);
         } else {
-            let stand = format!("steps 1 to {last_step} stand, {} on is new", last_step + 1);
+            let stand =
+                format!("steps 1 to {last_step} stand, {} on is new: the log is mixed from there on", last_step + 1);
             said.says(&["solver.tolerance changed (1e-7 → 1e-9)", &stand]);
         }
         let mixed = place.log("run.mcap");
@@ -124,6 +170,8 @@ fn solver_tolerance() {
             }
         }
         assert_ne!(mixed.last_commit().unwrap().chain_hash, whole.chain);
+        let told = format!("mixed: solver.tolerance is 1e-9 from stage {keep} on, and was 1e-7");
+        assert_eq!(place.foldline("inspect run.mcap").ends(0).out.contains(&told), keep > 0);
         // Every stretch is run again with the scene that it was run with.
         let said = place.foldline("replay run.mcap --from-scratch").ends(0);
         assert_eq!(said.out.matches("bit-identical").count(), mixed.entries().len());

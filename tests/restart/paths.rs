@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use foldline::history::{Verdict, compare, replay_stage, verdict};
+use foldline::history::{States, Verdict, compare, replay_stage, verdict};
 use foldline::journal::Log;
 use foldline::pipeline::{Outcome, Stages};
 use foldline::scene::Stage;
@@ -90,7 +90,7 @@ fn every_stage_comes_out_again() {
         let log = whole.log();
         let mut stages = Stages::new(scene(text));
         for index in (0..log.entries().len()).rev() {
-            let replayed = replay_stage(&log, index, &mut stages, &mut |_, _| {}).unwrap();
+            let replayed = replay_stage(&mut States::of(&log), index, &mut stages, &mut |_, _| {}).unwrap();
             assert_eq!(verdict(&replayed.comparison), Verdict::BitIdentical, "stage {index}");
             let reports = [&replayed.report, &log.entries()[index].record.report];
             assert_eq!(format!("{:?}", reports[0]), format!("{:?}", reports[1]), "stage {index}");

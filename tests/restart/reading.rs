@@ -1,6 +1,6 @@
 //! `inspect`, `verify` and `recover` on logs that are whole, cut, unfinished and damaged.
 
-use foldline::journal::Completeness;
+use foldline::journal::{Completeness, Log};
 
 use crate::program::{Place, Straight, assert_ends_with};
 
@@ -14,6 +14,11 @@ struct Case {
     recover: i32,
 }
 
+/// A byte of the commit of a stage, at the end of its chunk.
+fn in_commit(log: &Log, stage: usize) -> usize {
+    log.entries()[stage].bytes.end as usize - 300
+}
+
 fn cases() -> Vec<Case> {
     let whole = Straight::small();
     let (bytes, all) = (&whole.bytes, whole.stages);
@@ -21,7 +26,7 @@ fn cases() -> Vec<Case> {
     torn.extend_from_slice(&bytes[torn.len()..torn.len() + 1000]);
     let flipped = |behind: usize| {
         let mut bytes = bytes.clone();
-        bytes[whole.cut_after(behind).len() + 300] ^= 1;
+        bytes[in_commit(&whole.log(), behind)] ^= 1;
         bytes
     };
     let unfinished = &["unfinished; go on with: foldline resume"][..];
@@ -106,7 +111,7 @@ fn all_findings_are_listed() {
     let place = Place::new();
     let mut bytes = whole.bytes.clone();
     for behind in [12, 30] {
-        bytes[whole.cut_after(behind).len() + 300] ^= 1;
+        bytes[in_commit(&whole.log(), behind)] ^= 1;
     }
     place.write("run.mcap", &bytes);
     let said = place.foldline("verify run.mcap").ends(1);

@@ -1,6 +1,6 @@
 //! Stages run again from the states before them: the same bits, or what differs, how much and where.
 
-use foldline::history::{Verdict, replay_stage, verdict};
+use foldline::history::{States, Verdict, replay_stage, verdict};
 use foldline::journal::ITERATE_TOPIC;
 use foldline::pipeline::Stages;
 use foldline::scene::Stage;
@@ -19,7 +19,7 @@ fn every_stage_comes_out_again() {
     let log = Straight::small().log();
     let mut stages = Stages::new(scene(SMALL));
     for index in (0..log.entries().len()).rev() {
-        let replayed = replay_stage(&log, index, &mut stages, &mut |_, _| {}).unwrap();
+        let replayed = replay_stage(&mut States::of(&log), index, &mut stages, &mut |_, _| {}).unwrap();
         assert_eq!(verdict(&replayed.comparison), Verdict::BitIdentical, "stage {index}");
         // Residuals of solves that found nothing are not numbers and not equal to themselves.
         let reports = [&replayed.report, &log.entries()[index].record.report];
@@ -64,7 +64,7 @@ fn other_settings() {
     let said = replay("--step 3 --stage re-equilibrate --set solver.tolerance=1e-9").ends(1);
     said.says(&["within tolerance:", "agrees to", "bits"]);
     let said = replay("--step 4 --set solver.max_iterations=2").ends(2);
-    said.says(&["2 iterations: different: a solve that reached 8° against a solve that found no equilibrium"]);
+    said.says(&["2 iterations: different: a solve that reached 8 against a solve that found no equilibrium"]);
     replay("--step 4 --stage solve --set load.increment_deg=1").ends(2).says(&["different: "]);
     // The worst of several is the exit code.
     let said = replay("--from-scratch --set solver.max_iterations=12").ends(2);

@@ -70,3 +70,37 @@ fn damage_is_not_thinned_away() {
     place.foldline("thin run.mcap -o thin.mcap --keep 1").ends(1).says(&["it is not whole", "foldline recover"]);
     assert_eq!(place.logs(), ["run.mcap"]);
 }
+
+/// States that were dropped are made again wherever one is asked for, with what came before them run as it was.
+#[test]
+fn what_was_dropped_is_made_again_when_it_is_asked_for() {
+    let whole = Straight::small();
+    let place = Place::new();
+    place.write("run.mcap", &whole.bytes);
+    let said = place.foldline("thin run.mcap -o thin.mcap --keep 2,400,500..600").ends(0);
+    said.says(&["--keep 400 keeps nothing", "--keep 500..600 keeps nothing", "it goes from 1 to"]);
+    for command in [
+        "stability LOG",
+        "stability LOG --step 4",
+        "bisect LOG --snap --tolerance 0.01",
+        "replay LOG --step 4 --set solver.tolerance=1e-9",
+    ] {
+        let [whole, thin] = ["run.mcap", "thin.mcap"].map(|log| place.foldline(&command.replace("LOG", log)));
+        assert_eq!((thin.code, &thin.out), (whole.code, &whole.out), "{command}: {}", thin.err);
+    }
+    for log in ["run", "thin"] {
+        place.foldline(&format!("plot {log}.mcap --step 4 -o {log}")).ends(0);
+    }
+    assert_eq!(place.read("run/mesh.vtu"), place.read("thin/mesh.vtu"));
+    place.write("other.toml", crate::program::small_with(&[("[solver]", "[solver]\ntolerance = 1e-9")]));
+    place.foldline("run other.toml -o other.mcap --quiet").ends(0);
+    place.foldline("thin other.mcap -o thin-other.mcap --keep 2").ends(0);
+    let [a, b] =
+        ["run.mcap other.mcap", "thin.mcap thin-other.mcap"].map(|logs| place.foldline(&format!("bisect {logs}")));
+    assert_eq!(a.out, b.out);
+
+    let probed = format!("{}\n[[probe]]\nname = \"energy\"\nkind = \"energy\"\n", crate::program::SMALL);
+    place.write("probed.toml", probed);
+    let read = |log: &str| place.foldline(&format!("run probed.toml -o {log} --resume --quiet")).ends(0).out;
+    assert_eq!(read("thin.mcap"), read("run.mcap"));
+}

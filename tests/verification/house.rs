@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 /// From the bottom of the stack to its top.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 19] = [
     "units",
+    "printable",
     "error",
     "digest",
     "whole_file",

@@ -1,0 +1,57 @@
+//! Stages that a log has lost, put back: whole ones that stand behind them follow on them again. That they are the right ones says
+//! the chain.
+
+use super::codec::{encode_mesh, encode_state_on};
+use super::encoder::{EncodeError, Encoder, Parts};
+use super::ledger::Ledger;
+use super::log::Log;
+use super::reader::ReadError;
+use crate::pipeline::Record;
+use crate::state::State;
+
+/// Why stages cannot be put back.
+#[derive(Debug, thiserror::Error)]
+pub enum MendError {
+    /// They have no place in a log.
+    #[error(transparent)]
+    Encode(#[from] EncodeError),
+    /// What comes of it is no log.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+}
+
+impl Log {
+    /// The same log with stages behind its good part; `None` where nothing that stands there follows on them.
+    ///
+    /// # Errors
+    /// Where a stage cannot be put into a log.
+    pub fn with_stages(&self, made: &[(State, Record)]) -> Result<Option<Log>, MendError> {
+        let good = &self.bytes[..self.good_end];
+        let mut ledger = Ledger::default();
+        ledger.enter(self.base, good);
+        if ledger.channels.is_empty() {
+            // Numbers that the chunks behind may use otherwise are not described.
+            let mut describing = Encoder::new(&self.library).map_err(EncodeError::Mcap)?;
+            self.encode(&made[..made.len().min(1)], &mut describing)?;
+            ledger = describing.ledger().clone();
+        }
+        let mut encoder = Encoder::behind(ledger, self.good_end()).map_err(EncodeError::Mcap)?;
+        let put_back = self.encode(made, &mut encoder)?;
+        // What is damaged stays in between, and costs nothing any more.
+        let mended = Log::from_bytes([good, &put_back, &self.bytes[self.good_end..self.walked]].concat())?;
+        Ok((mended.commits() > self.commits() + made.len()).then_some(mended))
+    }
+
+    fn encode(&self, made: &[(State, Record)], encoder: &mut Encoder) -> Result<Vec<u8>, EncodeError> {
+        if let Some(stretch) = self.stretches.last_hash() {
+            encoder.go_on_with(stretch);
+        }
+        for (state, record) in made {
+            let mesh_hash = state.mesh.hash();
+            let mesh = (!self.meshes.contains_key(&mesh_hash)).then(|| encode_mesh(&state.mesh)).transpose()?;
+            let state = encode_state_on(state, mesh_hash)?;
+            encoder.commit(&Parts { record, mesh_hash, mesh, state, displacement_is_new: true, viewer: &[] })?;
+        }
+        Ok(encoder.take())
+    }
+}
