@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::json_line::json_line;
-use super::log_file::{ask_long, read_log};
+use super::log_file::{Stages, ask_long, read_through};
 use super::output::print;
 use super::stage_table::{stage_table, step_in_full};
 use crate::history::stages_of_step;
@@ -40,25 +40,33 @@ impl Arguments {
                 false => show_step(&found, step, json),
             };
         }
-        let read = read_log(&log)?;
-        let records = read.records();
-        let wanted: Vec<Record> =
-            records.iter().filter(|record| step.is_none_or(|step| record.report.step == step)).cloned().collect();
-        if let (Some(step), true) = (step, wanted.is_empty()) {
-            return Err(Failure::NoSuchStep { known: read.steps(), step, log });
-        }
+        let (mut stages, mut lines, mut wanted, mut states) =
+            (Stages::default(), String::new(), Vec::new(), Vec::new());
+        let read = read_through(&log, |portion| {
+            stages.take(portion);
+            let records = portion.entries().iter().map(|entry| &entry.record);
+            match step {
+                Some(step) => wanted.extend(records.filter(|record| record.report.step == step).cloned()),
+                None if json => records.for_each(|record| lines += &(json_line(record) + "\n")),
+                None => {
+                    let ordinals = records.map(|record| record.commit.ordinal as usize);
+                    states.extend(ordinals.filter(|ordinal| portion.log().keeps_state(*ordinal)));
+                }
+            }
+        })?;
         match step {
+            Some(step) if wanted.is_empty() => return Err(Failure::NoSuchStep { known: stages.steps(), step, log }),
             Some(step) => return show_step(&wanted, step, json),
-            None if json => return print(&json_lines(&wanted)),
+            None if json => return print(&lines),
             None => {}
         }
-        let mut text = format!("{}\n{}", stage_table(&records), Summary::new(&read.scene, &records));
+        let mut text = stage_table(&stages.records);
+        text += &format!("\n{}", Summary::new(&read.scene, &stages.records));
         if let Some(kept) = read.log.thinned() {
-            let states: Vec<usize> = (0..records.len()).filter(|index| read.log.keeps_state(*index)).collect();
-            text.push_str(&format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states)));
+            text += &format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states));
         }
         if !read.is_finished() {
-            text.push_str(&format!("\nunfinished; go on with: foldline resume {}\n", log.display()));
+            text += &format!("\nunfinished; go on with: foldline resume {}\n", log.display());
         }
         print(&text)
     }
@@ -81,9 +89,6 @@ fn ranges(numbers: &[usize]) -> String {
 }
 
 fn show_step(records: &[Record], step: u64, json: bool) -> Result<(), Failure> {
-    print(&if json { json_lines(records) } else { step_in_full(records, step) })
-}
-
-fn json_lines(records: &[Record]) -> String {
-    records.iter().map(|record| json_line(record) + "\n").collect()
+    let lines = || records.iter().map(|record| json_line(record) + "\n").collect();
+    print(&if json { lines() } else { step_in_full(records, step) })
 }

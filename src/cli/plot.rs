@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
-use super::log_file::read_log;
+use super::log_file::{Stages, read_through};
 use super::output::{file_name, print, write_files};
 use crate::pipeline::{Parameter, Report};
 use crate::spline::Mesh;
@@ -38,30 +38,36 @@ impl Arguments {
     /// Reads the log, draws, and names the files.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, output, step, view } = self;
-        let read = read_log(&log)?;
-        let (scene, records) = (&read.scene, read.records());
+        let (mut stages, mut shown) = (Stages::default(), None);
+        let read = read_through(&log, |portion| {
+            let is_wanted = |report: &Report| step.is_none_or(|step| report.step == step);
+            if let Some(last) = portion.entries().iter().rfind(|entry| is_wanted(&entry.record.report)) {
+                let state = portion.log().state(last.record.commit.ordinal as usize);
+                shown = Some((last.record.report.clone(), state));
+            }
+            stages.take(portion);
+        })?;
+        let (scene, records) = (&read.scene, &stages.records);
         let folder = output.unwrap_or_else(|| log.with_extension(""));
         let name = log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let last = records.iter().rposition(|record| step.is_none_or(|step| record.report.step == step));
-        let Some(last) = last else {
+        let Some((report, state)) = shown else {
             return Err(match step {
-                Some(step) => Failure::NoSuchStep { log, step, known: read.steps() },
+                Some(step) => Failure::NoSuchStep { log, step, known: stages.steps() },
                 None => crate::view::PlotError::NoEquilibrium.into(),
             });
         };
         // Everything is drawn before anything is written.
         let curve = match TapeSpring::of_scene(scene) {
-            Some(_) => Some(("moment-rotation.svg", moment_rotation_plot(scene, &records, &name)?)),
-            None => load_probe_plot(scene, &records, &name)?.map(|text| ("load-probe.svg", text)),
+            Some(_) => Some(("moment-rotation.svg", moment_rotation_plot(scene, records, &name)?)),
+            None => load_probe_plot(scene, records, &name)?.map(|text| ("load-probe.svg", text)),
         };
-        let record = &records[last];
         let unusable = |source| Failure::WrongLog { log: log.clone(), source: Box::new(source) };
-        let state = read.log.state(last).map_err(unusable)?;
+        let state = state.map_err(unusable)?;
         let samples = deformed_surface(scene, &state.mesh, &state.displacement, cells_per_element(&state.mesh))?;
         let picture = Picture {
             direction: view.unwrap_or_default(),
-            title: format!("{name}, load step {}", record.report.step),
-            subtitle: subtitle(&record.report),
+            title: format!("{name}, load step {}", report.step),
+            subtitle: subtitle(&report),
             ..Picture::default()
         };
         let surface = [("mesh.svg", mesh_picture(&samples, &picture)), ("mesh.vtu", vtu(&samples))];

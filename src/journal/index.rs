@@ -292,8 +292,11 @@ impl Index {
             library: super::encoder::library(),
             channels: channels(&ledger),
             stretches,
-            mesh: piece(mesh)?,
-            displacement: piece(displacement)?,
+            mesh: Some(piece(mesh)?),
+            displacement: Some(piece(displacement)?),
+            // A thinned log has no index.
+            thinned: None,
+            kept_before: None,
         };
         Ok(Some((checkpoint, ledger)))
     }

@@ -104,6 +104,8 @@ pub struct Log {
     pub(super) base: u64,
     /// Stages before the first that was read.
     pub(super) first: usize,
+    /// The last of those that has its state.
+    pub(super) kept_before: Option<usize>,
     pub(super) file_len: u64,
     /// Bytes of the file in memory; what lies behind them are a mesh and displacements from before.
     pub(super) walked: usize,
@@ -234,6 +236,11 @@ impl Log {
         self.file_len
     }
 
+    /// Whether the last byte of the file was read.
+    pub(super) fn reaches_end(&self) -> bool {
+        self.base + self.walked as u64 >= self.file_len
+    }
+
     /// Whether every byte up to the end of the good part is as it was written, and no manifest is lost: a run may go on right
     /// behind it.
     pub(super) fn is_clean(&self) -> bool {
@@ -258,6 +265,11 @@ impl Log {
         self.entry(index).is_some_and(|entry| entry.state.is_some())
     }
 
+    /// The last stage before stage `index` that has its state.
+    pub(super) fn kept_before(&self, index: usize) -> Option<usize> {
+        (self.first..index).rev().find(|before| self.keeps_state(*before)).or(self.kept_before)
+    }
+
     /// Which states a thinned log holds, in the words that it was thinned with; `None` for any other.
     pub fn thinned(&self) -> Option<&str> {
         self.thinned.as_deref()
@@ -273,8 +285,7 @@ impl Log {
             return Err(StateError::NoSuchStage { index, len: self.commits() });
         };
         let Some(place) = entry.state.clone() else {
-            let before = (self.first..index).rev().find(|before| self.keeps_state(*before));
-            return Err(StateError::NotKept { index, before });
+            return Err(StateError::NotKept { index, before: self.kept_before(index) });
         };
         let mesh = self.mesh(index)?;
         let bytes = &self.bytes[place];

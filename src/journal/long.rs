@@ -47,7 +47,7 @@ pub struct LongLog {
 
 impl LongLog {
     /// Opens a log that is long enough to have an index; `None` for a shorter one, and for one that is damaged before its
-    /// end, which has to be read whole. Where the index is missing or does not fit, the log is read through, part by part.
+    /// end or was thinned, which has to be read whole. Where the index is missing or does not fit, the log is read through, part by part.
     ///
     /// # Errors
     /// Where the log cannot be read.
@@ -95,8 +95,7 @@ impl LongLog {
             }
             Ok(())
         })?;
-        let reaches_end = tail.closed || tail.base + tail.walked as u64 >= tail.file_len;
-        if tail.entries.is_empty() || !reaches_end {
+        if tail.entries.is_empty() || !(tail.closed || tail.reaches_end()) || tail.thinned().is_some() {
             return Ok(None);
         }
         let index = rewritten.map_or(index, |rewritten| Some(rewritten.done(index_path)));

@@ -21,8 +21,9 @@
 //! | `ledger`, `summary`, `encoder`, `backend`, `writer` | from a stage to bytes in a file |
 //! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
 //! | `checkpoint`, `index`, `index_keeper`, `long` | a long log, of which only the end is read |
+//! | `portions` | a log of any length, read through without holding it |
 //! | `resume`, `recovery` | going on with a log, copying what is good of one |
-//! | `thin` | a log without some of its states |
+//! | `new_log`, `thin` | a log that is made of another, without some of its states |
 //! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
 //! | `rewriting`, `agreement`, `verify` | all that can be checked, all of it |
 //!
@@ -92,6 +93,8 @@ mod log;
 mod long;
 mod manifest;
 pub mod message;
+mod new_log;
+mod portions;
 mod reader;
 mod recovery;
 mod resume;
@@ -116,6 +119,8 @@ pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
 pub use long::{LongLog, LongLogError};
 pub use manifest::{Manifest, ManifestError, SceneInLogError};
+pub use new_log::NewLogError;
+pub use portions::{Portion, Portions};
 pub use reader::ReadError;
 pub use recovery::{RecoverError, RecoverOutcome, recover};
 pub use resume::{Resume, ResumeError, Resumed};

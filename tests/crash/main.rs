@@ -12,6 +12,7 @@ mod keepers;
 mod kill;
 mod long;
 mod memory;
+mod portions;
 mod power;
 mod resume;
 mod shim;
