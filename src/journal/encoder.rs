@@ -121,6 +121,8 @@ pub(super) struct Encoder {
     /// Hash of the manifest that began the stretch.
     stretch: Hash,
     ledger: Ledger,
+    /// Topics that messages went to, and the numbers of their channels.
+    channels: Vec<(ViewerTopic, u16)>,
     /// Length of the log so far.
     length: u64,
     /// Bytes that the log lacks and the ledger has.
@@ -150,28 +152,36 @@ pub(super) fn library() -> String {
 impl Encoder {
     pub(super) fn new(library: &str) -> Result<Self, McapError> {
         let (writer, outbox) = writer(library)?;
-        let stretch = Hash::from_bytes([0; 32]);
-        Ok(Self {
-            writer,
-            outbox,
-            writer_made_at: 0,
-            stretch,
-            ledger: Ledger::default(),
-            length: 0,
-            in_front: Vec::new(),
-        })
+        Ok(Self::with(writer, outbox, Ledger::default(), 0))
     }
 
     /// Goes on behind the first `length` bytes of a log, which `ledger` describes.
     pub(super) fn behind(ledger: Ledger, length: u64) -> Result<Self, McapError> {
         let (writer, outbox) = writer_that_knows(&ledger)?;
-        let stretch = Hash::from_bytes([0; 32]);
-        Ok(Self { writer, outbox, writer_made_at: ledger.chunks.len(), stretch, ledger, length, in_front: Vec::new() })
+        Ok(Self::with(writer, outbox, ledger, length))
+    }
+
+    fn with(writer: Writer<NoSeek<Outbox>>, outbox: Outbox, ledger: Ledger, length: u64) -> Self {
+        Self {
+            writer,
+            outbox,
+            writer_made_at: ledger.chunks.len(),
+            stretch: Hash::from_bytes([0; 32]),
+            ledger,
+            channels: Vec::new(),
+            length,
+            in_front: Vec::new(),
+        }
     }
 
     /// The bytes made so far, whole records, which are then gone from here.
     pub(super) fn take(&mut self) -> Vec<u8> {
-        let mut bytes = std::mem::take(&mut *self.outbox.bytes());
+        let mut bytes = {
+            let mut outbox = self.outbox.bytes();
+            // What comes next is likely to be as long.
+            let room = Vec::with_capacity(outbox.len());
+            std::mem::replace(&mut *outbox, room)
+        };
         self.ledger.enter(self.length, &bytes);
         self.length += bytes.len() as u64;
         if !self.in_front.is_empty() {
@@ -227,8 +237,12 @@ impl Encoder {
             }
             messages.push((&message.topic, &message.data));
         }
-        let named = messages.iter().map(|(topic, data)| MessageHash::of(&topic.topic, data)).collect();
         let (mesh, displacement) = (parts.mesh_hash, parts.state.displacement_hash);
+        let named = messages.iter().map(|(topic, data)| match topic.topic.as_str() {
+            DISPLACEMENT_TOPIC => MessageHash::hashed(DISPLACEMENT_TOPIC, data, displacement),
+            topic => MessageHash::of(topic, data),
+        });
+        let named = named.collect();
         let commit = seal(&CommitMessage::new(&parts.record.commit, self.stretch, mesh, displacement, named))?;
         messages.push((&OWN.commit, &commit));
 
@@ -269,12 +283,22 @@ impl Encoder {
         Ok(self.writer.flush()?)
     }
 
-    fn message(&mut self, topic: &ViewerTopic, ordinal: u64, data: &[u8]) -> Result<(), McapError> {
+    /// The number of a topic's channel. MCAP's writer knows it too, and looks for it by the hash of the whole schema.
+    fn channel(&mut self, topic: &ViewerTopic) -> Result<u16, McapError> {
+        if let Some((_, number)) = self.channels.iter().find(|(known, _)| known == topic) {
+            return Ok(*number);
+        }
         let schema = match topic.schema_encoding.as_str() {
             "" => 0,
             encoding => self.writer.add_schema(&topic.schema_name, encoding, &topic.schema)?,
         };
-        let channel = self.writer.add_channel(schema, &topic.topic, &topic.message_encoding, &BTreeMap::new())?;
+        let number = self.writer.add_channel(schema, &topic.topic, &topic.message_encoding, &BTreeMap::new())?;
+        self.channels.push((topic.clone(), number));
+        Ok(number)
+    }
+
+    fn message(&mut self, topic: &ViewerTopic, ordinal: u64, data: &[u8]) -> Result<(), McapError> {
+        let channel = self.channel(topic)?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let header = MessageHeader {
             channel_id: channel,
