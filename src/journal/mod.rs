@@ -45,6 +45,9 @@
 //! does not fit, the log is read through, in parts that fit in memory, and the index is written anew. [`verify()`] reads all
 //! of a log and none of its index.
 //!
+//! What goes through a log from front to back reads [`Portions`], of which one is in memory: [`recover()`], [`thin()`], tables and
+//! curves.
+//!
 //! [`thin()`] writes a log anew without the states between some load steps; commits and reports, and with them the chain,
 //! stay.
 //!

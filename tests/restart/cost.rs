@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use foldline::journal::{JournalWriter, Manifest};
-use foldline::pipeline::{MemorySink, Run, Stages};
+use foldline::pipeline::{MemorySink, Run, Sink, Stages};
 use foldline::scene::SyncPolicy;
 
 /// How often the log is written under each policy; the policies take turns.
@@ -40,7 +40,7 @@ fn the_journal_beside_the_run() {
             let (began, cpu_began) = (Instant::now(), on_cpu());
             let mut writer = JournalWriter::create(&path, &manifest, *policy).unwrap();
             for (state, record) in &sink.stages {
-                writer.commit(state, record).unwrap();
+                writer.take(state, record).unwrap();
             }
             writer.finish().unwrap();
             wall.push(began.elapsed());
