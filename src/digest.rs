@@ -23,6 +23,10 @@ impl Feed {
 
     pub(crate) fn bytes(&mut self, bytes: &[u8]) {
         self.pending.extend_from_slice(bytes);
+        self.hash_whole_batches();
+    }
+
+    fn hash_whole_batches(&mut self) {
         if self.pending.len() >= BATCH {
             let whole = self.pending.len() / BATCH * BATCH;
             self.hasher.update(&self.pending[..whole]);
@@ -40,11 +44,29 @@ impl Feed {
 
     pub(crate) fn numbers(&mut self, values: &[f64]) {
         self.integer(values.len() as u64);
-        values.iter().for_each(|value| self.number(*value));
+        self.each(values);
+    }
+
+    /// Numbers without their count in front.
+    pub(crate) fn each(&mut self, values: &[f64]) {
+        for values in values.chunks(BATCH / size_of::<f64>()) {
+            extend_with_numbers(&mut self.pending, values);
+            self.hash_whole_batches();
+        }
     }
 
     pub(crate) fn finish(mut self) -> Hash {
         self.hasher.update(&self.pending);
         self.hasher.finalize()
+    }
+}
+
+/// Adds numbers by their bits, lowest byte first.
+pub(crate) fn extend_with_numbers(bytes: &mut Vec<u8>, values: &[f64]) {
+    let from = bytes.len();
+    // Room first: so all of them are copied at once.
+    bytes.resize(from + size_of_val(values), 0);
+    for (place, value) in bytes[from..].chunks_exact_mut(size_of::<f64>()).zip(values) {
+        place.copy_from_slice(&value.to_bits().to_le_bytes());
     }
 }

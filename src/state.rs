@@ -176,9 +176,7 @@ impl State {
         let mut feed = Feed::new("foldline state");
         feed.bytes(mesh.as_bytes());
         feed.integer(self.displacement.len() as u64);
-        for vector in &self.displacement {
-            vector.iter().for_each(|value| feed.number(*value));
-        }
+        feed.each(self.displacement.as_flattened());
         self.marked.iter().for_each(|knots| feed.numbers(knots));
         feed.integer(u64::from(self.refined.is_some()));
         if let Some(mesh) = &self.refined {
@@ -204,14 +202,14 @@ impl State {
         // Only where there are any, so that states without them hash as they always did.
         if !self.turns.is_empty() {
             feed.bytes(b"turns");
-            self.turns.iter().flatten().for_each(|value| feed.number(*value));
+            feed.each(self.turns.as_flattened());
         }
         if let Some(path) = &self.path {
             path.feed(&mut feed);
         }
         if let Some(previous) = &self.previous {
             feed.bytes(b"previous");
-            previous.displacement.iter().flatten().for_each(|value| feed.number(*value));
+            feed.each(previous.displacement.as_flattened());
             feed.number(previous.parameter);
         }
         if self.largest_force_n != 0.0 {
@@ -230,7 +228,7 @@ impl State {
 impl PathMemory {
     fn feed(&self, feed: &mut Feed) {
         feed.bytes(b"path");
-        self.heading.iter().flatten().for_each(|value| feed.number(*value));
+        feed.each(self.heading.as_flattened());
         for value in [self.parameter_rate, self.first_mm, self.next_mm, self.travelled_mm] {
             feed.number(value);
         }

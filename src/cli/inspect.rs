@@ -6,10 +6,10 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::json_line::json_line;
-use super::log_file::{ask_long, read_log};
+use super::log_file::{Gathered, ask_long, read_log, read_through};
 use super::output::print;
 use super::stage_table::{stage_table, step_in_full};
-use crate::history::stages_of_step;
+use crate::history::{keep_apart, redefined_probes, stages_of_step};
 use crate::journal::{LongLog, LongLogError};
 use crate::pipeline::Record;
 use crate::study::Summary;
@@ -43,30 +43,48 @@ impl Arguments {
                 false => show_step(&found, step, json),
             };
         }
-        let read = read_log(&log)?;
-        let records = match probes || (step.is_none() && !json) {
-            true => read.records_of_scene(&log, probes)?,
-            false => read.records(),
+        let wanted_step = |record: &Record| step.is_none_or(|step| record.report.step == step);
+        let (mut gathered, mut lines, mut wanted, mut states) =
+            (Gathered::default(), String::new(), Vec::new(), Vec::new());
+        let read = match probes {
+            true => {
+                // Probes are read on states, which takes the whole log.
+                let read = read_log(&log)?;
+                gathered.records = read.records_of_scene(&log, true)?;
+                states = (0..gathered.records.len()).filter(|ordinal| read.log.keeps_state(*ordinal)).collect();
+                wanted = gathered.records.iter().filter(|record| wanted_step(record)).cloned().collect();
+                lines = wanted.iter().map(|record| json_line(record) + "\n").collect();
+                read
+            }
+            false => read_through(&log, |portion| {
+                gathered.take(portion);
+                let records = portion.entries().iter().map(|entry| &entry.record);
+                match step {
+                    Some(_) => wanted.extend(records.filter(|record| wanted_step(record)).cloned()),
+                    None if json => records.for_each(|record| lines += &(json_line(record) + "\n")),
+                    None => {
+                        let ordinals = records.map(|record| record.commit.ordinal as usize);
+                        states.extend(ordinals.filter(|ordinal| portion.log().keeps_state(*ordinal)));
+                    }
+                }
+            })?,
         };
-        let wanted: Vec<Record> =
-            records.iter().filter(|record| step.is_none_or(|step| record.report.step == step)).cloned().collect();
-        if let (Some(step), true) = (step, wanted.is_empty()) {
-            return Err(Failure::NoSuchStep { known: read.steps(), step, log });
-        }
         match step {
+            Some(step) if wanted.is_empty() => return Err(Failure::NoSuchStep { known: gathered.steps(), step, log }),
             Some(step) => return show_step(&wanted, step, json),
-            None if json => return print(&json_lines(&wanted)),
+            None if json => return print(&lines),
             None => {}
         }
+        let mut records = gathered.records;
+        keep_apart(&redefined_probes(&read.log), &mut records);
         let older = read.older_scene().map_or_else(String::new, |line| line + "\n");
         let summary = Summary::new(&read.scene, &records);
         let mut text = format!("{}\n{}{older}{summary}", stage_table(&records), read.mixed());
         if let Some(kept) = read.log.thinned() {
-            let states: Vec<usize> = (0..records.len()).filter(|index| read.log.keeps_state(*index)).collect();
-            text.push_str(&format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states)));
+            text += &format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states));
         }
         if !read.is_finished() {
-            text.push_str(&format!("\nunfinished; go on with: foldline resume {}\n", log.display()));
+            text += &format!("\nunfinished; go on with: foldline resume {}\n", log.display());
         }
         print(&text)
     }
@@ -89,9 +107,6 @@ fn ranges(numbers: &[usize]) -> String {
 }
 
 fn show_step(records: &[Record], step: u64, json: bool) -> Result<(), Failure> {
-    print(&if json { json_lines(records) } else { step_in_full(records, step) })
-}
-
-fn json_lines(records: &[Record]) -> String {
-    records.iter().map(|record| json_line(record) + "\n").collect()
+    let lines = || records.iter().map(|record| json_line(record) + "\n").collect();
+    print(&if json { lines() } else { step_in_full(records, step) })
 }

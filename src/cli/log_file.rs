@@ -6,7 +6,9 @@ use super::failure::Failure;
 use super::output::say;
 use super::scene_file::rendered;
 use crate::history::{LoggedSceneError, keep_apart, logged_scene, read_probes, redefined_probes};
-use crate::journal::{Completeness, Log, LongLog, LongLogError, Manifest, ReadError, SceneInLogError};
+use crate::journal::{
+    Completeness, Log, LongLog, LongLogError, Manifest, Portion, Portions, ReadError, SceneInLogError,
+};
 use crate::pipeline::{Record, Stages};
 use crate::scene::{Reach, Scene};
 
@@ -64,8 +66,7 @@ impl ReadLog {
 
     /// First and last load step.
     pub(super) fn steps(&self) -> Option<(u64, u64)> {
-        let steps = || self.log.entries().iter().map(|entry| entry.record.report.step);
-        steps().min().zip(steps().max())
+        first_and_last(self.log.entries().iter().map(|entry| &entry.record))
     }
 
     /// What was lost of a log, a line each.
@@ -86,6 +87,40 @@ impl ReadLog {
         }
         warnings
     }
+}
+
+/// The stages of a run for tables, curves and summaries: of the probes of each the first alone, but all of the last ones.
+#[derive(Default)]
+pub(super) struct Gathered {
+    pub(super) records: Vec<Record>,
+    /// The last record that has probes.
+    probed: Option<usize>,
+}
+
+impl Gathered {
+    /// Takes the stages that follow.
+    pub(super) fn take(&mut self, portion: &Portion) {
+        for entry in portion.entries() {
+            if !entry.record.report.probes.is_empty()
+                && let Some(before) = self.probed.replace(self.records.len())
+            {
+                let probes = &mut self.records[before].report.probes;
+                probes.truncate(1);
+                probes.shrink_to_fit();
+            }
+            self.records.push(entry.record.clone());
+        }
+    }
+
+    /// First and last load step.
+    pub(super) fn steps(&self) -> Option<(u64, u64)> {
+        first_and_last(self.records.iter())
+    }
+}
+
+pub(super) fn first_and_last<'r>(records: impl Iterator<Item = &'r Record> + Clone) -> Option<(u64, u64)> {
+    let steps = records.map(|record| record.report.step);
+    steps.clone().min().zip(steps.max())
 }
 
 /// Asks a long log, of which only the end is read, and says what is lost of that; `None` for one that is read whole. Where the
@@ -110,12 +145,29 @@ pub(super) fn ask_long<T>(
 /// Reads a log and the scene of its last stretch, and says what of it is lost; where that is lost, an earlier one
 /// serves to show what is there.
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
-    let wrong =
-        |source: Box<dyn std::error::Error + Send + Sync>| Failure::WrongLog { log: path.to_path_buf(), source };
-    let log = Log::read(path).map_err(|error| match error {
+    with_scene(Log::read(path).map_err(unreadable(path))?, path)
+}
+
+/// The same for what a log of any length tells from front to back: shows it to `see` portion by portion, and gives back its end.
+pub(super) fn read_through(path: &Path, mut see: impl FnMut(&Portion)) -> Result<ReadLog, Failure> {
+    let mut portions = Portions::of(path).map_err(unreadable(path))?;
+    loop {
+        let portion = portions.read().map_err(unreadable(path))?;
+        see(&portion);
+        if let Some(log) = portion.into_end() {
+            return with_scene(log, path);
+        }
+    }
+}
+
+fn unreadable(path: &Path) -> impl Fn(ReadError) -> Failure {
+    |error| match error {
         ReadError::Io { source, .. } => Failure::Read { path: path.to_path_buf(), source },
-        error => wrong(Box::new(error)),
-    })?;
+        error => Failure::WrongLog { log: path.to_path_buf(), source: Box::new(error) },
+    }
+}
+
+fn with_scene(log: Log, path: &Path) -> Result<ReadLog, Failure> {
     let (scene, scene_is_older) = match (scene_of(&log, path), log.manifests().last()) {
         (Err(Failure::SceneLost { .. }), Some(manifest)) => (scene_in(manifest, path, &[])?, true),
         (scene, _) => (scene?, false),

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
-use super::log_file::read_log;
+use super::log_file::{Gathered, first_and_last, read_log, read_through};
 use super::output::{file_name, print, write_files};
-use crate::history::States;
+use crate::history::{States, keep_apart, redefined_probes};
 use crate::pipeline::{Parameter, Report};
 use crate::scene::Scene;
 use crate::spline::Mesh;
@@ -40,18 +40,26 @@ impl Arguments {
     /// Reads the log, draws, and names the files.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, output, step, view } = self;
-        let read = read_log(&log)?;
+        let (mut gathered, mut shown) = (Gathered::default(), None);
+        let read = read_through(&log, |portion| {
+            let is_wanted = |report: &Report| step.is_none_or(|step| report.step == step);
+            if let Some(last) = portion.entries().iter().rfind(|entry| is_wanted(&entry.record.report)) {
+                let ordinal = last.record.commit.ordinal as usize;
+                shown = Some((ordinal, last.record.report.clone(), portion.log().state(ordinal)));
+            }
+            gathered.take(portion);
+        })?;
         let scene = &read.scene;
-        let mut records = read.records_of_scene(&log, false)?;
+        let mut records = std::mem::take(&mut gathered.records);
+        keep_apart(&redefined_probes(&read.log), &mut records);
         if equilibria(&records).any(|record| lacks_first_probe(scene, &record.report)) {
-            records = read.records_of_scene(&log, true)?;
+            records = read_log(&log)?.records_of_scene(&log, true)?;
         }
         let folder = output.unwrap_or_else(|| log.with_extension(""));
         let name = log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let last = records.iter().rposition(|record| step.is_none_or(|step| record.report.step == step));
-        let Some(last) = last else {
+        let Some((ordinal, report, state)) = shown else {
             return Err(match step {
-                Some(step) => Failure::NoSuchStep { log, step, known: read.steps() },
+                Some(step) => Failure::NoSuchStep { log, step, known: first_and_last(records.iter()) },
                 None => crate::view::PlotError::NoEquilibrium.into(),
             });
         };
@@ -60,14 +68,17 @@ impl Arguments {
             Some(_) => Some(("moment-rotation.svg", moment_rotation_plot(scene, &records, &name)?)),
             None => load_probe_plot(scene, &records, &name)?.map(|text| ("load-probe.svg", text)),
         };
-        let record = &records[last];
         let unusable = |source| Failure::WrongLog { log: log.clone(), source: Box::new(source) };
-        let state = States::of(&read.log).at(last).map_err(unusable)?;
+        // Where it was dropped it is made again, for which the whole log is read.
+        let state = match state {
+            Ok(state) => state,
+            Err(_) => States::of(&read_log(&log)?.log).at(ordinal).map_err(unusable)?,
+        };
         let samples = deformed_surface(scene, &state.mesh, &state.displacement, cells_per_element(&state.mesh))?;
         let picture = Picture {
             direction: view.unwrap_or_default(),
-            title: format!("{name}, load step {}", record.report.step),
-            subtitle: subtitle(&record.report),
+            title: format!("{name}, load step {}", report.step),
+            subtitle: subtitle(&report),
             ..Picture::default()
         };
         let surface = [("mesh.svg", mesh_picture(&samples, &picture)), ("mesh.vtu", vtu(&samples))];

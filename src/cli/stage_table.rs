@@ -34,19 +34,19 @@ pub fn stage_table(records: &[Record]) -> String {
     let steps = records.first().is_some_and(|record| record.report.driven_by == Parameter::LoadFactor);
     // Where no ends turn, the first probe stands in the place of their moment.
     let probe = records.iter().find_map(|record| record.report.probes.first()).map(|reading| reading.name.clone());
-    let rows: Vec<[String; COLUMNS.len()]> = records.iter().map(|record| cells(record, probe.as_deref())).collect();
-    let width_of = |column: usize| {
-        let cells = rows.iter().map(|row| row[column].chars().count());
-        cells.chain([COLUMNS[column].0.chars().count()]).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..COLUMNS.len()).map(width_of).collect();
+    // The cells are made twice: those of a long run do not fit in memory.
+    let rows = || records.iter().map(|record| cells(record, probe.as_deref()));
+    let mut widths = COLUMNS.map(|column| column.0.chars().count());
+    for row in rows() {
+        widths.iter_mut().zip(&row).for_each(|(width, cell)| *width = cell.chars().count().max(*width));
+    }
     let mut heads = COLUMNS.map(|column| column.0.to_string());
     if steps {
         heads[3] = "factor".into();
-        heads[4] = probe.unwrap_or_default();
+        heads[4] = probe.clone().unwrap_or_default();
     }
     let mut table = String::new();
-    for row in std::iter::once(&heads).chain(&rows) {
+    for row in std::iter::once(heads).chain(rows()) {
         let mut line = String::new();
         for ((cell, &width), column) in row.iter().zip(&widths).zip(&COLUMNS) {
             let cell = if column.1 { format!("{cell:>width$}") } else { format!("{cell:<width$}") };

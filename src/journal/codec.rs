@@ -11,7 +11,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::format::CHUNK_BYTES_LIMIT;
-use super::soundness::{Flaw, check_mesh, check_state};
+use super::soundness::{Flaw, check_mesh, check_on_mesh, check_state};
+use crate::digest::extend_with_numbers;
 use crate::scene::Stage;
 use crate::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State, StepControl};
 
@@ -274,6 +275,16 @@ fn decode<T: for<'de> Deserialize<'de>>(version: u8, bytes: &[u8]) -> Result<T, 
     }
 }
 
+/// What [`encode`] makes of [`DisplacementV1`], in a tenth of the time: they are nearly all of most logs.
+fn encode_displacements(displacements: [&[[f64; 3]]; 2]) -> Vec<u8> {
+    let count: usize = displacements.iter().map(|vectors| vectors.len()).sum();
+    let mut bytes = Vec::with_capacity(1 + 8 + size_of::<[f64; 3]>() * count);
+    bytes.push(1);
+    bytes.extend((count as u64).to_le_bytes());
+    displacements.iter().for_each(|vectors| extend_with_numbers(&mut bytes, vectors.as_flattened()));
+    bytes
+}
+
 /// A mesh as bytes.
 ///
 /// # Errors
@@ -314,17 +325,15 @@ pub struct EncodedState {
 /// # Errors
 /// Where the state is unsound or larger than a log can hold.
 pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
+    check_mesh(&state.mesh)?;
     encode_state_on(state, state.mesh.hash())
 }
 
-/// The same where the hash of its mesh is known.
+/// The same where the hash of its mesh is known, and the mesh is sound.
 pub(super) fn encode_state_on(state: &State, mesh: Hash) -> Result<EncodedState, CodecError> {
-    check_state(state)?;
-    let displacements = match &state.previous {
-        Some(previous) => Cow::from([&state.displacement[..], &previous.displacement].concat()),
-        None => Cow::from(&state.displacement),
-    };
-    let displacement = encode(1, &DisplacementV1(displacements))?;
+    check_on_mesh(state)?;
+    let before = state.previous.as_ref().map_or(&[][..], |previous| &previous.displacement);
+    let displacement = encode_displacements([&state.displacement, before]);
     let displacement_hash = blake3::hash(&displacement);
     let base = StateV1 {
         mesh: *mesh.as_bytes(),
@@ -456,4 +465,19 @@ pub fn decode_state<'a>(
     }
     check_state(&state)?;
     Ok(state)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn displacements_are_what_bincode_makes_of_them() {
+        let displacement: Vec<[f64; 3]> = (0..7).map(|i| [f64::from(i), -0.0, 1.0 / f64::from(i)]).collect();
+        for before in 0..displacement.len() {
+            let both = [&displacement[..], &displacement[..before]];
+            let slow = encode(1, &DisplacementV1(Cow::from(both.concat()))).unwrap();
+            assert_eq!(encode_displacements(both), slow);
+        }
+    }
 }

@@ -127,6 +127,8 @@ pub(super) struct Encoder {
     ledger: Ledger,
     /// Numbers of the channels that are described so far.
     described: HashSet<u16>,
+    /// Topics that messages went to, and the numbers of their channels.
+    channels: Vec<(ViewerTopic, u16)>,
     /// Length of the log so far.
     length: u64,
     /// Bytes that the log lacks and the ledger has.
@@ -156,30 +158,37 @@ pub(super) fn library() -> String {
 impl Encoder {
     pub(super) fn new(library: &str) -> Result<Self, McapError> {
         let (writer, outbox) = writer(library)?;
-        let stretch = Hash::from_bytes([0; 32]);
-        Ok(Self {
-            writer,
-            outbox,
-            writer_made_at: 0,
-            stretch,
-            ledger: Ledger::default(),
-            described: HashSet::new(),
-            length: 0,
-            in_front: Vec::new(),
-        })
+        Ok(Self::with(writer, outbox, Ledger::default(), 0))
     }
 
     /// Goes on behind the first `length` bytes of a log, which `ledger` describes.
     pub(super) fn behind(ledger: Ledger, length: u64) -> Result<Self, McapError> {
         let (writer, outbox) = writer_that_knows(&ledger)?;
-        let stretch = Hash::from_bytes([0; 32]);
-        let (writer_made_at, described) = (ledger.chunks.len(), ledger.channels.keys().copied().collect());
-        Ok(Self { writer, outbox, writer_made_at, stretch, ledger, described, length, in_front: Vec::new() })
+        Ok(Self::with(writer, outbox, ledger, length))
+    }
+
+    fn with(writer: Writer<NoSeek<Outbox>>, outbox: Outbox, ledger: Ledger, length: u64) -> Self {
+        Self {
+            writer,
+            outbox,
+            writer_made_at: ledger.chunks.len(),
+            stretch: Hash::from_bytes([0; 32]),
+            described: ledger.channels.keys().copied().collect(),
+            ledger,
+            channels: Vec::new(),
+            length,
+            in_front: Vec::new(),
+        }
     }
 
     /// The bytes made so far, whole records, which are then gone from here.
     pub(super) fn take(&mut self) -> Vec<u8> {
-        let mut bytes = std::mem::take(&mut *self.outbox.bytes());
+        let mut bytes = {
+            let mut outbox = self.outbox.bytes();
+            // What comes next is likely to be as long.
+            let room = Vec::with_capacity(outbox.len());
+            std::mem::replace(&mut *outbox, room)
+        };
         self.ledger.enter(self.length, &bytes);
         self.length += bytes.len() as u64;
         if !self.in_front.is_empty() {
@@ -236,8 +245,12 @@ impl Encoder {
             }
             messages.push((&message.topic, &message.data));
         }
-        let named = messages.iter().map(|(topic, data)| MessageHash::of(&topic.topic, data)).collect();
         let (mesh, displacement) = (parts.mesh_hash, parts.state.displacement_hash);
+        let named = messages.iter().map(|(topic, data)| match topic.topic.as_str() {
+            DISPLACEMENT_TOPIC => MessageHash::hashed(DISPLACEMENT_TOPIC, data, displacement),
+            topic => MessageHash::of(topic, data),
+        });
+        let named = named.collect();
         let commit = seal(&CommitMessage::new(&parts.record.commit, self.stretch, mesh, displacement, named))?;
         messages.push((&OWN.commit, &commit));
 
@@ -278,13 +291,23 @@ impl Encoder {
         Ok(self.writer.flush()?)
     }
 
-    fn message(&mut self, topic: &ViewerTopic, ordinal: u64, data: &[u8]) -> Result<(), McapError> {
+    /// The number of a topic's channel. MCAP's writer knows it too, and looks for it by the hash of the whole schema.
+    fn channel(&mut self, topic: &ViewerTopic) -> Result<u16, McapError> {
+        if let Some((_, number)) = self.channels.iter().find(|(known, _)| known == topic) {
+            return Ok(*number);
+        }
         let schema = match topic.schema_encoding.as_str() {
             "" => 0,
             encoding => self.writer.add_schema(&topic.schema_name, encoding, &topic.schema)?,
         };
-        let channel = self.writer.add_channel(schema, &topic.topic, &topic.message_encoding, &BTreeMap::new())?;
-        self.described.insert(channel);
+        let number = self.writer.add_channel(schema, &topic.topic, &topic.message_encoding, &BTreeMap::new())?;
+        self.described.insert(number);
+        self.channels.push((topic.clone(), number));
+        Ok(number)
+    }
+
+    fn message(&mut self, topic: &ViewerTopic, ordinal: u64, data: &[u8]) -> Result<(), McapError> {
+        let channel = self.channel(topic)?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let header = MessageHeader {
             channel_id: channel,

@@ -20,7 +20,7 @@ use super::manifest::Manifest;
 use super::message::HexHash;
 use super::reader::read_at;
 use super::stretch::Stretches;
-use crate::pipeline::{Record, as_number, fields_of};
+use crate::pipeline::{Record, Report, as_number, fields_of};
 use crate::state::Hash;
 
 /// In front of every block.
@@ -80,9 +80,8 @@ pub(super) struct Piece {
 pub(super) struct Builder {
     first: u64,
     places: Vec<ChunkPlace>,
-    names: Vec<String>,
-    /// The numbers of each field, in the order of `names`.
-    fields: Vec<Vec<u64>>,
+    /// Of which columns are made once there is a block: a short log has none.
+    reports: Vec<Report>,
 }
 
 /// A number that is not there.
@@ -106,18 +105,8 @@ impl Builder {
         record: &Record,
         mark: impl FnOnce() -> Option<Mark>,
     ) -> Option<(Head, Vec<u8>)> {
-        let before = self.places.len();
         self.places.push(place);
-        for (name, value) in fields_of(&record.report) {
-            let known = self.names.iter().position(|known| *known == name);
-            let column = known.unwrap_or_else(|| {
-                self.names.push(name);
-                self.fields.push(vec![ABSENT; before]);
-                self.names.len() - 1
-            });
-            self.fields[column].push(number(&value));
-        }
-        self.fields.iter_mut().for_each(|column| column.resize(before + 1, ABSENT));
+        self.reports.push(record.report.clone());
         let bytes = place.at - self.places[0].at;
         let full = self.places.len() >= BLOCK_COMMITS || bytes >= BLOCK_BYTES;
         let mark = if full { mark()? } else { return None };
@@ -130,9 +119,9 @@ impl Builder {
             self.places.iter().map(|place| u64::from(place.bytes)).collect(),
             self.places.iter().map(|place| u64::from(place.pattern)).collect::<Vec<u64>>(),
         ];
-        let names = PLACES.iter().map(|name| (*name).to_owned()).chain(self.names);
+        let places = PLACES.map(str::to_owned).into_iter().zip(places);
         let (mut columns, mut data) = (Vec::new(), Vec::new());
-        for (name, column) in names.zip(places.into_iter().chain(self.fields)) {
+        for (name, column) in places.chain(numbers_of(&self.reports)) {
             let bytes: Vec<u8> = column.iter().flat_map(|number| number.to_le_bytes()).collect();
             columns.push(Column { name, blake3: HexHash(blake3::hash(&bytes)) });
             data.extend(bytes);
@@ -146,6 +135,23 @@ impl Builder {
         block.extend(data);
         (head, block)
     }
+}
+
+/// The fields of reports by name, each with its numbers.
+fn numbers_of(reports: &[Report]) -> Vec<(String, Vec<u64>)> {
+    let mut columns: Vec<(String, Vec<u64>)> = Vec::new();
+    for (row, report) in reports.iter().enumerate() {
+        for (name, value) in fields_of(report) {
+            let known = columns.iter().position(|(known, _)| *known == name);
+            let column = known.unwrap_or_else(|| {
+                columns.push((name, vec![ABSENT; row]));
+                columns.len() - 1
+            });
+            columns[column].1.push(number(&value));
+        }
+        columns.iter_mut().for_each(|(_, column)| column.resize(row + 1, ABSENT));
+    }
+    columns
 }
 
 /// Bytes of a block in front of its head: magic, length and hash.
@@ -292,8 +298,11 @@ impl Index {
             library: super::encoder::library(),
             channels: channels(&ledger),
             stretches,
-            mesh: piece(mesh)?,
-            displacement: piece(displacement)?,
+            mesh: Some(piece(mesh)?),
+            displacement: Some(piece(displacement)?),
+            // A thinned log has no index.
+            thinned: None,
+            kept_before: None,
         };
         Ok(Some((checkpoint, ledger)))
     }

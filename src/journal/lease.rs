@@ -18,6 +18,9 @@ use super::manifest::host;
 use super::still_ours::patiently;
 use crate::whole_file::{WholeFile, beside};
 
+/// Room for a lease, bytes: it is read with every commit.
+const USUAL: usize = 512;
+
 /// A lease is far shorter, though it takes a block of this size on a disk; whatever is there instead is not read whole.
 pub(super) const LONGEST: u64 = 4096;
 
@@ -173,7 +176,7 @@ pub(super) fn holder(path: &Path) -> io::Result<Option<Holder>> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         file => file?,
     };
-    let mut text = Vec::new();
+    let mut text = Vec::with_capacity(USUAL);
     File::take(file, LONGEST).read_to_end(&mut text)?;
     let text = String::from_utf8_lossy(&text);
     let mut lines = text.lines().map(str::to_owned);

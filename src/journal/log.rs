@@ -104,6 +104,8 @@ pub struct Log {
     pub(super) base: u64,
     /// Stages before the first that was read.
     pub(super) first: usize,
+    /// The last of those that has its state.
+    pub(super) kept_before: Option<usize>,
     pub(super) file_len: u64,
     /// Bytes of the file in memory; what lies behind them are a mesh and displacements from before.
     pub(super) walked: usize,
@@ -176,11 +178,13 @@ impl Log {
         self.lost_manifests().iter().filter(|lost| {
             let behind = &self.manifests()[lost.before..];
             let end = behind.first().map_or(self.commits() as u64, |next| next.first_ordinal);
+            // What is not in memory is not known to have the scene of another manifest.
+            let is_known = lost.ordinal >= end || self.entry(lost.ordinal as usize).is_some();
             let made = (lost.ordinal..end).filter_map(|ordinal| self.entry(ordinal as usize));
             let mut hashes: Vec<Hash> = made.map(|entry| entry.record.commit.scene_hash).collect();
             hashes.dedup();
             let scenes = || behind.iter().filter_map(|manifest| manifest.scene(&[]).ok());
-            behind.is_empty() || !hashes.iter().all(|hash| scenes().any(|scene| scene.hash() == *hash))
+            behind.is_empty() || !is_known || !hashes.iter().all(|hash| scenes().any(|scene| scene.hash() == *hash))
         })
     }
 
@@ -271,6 +275,11 @@ impl Log {
         self.file_len
     }
 
+    /// Whether the last byte of the file was read.
+    pub(super) fn reaches_end(&self) -> bool {
+        self.base + self.walked as u64 >= self.file_len
+    }
+
     /// Whether every byte up to the end of the good part is as it was written, and no manifest is lost: a run may go on right
     /// behind it.
     pub(super) fn is_clean(&self) -> bool {
@@ -299,6 +308,11 @@ impl Log {
         self.entry(index).is_some_and(|entry| entry.state.is_some())
     }
 
+    /// The last stage before stage `index` that has its state.
+    pub(super) fn kept_before(&self, index: usize) -> Option<usize> {
+        (self.first..index).rev().find(|before| self.keeps_state(*before)).or(self.kept_before)
+    }
+
     /// Which states a thinned log holds, in the words that it was thinned with; `None` for any other.
     pub fn thinned(&self) -> Option<&str> {
         self.thinned.as_deref()
@@ -314,8 +328,7 @@ impl Log {
             return Err(StateError::NoSuchStage { index, len: self.commits() });
         };
         let Some(place) = entry.state.clone() else {
-            let before = (self.first..index).rev().find(|before| self.keeps_state(*before));
-            return Err(StateError::NotKept { index, before });
+            return Err(StateError::NotKept { index, before: self.kept_before(index) });
         };
         let mesh = self.mesh(index)?;
         let bytes = &self.bytes[place];

@@ -47,7 +47,7 @@ pub struct LongLog {
 
 impl LongLog {
     /// Opens a log that is long enough to have an index; `None` for a shorter one, and for one that is damaged before its
-    /// end, which has to be read whole. Where the index is missing or does not fit, the log is read through, part by part.
+    /// end or was thinned, which has to be read whole. Where the index is missing or does not fit, the log is read through, part by part.
     ///
     /// # Errors
     /// Where the log cannot be read.
@@ -85,7 +85,8 @@ impl LongLog {
         };
         let mut builder = Builder::at(index.as_ref().map_or(0, Index::commits));
         let mut rewritten: Option<Rewritten> = None;
-        let tail = read_in_parts(&file, from, &mut ledger, |log, ledger| {
+        let is_thinned = |log: &Log| log.thinned().is_some();
+        let tail = read_in_parts(&file, from, &mut ledger, is_thinned, |log, ledger| {
             for entry in log.entries().iter().skip((builder.next() as usize).saturating_sub(log.first())) {
                 let Some(place) = ledger.chunks.get(builder.next() as usize) else { break };
                 if let Some((head, block)) = builder.push(*place, &entry.record, || mark(log, ledger, entry)) {
@@ -95,8 +96,7 @@ impl LongLog {
             }
             Ok(())
         })?;
-        let reaches_end = tail.closed || tail.base + tail.walked as u64 >= tail.file_len;
-        if tail.entries.is_empty() || !reaches_end {
+        if tail.entries.is_empty() || !(tail.closed || tail.reaches_end()) || is_thinned(&tail) {
             return Ok(None);
         }
         let index = rewritten.map_or(index, |rewritten| Some(rewritten.done(index_path)));

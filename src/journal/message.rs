@@ -68,7 +68,12 @@ pub struct MessageHash {
 impl MessageHash {
     /// The name of this data on this topic.
     pub fn of(topic: &str, data: &[u8]) -> Self {
-        Self { topic: topic.to_owned(), bytes: data.len() as u64, blake3: HexHash(blake3::hash(data)) }
+        Self::hashed(topic, data, blake3::hash(data))
+    }
+
+    /// The same where the hash of the data is known.
+    pub(super) fn hashed(topic: &str, data: &[u8], hash: Hash) -> Self {
+        Self { topic: topic.to_owned(), bytes: data.len() as u64, blake3: HexHash(hash) }
     }
 }
 

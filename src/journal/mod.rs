@@ -21,8 +21,9 @@
 //! | `ledger`, `summary`, `encoder`, `backend`, `writer` | from a stage to bytes in a file |
 //! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
 //! | `checkpoint`, `index`, `index_keeper`, `long` | a long log, of which only the end is read |
+//! | `portions` | a log of any length, read through without holding it |
 //! | `resume`, `recovery` | going on with a log, copying what is good of one |
-//! | `thin` | a log without some of its states |
+//! | `new_log`, `thin` | a log that is made of another, without some of its states |
 //! | `mending` | a log with stages put back that it had lost |
 //! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
 //! | `rewriting`, `agreement`, `verify` | all that can be checked, all of it |
@@ -44,6 +45,9 @@
 //! what they are asked for, and check the seals and hashes of what they read. The index is a cache: without it, or where it
 //! does not fit, the log is read through, in parts that fit in memory, and the index is written anew. [`verify()`] reads all
 //! of a log and none of its index.
+//!
+//! What goes through a log from front to back reads [`Portions`], of which one is in memory: [`recover()`], [`thin()`], tables and
+//! curves.
 //!
 //! [`thin()`] writes a log anew without the states between some load steps; commits and reports, and with them the chain,
 //! stay.
@@ -94,6 +98,8 @@ mod long;
 mod manifest;
 mod mending;
 pub mod message;
+mod new_log;
+mod portions;
 mod reader;
 mod recovery;
 mod resume;
@@ -119,6 +125,8 @@ pub use log::{Entry, Log, Note, StateError};
 pub use long::{LongLog, LongLogError};
 pub use manifest::{Manifest, ManifestError, SceneInLogError};
 pub use mending::MendError;
+pub use new_log::NewLogError;
+pub use portions::{Portion, Portions};
 pub use reader::ReadError;
 pub use recovery::{RecoverError, RecoverOutcome, recover, recover_mended};
 pub use resume::{Resume, ResumeError, Resumed};

@@ -91,9 +91,13 @@ impl Log {
         Ok(Log { walked: bytes.len(), bytes, file_len, ..Log::of(scan) })
     }
 
-    /// Reads `at_most` bytes of a log, from a commit in its middle on or from its start.
-    pub(super) fn read_on(file: &File, from: Option<&Checkpoint>, at_most: usize) -> std::io::Result<Log> {
-        let file_len = file.metadata()?.len();
+    /// Reads `at_most` bytes of the first `file_len` of a log, from a commit in its middle on or from its start.
+    pub(super) fn read_on(
+        file: &File,
+        file_len: u64,
+        from: Option<&Checkpoint>,
+        at_most: usize,
+    ) -> std::io::Result<Log> {
         let base = from.map_or(0, |from| from.at);
         let mut bytes = Vec::new();
         read_at(
@@ -106,8 +110,9 @@ impl Log {
         let mut scan = from.map_or_else(Scan::default, Scan::from);
         let mut pieces = Vec::new();
         if let Some(from) = from {
+            let stored = [(&mut scan.meshes, &from.mesh), (&mut scan.displacements, &from.displacement)];
             for (places, (hash, at, piece)) in
-                [(&mut scan.meshes, &from.mesh), (&mut scan.displacements, &from.displacement)]
+                stored.into_iter().filter_map(|(places, piece)| Some((places, piece.as_ref()?)))
             {
                 places.insert(*hash, bytes.len()..bytes.len() + piece.len());
                 pieces.push((bytes.len(), *at));
@@ -116,13 +121,15 @@ impl Log {
         }
         scan.run(&bytes[..walked], base + (walked as u64) < file_len);
         let first = from.map_or(0, |from| from.ordinal as usize);
-        Ok(Log { base, first, walked, pieces, bytes, file_len, ..Log::of(scan) })
+        let kept_before = from.and_then(|from| from.kept_before);
+        Ok(Log { base, first, kept_before, walked, pieces, bytes, file_len, ..Log::of(scan) })
     }
 
     fn of(scan: Scan) -> Log {
         Log {
             base: 0,
             first: 0,
+            kept_before: None,
             file_len: 0,
             walked: 0,
             pieces: Vec::new(),

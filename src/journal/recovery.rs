@@ -2,7 +2,7 @@
 //!
 //! The good records are put through a new writer, which then knows them all: same numbers, same times, same bytes.
 
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 use super::backend::Backend;
@@ -10,11 +10,9 @@ use super::damage::Completeness;
 use super::encoder::{EncodeError, Encoder};
 use super::frame;
 use super::log::{Kept, Log};
+use super::new_log::{BATCH_BYTES, NewLog, NewLogError};
+use super::portions::Portions;
 use super::reader::ReadError;
-use crate::whole_file::WholeFile;
-
-/// Bytes that are collected before they go to the new file.
-const BATCH_BYTES: usize = 1 << 20;
 
 pub(super) enum CopyError {
     Io(io::Error),
@@ -33,22 +31,18 @@ impl From<EncodeError> for CopyError {
     }
 }
 
-/// Puts the good records of a log through an encoder, all of them or those up to the first `keep` commits without the
-/// record of the end; `emit` gets the bytes in pieces of about a mebibyte.
-fn again<E: From<EncodeError>>(
-    log: &Log,
-    keep: Option<usize>,
-    encoder: &mut Encoder,
-    mut emit: impl FnMut(Vec<u8>) -> Result<(), E>,
-) -> Result<(), E> {
-    let mut pending = 0;
-    let mut commits = 0;
-    for part in &log.parts {
+/// Puts the good records of a log up to the first `keep` commits, without the record of the end, through an encoder to a file;
+/// gives back how many bytes they take.
+pub(super) fn copy(log: &Log, keep: usize, encoder: &mut Encoder, backend: &mut dyn Backend) -> Result<u64, CopyError> {
+    let (mut length, mut pending, mut commits) = (0, 0, 0);
+    let mut emit = |bytes: Vec<u8>| {
+        length += bytes.len() as u64;
+        backend.append(&bytes)
+    };
+    for part in log.parts.iter().filter(|part| part.kept != Kept::Finished) {
         commits += usize::from(part.kept == Kept::Commit);
-        match keep {
-            Some(keep) if commits > keep => break,
-            Some(_) if part.kept == Kept::Finished => continue,
-            _ => {}
+        if commits > keep {
+            break;
         }
         let Some(Ok(frame)) = frame::next(&log.bytes, part.at) else { continue };
         encoder.again(&log.bytes, &frame).map_err(EncodeError::Mcap)?;
@@ -58,21 +52,7 @@ fn again<E: From<EncodeError>>(
             pending = 0;
         }
     }
-    emit(encoder.take())
-}
-
-/// Puts the good records of a log through an encoder to a file; gives back how many bytes they take.
-pub(super) fn copy(
-    log: &Log,
-    keep: Option<usize>,
-    encoder: &mut Encoder,
-    backend: &mut dyn Backend,
-) -> Result<u64, CopyError> {
-    let mut length = 0;
-    again(log, keep, encoder, |bytes| {
-        length += bytes.len() as u64;
-        Ok::<(), CopyError>(backend.append(&bytes)?)
-    })?;
+    emit(encoder.take())?;
     Ok(length)
 }
 
@@ -102,36 +82,15 @@ pub enum RecoverOutcome {
     },
 }
 
-/// Why a log cannot be copied.
+/// Why a log cannot be recovered.
 #[derive(Debug, thiserror::Error)]
 pub enum RecoverError {
     /// The log cannot be read at all.
     #[error(transparent)]
-    Read(ReadError),
-    /// There is a file where the copy should go.
-    #[error("{new} exists and is not overwritten: choose another name for the copy")]
-    Exists {
-        /// The copy.
-        new: String,
-    },
-    /// The copy cannot be written.
-    #[error("cannot write {new}; the log itself is as it was")]
-    Write {
-        /// The copy.
-        new: String,
-        /// What the system says.
-        #[source]
-        source: io::Error,
-    },
-    /// MCAP refused a record of the log.
-    #[error("cannot write {new} anew from the log, which is as it was")]
-    Encode {
-        /// The copy.
-        new: String,
-        /// Why not.
-        #[source]
-        source: EncodeError,
-    },
+    Read(#[from] ReadError),
+    /// The copy cannot be made.
+    #[error(transparent)]
+    New(#[from] NewLogError),
 }
 
 /// Copies what is good of a log to a new file, with the summary that viewers look for.
@@ -150,49 +109,62 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> 
 pub fn recover_mended(
     path: &Path,
     new: &Path,
-    mend: impl FnOnce(&Log) -> Option<Log>,
+    mut mend: impl FnMut(&Log) -> Option<Log>,
 ) -> Result<RecoverOutcome, RecoverError> {
-    let log = match Log::read(path) {
-        Ok(log) => log,
-        Err(error @ ReadError::Io { .. }) => return Err(RecoverError::Read(error)),
-        Err(error) => return Ok(RecoverOutcome::Hopeless { why: error.to_string() }),
-    };
-    let mended = if log.later_commits().is_empty() { None } else { mend(&log) };
-    let log = mended.unwrap_or(log);
-    let commits = log.entries().len() as u64;
+    let mut portions = Portions::of(path)?;
+    let mut copy: Option<NewLog> = None;
+    loop {
+        let portion = match portions.read() {
+            Ok(portion) => portion,
+            Err(error @ ReadError::Io { .. }) => return Err(error.into()),
+            Err(error) => return Ok(RecoverOutcome::Hopeless { why: error.to_string() }),
+        };
+        if !portion.log().later_commits().is_empty()
+            && let Some(mended) = mend(&Log::read(path)?)
+        {
+            drop(copy);
+            let copy = copy_whole(&mended, new)?;
+            return Ok(outcome(&mended, copy)?);
+        }
+        let log = portion.log();
+        let finished = log.completeness() == Completeness::Finished;
+        let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
+        let mut good = match (copy, loss) {
+            (Some(copy), _) => copy,
+            (None, Some(why)) if log.commits() == 0 => return Ok(RecoverOutcome::Hopeless { why }),
+            (None, _) => NewLog::begin(new, &log.library)?,
+        };
+        for part in portion.parts().iter().filter(|part| finished || part.kept != Kept::Finished) {
+            good.add(log, part, |_| true)?;
+        }
+        match portion.into_end() {
+            Some(log) => return Ok(outcome(&log, good)?),
+            None => copy = Some(good),
+        }
+    }
+}
+
+/// A copy of all that is good of a log.
+fn copy_whole(log: &Log, new: &Path) -> Result<NewLog, NewLogError> {
     let finished = log.completeness() == Completeness::Finished;
+    let mut good = NewLog::begin(new, &log.library)?;
+    for part in log.parts.iter().filter(|part| finished || part.kept != Kept::Finished) {
+        good.add(log, part, |_| true)?;
+    }
+    Ok(good)
+}
+
+/// Gives the copy its name; says what it lacks of a log that was read to its end.
+fn outcome(log: &Log, copy: NewLog) -> Result<RecoverOutcome, NewLogError> {
+    let (commits, later_commits) = (log.commits() as u64, log.later_commits().len() as u64);
+    copy.finish(log.commits())?;
+    let dropped = log.file_len() - log.good_end();
+    let finished = log.completeness() == Completeness::Finished;
+    let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
     let lost_manifest = log.missed_manifests().next().map(ToString::to_string);
     let lost_manifest = lost_manifest.or(log.unused_manifest().map(|note| note.text.clone()));
-    let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
-    if let (0, Some(why)) = (commits, &loss) {
-        return Ok(RecoverOutcome::Hopeless { why: why.clone() });
-    }
-    write_good(&log, finished, new).map_err(|error| {
-        let new = new.display().to_string();
-        match error {
-            CopyError::Io(source) if source.kind() == io::ErrorKind::AlreadyExists => RecoverError::Exists { new },
-            CopyError::Io(source) => RecoverError::Write { new, source },
-            CopyError::Encode(source) => RecoverError::Encode { new, source },
-        }
-    })?;
-    let later_commits = log.later_commits().len() as u64;
-    let dropped = log.file_len() - log.good_end();
     Ok(match loss.or(lost_manifest) {
         Some(why) => RecoverOutcome::Lossy { commits, dropped, later_commits, why },
         None => RecoverOutcome::Lossless { commits },
     })
-}
-
-/// What is good of a log as a file of its own, which is whole or not there.
-fn write_good(log: &Log, finished: bool, new: &Path) -> Result<(), CopyError> {
-    // Asked again when it comes to its name; here it spares the work.
-    if new.symlink_metadata().is_ok() {
-        return Err(CopyError::Io(io::ErrorKind::AlreadyExists.into()));
-    }
-    let whole = WholeFile::beside(new)?;
-    let mut encoder = Encoder::new(&log.library).map_err(EncodeError::Mcap)?;
-    let keep = (!finished).then_some(log.entries().len());
-    again(log, keep, &mut encoder, |bytes| Ok::<(), CopyError>(whole.file().write_all(&bytes)?))?;
-    encoder.close(log.commits() as u64, |piece| whole.file().write_all(&piece))?;
-    Ok(whole.keep_as(new)?)
 }

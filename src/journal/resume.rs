@@ -227,7 +227,7 @@ impl Resume {
         let failed = |source| ResumeError::Copy { log: name.clone(), path: format!("a copy of {name}"), source };
         let mut backend = FileBackend::copy_of(&path).map_err(failed)?;
         let mut encoder = Encoder::new(&library()).map_err(|source| begin(source.into()))?;
-        let copied = copy(&log, Some(keep), &mut encoder, &mut backend).and_then(|length| {
+        let copied = copy(&log, keep, &mut encoder, &mut backend).and_then(|length| {
             encoder.manifest(manifest)?;
             let bytes = encoder.take();
             backend.append(&bytes)?;

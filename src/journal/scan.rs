@@ -72,6 +72,7 @@ impl Scan {
             channels: checkpoint.channels.clone(),
             header: Some((PROFILE.to_owned(), checkpoint.library.clone())),
             stretches: checkpoint.stretches.clone(),
+            thinned: checkpoint.thinned.clone(),
             ..Self::default()
         }
     }

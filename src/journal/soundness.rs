@@ -101,8 +101,13 @@ pub enum Flaw {
     },
 }
 
-fn finite(what: &'static str, values: impl IntoIterator<Item = f64>) -> Result<(), Flaw> {
-    match values.into_iter().enumerate().find(|(_, value)| !value.is_finite()) {
+fn finite(what: &'static str, values: impl IntoIterator<Item = f64, IntoIter: Clone>) -> Result<(), Flaw> {
+    let values = values.into_iter();
+    // Many are looked at side by side where nothing stops at the first.
+    if values.clone().fold(true, |all, value| all & value.is_finite()) {
+        return Ok(());
+    }
+    match values.enumerate().find(|(_, value)| !value.is_finite()) {
         Some((index, value)) => Err(Flaw::NotFinite { what, index, value }),
         None => Ok(()),
     }
@@ -154,6 +159,11 @@ pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
 /// The first flaw.
 pub fn check_state(state: &State) -> Result<(), Flaw> {
     check_mesh(&state.mesh)?;
+    check_on_mesh(state)
+}
+
+/// The same of a state whose mesh is sound.
+pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
     if let Some(refined) = &state.refined {
         check_mesh(refined)?;
         for way in 0..2 {
@@ -179,7 +189,7 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
     if state.displacement.len() != expected {
         return Err(Flaw::Length { what: "displacements", expected, found: state.displacement.len() });
     }
-    finite("displacement component", state.displacement.iter().flatten().copied())?;
+    finite("displacement component", state.displacement.as_flattened().iter().copied())?;
     finite("rotation", [state.parameter])?;
     finite("moment", [state.moment_n_mm])?;
     finite("turn", state.turns.iter().flatten().copied())?;
@@ -192,7 +202,7 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
         if previous.displacement.len() != expected {
             return Err(Flaw::Length { what: "displacements before", expected, found: previous.displacement.len() });
         }
-        finite("displacement component before", previous.displacement.iter().flatten().copied())?;
+        finite("displacement component before", previous.displacement.as_flattened().iter().copied())?;
         finite("rotation before", [previous.parameter])?;
     }
     if let Some(path) = &state.path {

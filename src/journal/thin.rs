@@ -6,17 +6,15 @@
 //! was dropped.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
-use std::io;
 use std::path::Path;
 
-use super::encoder::{EncodeError, Encoder};
 use super::format::THINNED;
-use super::frame;
 use super::log::{Kept, Log};
+use super::new_log::{NewLog, NewLogError};
+use super::portions::{Portion, Portions};
 use super::reader::ReadError;
 use super::stretch::LostManifest;
 use crate::state::Hash;
-use crate::whole_file::WholeFile;
 
 /// What became of a log that was thinned.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,24 +54,12 @@ pub enum ThinError {
         /// Its manifest.
         lost: LostManifest,
     },
-    /// There is a file where the new log should go.
-    #[error("{new} exists and is not overwritten: choose another name")]
-    Exists {
-        /// The new log.
-        new: String,
-    },
-    /// The new log cannot be written.
-    #[error("cannot write {new}; the log itself is as it was")]
-    Write {
-        /// The new log.
-        new: String,
-        /// What the system says.
-        #[source]
-        source: io::Error,
-    },
-    /// MCAP refused a record of the log.
-    #[error("the log cannot be written anew")]
-    Encode(#[from] EncodeError),
+    /// Something has written over it meanwhile.
+    #[error("it was changed while it was read, and nothing was written: thin it again when nothing else writes to it")]
+    Changed,
+    /// The new log cannot be made.
+    #[error(transparent)]
+    New(#[from] NewLogError),
 }
 
 /// Writes a log anew with the states that end the load steps which `keeps` takes, and the last one; `kept_as` says in words
@@ -82,7 +68,22 @@ pub enum ThinError {
 /// # Errors
 /// Where the log cannot be read or is damaged, or the new one exists or cannot be written.
 pub fn thin(path: &Path, new: &Path, kept_as: &str, keeps: impl Fn(u64) -> bool) -> Result<Thinned, ThinError> {
-    let log = Log::read(path)?;
+    let mut portions = Portions::of(path)?;
+    let (mut needed, mut states, mut steps, mut last_step) = (HashSet::new(), 0, BTreeSet::new(), 0);
+    let log = loop {
+        let portion = portions.read()?;
+        for (place, entry) in portion.entries().iter().enumerate() {
+            last_step = entry.record.report.step;
+            if keeps_state(portion.log(), place, &keeps) {
+                needed.extend([entry.mesh_hash, entry.displacement_hash]);
+                steps.insert(last_step);
+                states += 1;
+            }
+        }
+        if let Some(log) = portion.into_end() {
+            break log;
+        }
+    };
     let unused = log.unused_manifest().map(|note| note.text.clone());
     if let Some(why) = log.problems().first().map(ToString::to_string).or(unused) {
         return Err(ThinError::NotWhole { why });
@@ -90,37 +91,28 @@ pub fn thin(path: &Path, new: &Path, kept_as: &str, keeps: impl Fn(u64) -> bool)
     if let Some(lost) = log.missed_manifests().next() {
         return Err(ThinError::SceneLost { log: path.display().to_string(), lost: *lost });
     }
-    let name = new.display().to_string();
-    let failed = |source: io::Error| match source.kind() {
-        io::ErrorKind::AlreadyExists => ThinError::Exists { new: name.clone() },
-        _ => ThinError::Write { new: name.clone(), source },
-    };
-    if new.symlink_metadata().is_ok() {
-        return Err(failed(io::ErrorKind::AlreadyExists.into()));
-    }
-    let kept = kept_states(&log, keeps);
-    let dropped = dropped_messages(&log, &kept);
-    let whole = WholeFile::beside(new).map_err(failed)?;
-    let emit = |bytes: Vec<u8>| io::Write::write_all(&mut whole.file(), &bytes);
+    let mut thinned = NewLog::begin(new, &log.library)?;
+    let (commits, last) = (log.commits(), log.last_commit().copied());
+    drop(log);
 
-    let mut encoder = Encoder::new(&log.library).map_err(EncodeError::Mcap)?;
     let mut is_marked = false;
-    for part in &log.parts {
-        let Some(Ok(record)) = frame::next(&log.bytes, part.at) else { continue };
-        encoder.again_if(&log.bytes, &record, |data| !dropped.contains(&data)).map_err(EncodeError::Mcap)?;
-        if part.kept == Kept::Manifest && !is_marked {
-            encoder.metadata(&marker(kept_as)).map_err(EncodeError::Mcap)?;
-            is_marked = true;
+    loop {
+        let portion = portions.read()?;
+        let dropped = dropped_messages(&portion, &needed, &keeps);
+        for part in portion.parts() {
+            thinned.add(portion.log(), part, |data| !dropped.contains(&data))?;
+            if part.kept == Kept::Manifest && !is_marked {
+                thinned.metadata(&marker(kept_as))?;
+                is_marked = true;
+            }
         }
-        emit(encoder.take()).map_err(failed)?;
+        let Some(log) = portion.into_end() else { continue };
+        if log.last_commit().copied() != last || !log.problems().is_empty() {
+            return Err(ThinError::Changed);
+        }
+        let bytes = [log.file_len(), thinned.finish(commits)?];
+        return Ok(Thinned { commits, states, steps, last_step, bytes });
     }
-    encoder.close(log.commits() as u64, emit).map_err(failed)?;
-    let length = whole.file().metadata().map_err(failed)?.len();
-    whole.keep_as(new).map_err(failed)?;
-    let step = |index: &usize| log.entries()[*index].record.report.step;
-    let (steps, last_step) =
-        (kept.iter().map(step).collect(), log.entries().len().checked_sub(1).as_ref().map_or(0, step));
-    Ok(Thinned { commits: log.commits(), states: kept.len(), steps, last_step, bytes: [log.file_len(), length] })
 }
 
 fn marker(kept_as: &str) -> mcap::records::Metadata {
@@ -128,28 +120,21 @@ fn marker(kept_as: &str) -> mcap::records::Metadata {
     mcap::records::Metadata { name: THINNED.to_owned(), metadata }
 }
 
-/// Stages whose states stay: of those that have one, the last stage of every step that is kept, and the last of all.
-fn kept_states(log: &Log, keeps: impl Fn(u64) -> bool) -> HashSet<usize> {
-    let entries = log.entries();
-    let step = |index: usize| entries[index].record.report.step;
-    let last = entries.len().saturating_sub(1);
-    let ends_step = |index: usize| index == last || step(index + 1) != step(index);
-    (0..entries.len())
-        .filter(|index| log.keeps_state(*index) && ends_step(*index) && (*index == last || keeps(step(*index))))
-        .collect()
+/// Whether the state of an entry stays: of those that have one, that of the last stage of every step that is kept, and the last
+/// of all.
+fn keeps_state(log: &Log, place: usize, keeps: impl Fn(u64) -> bool) -> bool {
+    let step = |place: usize| log.entries.get(place).map(|entry| entry.record.report.step);
+    let ends_step = step(place) != step(place + 1);
+    let is_last = place + 1 == log.entries.len();
+    log.entries[place].state.is_some() && ends_step && (is_last || step(place).is_some_and(keeps))
 }
 
-/// First bytes of the messages that go.
-fn dropped_messages(log: &Log, kept: &HashSet<usize>) -> HashSet<usize> {
-    let mut needed: HashSet<Hash> = HashSet::new();
-    let mut dropped = HashSet::new();
-    for (index, entry) in log.entries().iter().enumerate() {
-        match kept.contains(&index) {
-            true => needed.extend([entry.mesh_hash, entry.displacement_hash]),
-            false => dropped.extend(entry.state.as_ref().map(|place| place.start)),
-        }
-    }
+/// First bytes of the messages of a portion that go: states, and meshes and displacements that no kept state stands on.
+fn dropped_messages(portion: &Portion, needed: &HashSet<Hash>, keeps: impl Fn(u64) -> bool) -> HashSet<usize> {
+    let log = portion.log();
+    let go = (0..portion.entries().len()).filter(|place| !keeps_state(log, *place, &keeps));
+    let states = go.filter_map(|place| log.entries[place].state.as_ref()).map(|state| state.start);
     let messages = log.meshes.iter().chain(&log.displacements);
-    dropped.extend(messages.filter(|(hash, _)| !needed.contains(*hash)).map(|(_, place)| place.start));
-    dropped
+    let unneeded = messages.filter(|(hash, _)| !needed.contains(*hash)).map(|(_, message)| message.start);
+    states.chain(unneeded).collect()
 }

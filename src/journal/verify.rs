@@ -39,7 +39,7 @@ pub struct Finding {
 /// Checks a log: framing, checksums, seals, the hash of every message, the chain, the content hash and soundness of
 /// every state and mesh, reports against their states, manifests, completeness, and that the bytes between are those that the writer would write.
 ///
-/// A long log is checked part by part; one that is damaged before its end, or was thinned, is read whole.
+/// A long log is checked part by part; one that is damaged before its end is read whole.
 pub fn verify(path: &Path) -> Vec<Finding> {
     if let Ok(Some(findings)) = verify_in_parts(path) {
         return findings;
@@ -65,12 +65,14 @@ fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
         bytes
     };
     let mut ledger = Ledger::default();
-    let mut found = Vec::new();
+    let (mut found, mut kept) = (Vec::new(), 0);
     let mut rewriting: Option<Rewriting<_>> = None;
-    let tail = read_in_parts(&file, None, &mut ledger, |part, _| {
+    let to_its_end = |_: &Log| false;
+    let tail = read_in_parts(&file, None, &mut ledger, to_its_end, |part, _| {
         let last = part.entries.len().saturating_sub(1);
         // The last commit of a part is the first of the next.
         found.extend(states(part, 0..last));
+        kept += kept_in(&part.entries[..last]);
         let written = rewriting.take().map_or_else(|| Rewriting::new(&part.library, &theirs).ok(), Some);
         rewriting = written.and_then(|mut written| {
             let end = part.entries.last().map_or(0, |entry| (entry.bytes.start - part.base) as usize);
@@ -78,11 +80,11 @@ fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
         });
         Ok(())
     })?;
-    let reaches_end = tail.closed || tail.base + tail.walked as u64 >= tail.file_len;
-    if tail.entries.is_empty() || !reaches_end || !tail.is_clean() || tail.thinned().is_some() {
+    if tail.entries.is_empty() || !(tail.closed || tail.reaches_end()) || !tail.is_clean() {
         return Ok(None);
     }
     let mut findings = of_the_whole(&tail);
+    findings.extend(states_kept(&tail, kept + kept_in(&tail.entries[tail.entries.len() - 1..])));
     findings.extend(found);
     findings.extend(states(&tail, tail.entries.len() - 1..tail.entries.len()));
     if let (true, Some(mut rewriting)) = (tail.problems().is_empty(), rewriting) {
@@ -99,7 +101,7 @@ fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
 /// Checks a log that was read; see [`verify`].
 pub fn verify_log(log: &Log) -> Vec<Finding> {
     let mut findings = of_the_whole(log);
-    findings.extend(states_kept(log));
+    findings.extend(states_kept(log, kept_in(log.entries())));
     findings.extend(states(log, 0..log.entries().len()));
     findings.extend(bytes_between(log));
     findings
@@ -185,10 +187,14 @@ fn completeness(log: &Log) -> Finding {
     finding(level, "log", text)
 }
 
-/// That states are missing: as it was meant, or not.
-fn states_kept(log: &Log) -> Option<Finding> {
-    let all = log.entries().len();
-    let states = (0..all).filter(|index| log.keeps_state(*index)).count();
+/// How many entries have their state.
+fn kept_in(entries: &[Entry]) -> usize {
+    entries.iter().filter(|entry| entry.state.is_some()).count()
+}
+
+/// That a log has no more than so many states: as it was meant, or not.
+fn states_kept(log: &Log, states: usize) -> Option<Finding> {
+    let all = log.commits();
     match log.thinned() {
         Some(kept) => {
             Some(finding(Level::Info, "log", format!("thinned ({kept}): {states} of {all} stages have their state")))

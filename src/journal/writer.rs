@@ -324,17 +324,14 @@ impl JournalWriter {
         self.backend.check(self.length, self.commits()).is_ok()
     }
 
-    /// Keeps a stage: one commit, one write, and a sync where the policy asks for it.
+    /// Keeps a stage: one commit, one write, and a sync where the policy asks for it. The state is held against the hash that
+    /// the commit names.
     ///
     /// # Errors
     /// Where it could not be kept. The log is good up to the last commit, and takes no more.
     pub fn commit(&mut self, state: &State, record: &Record) -> Result<(), WriteError> {
-        if self.given_up {
-            return Err(WriteError::GivenUp { log: self.log.clone(), commits: self.commits() });
-        }
-        let kept = self.keep(state, record);
-        self.given_up = kept.is_err();
-        kept
+        let found = state.hash_on(self.mesh_hash.of(&state.mesh));
+        self.keep(state, record, found)
     }
 
     /// Ends the log of a run that reached its end: a record that says so, MCAP's summary, and a sync. Where there is no
@@ -377,7 +374,17 @@ impl JournalWriter {
         self.last.map_or(0, |last| last.ordinal + 1)
     }
 
-    fn keep(&mut self, state: &State, record: &Record) -> Result<(), WriteError> {
+    /// Keeps a stage whose state has this hash.
+    fn keep(&mut self, state: &State, record: &Record, state_hash: Hash) -> Result<(), WriteError> {
+        if self.given_up {
+            return Err(WriteError::GivenUp { log: self.log.clone(), commits: self.commits() });
+        }
+        let kept = self.write(state, record, state_hash);
+        self.given_up = kept.is_err();
+        kept
+    }
+
+    fn write(&mut self, state: &State, record: &Record, state_hash: Hash) -> Result<(), WriteError> {
         let commit = &record.commit;
         let ordinal = commit.ordinal;
         let parent = self.last.map_or(commit.parent_hash, |last| last.state_hash);
@@ -385,11 +392,10 @@ impl JournalWriter {
         if *commit != Commit::next(self.last.as_ref(), stage, step, scene, parent, commit.state_hash) {
             return Err(WriteError::NotNext { found: ordinal, commits: self.commits(), log: self.log.clone() });
         }
-        let mesh_hash = self.mesh_hash.of(&state.mesh);
-        let found = state.hash_on(mesh_hash);
-        if found != commit.state_hash {
-            return Err(WriteError::StateHash { ordinal, expected: commit.state_hash, found });
+        if state_hash != commit.state_hash {
+            return Err(WriteError::StateHash { ordinal, expected: commit.state_hash, found: state_hash });
         }
+        let mesh_hash = self.mesh_hash.of(&state.mesh);
         let viewer = self.viewer.as_mut().map(|topics| topics.messages(state, record)).unwrap_or_default();
         let encoded = (|| {
             let mesh = if self.known.contains(&mesh_hash) { None } else { Some(encode_mesh(&state.mesh)?) };
@@ -471,7 +477,8 @@ impl JournalWriter {
 
 impl Sink for JournalWriter {
     fn take(&mut self, state: &State, record: &Record) -> Result<(), SinkError> {
-        Ok(self.commit(state, record)?)
+        // The loop has just hashed the state to make the commit: hashing it again would be a quarter of all that this costs.
+        Ok(self.keep(state, record, record.commit.state_hash)?)
     }
 }
 

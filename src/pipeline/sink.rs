@@ -16,7 +16,8 @@ pub struct SinkError {
 
 /// Sees every finished stage, in order.
 pub trait Sink {
-    /// Takes a stage; when this returns, the stage is as safe as this sink makes it.
+    /// Takes a stage, whose commit names the hash of this very state; when this returns, the stage is as safe as this sink makes
+    /// it.
     ///
     /// # Errors
     /// Where the stage could not be kept; the loop stops, and the stages taken before stand.

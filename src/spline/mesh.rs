@@ -84,9 +84,7 @@ impl Mesh {
             feed.numbers(&self.knots[k]);
         }
         feed.integer(self.control_points.len() as u64);
-        for point in &self.control_points {
-            point.iter().for_each(|value| feed.number(*value));
-        }
+        feed.each(self.control_points.as_flattened());
         feed.finish()
     }
 }

@@ -86,7 +86,7 @@ impl Ordinary {
 }
 
 /// Runs a command to its end: exit code, peak of its memory and what it says.
-fn measured(place: &Place, arguments: &str) -> (Option<i32>, u64, String) {
+pub fn measured(place: &Place, arguments: &str) -> (Option<i32>, u64, String) {
     let mut command = place.command(arguments);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let mut stderr = child.stderr.take().unwrap();

@@ -55,7 +55,7 @@ const LARGE_N_MM: f64 = 1.0e6;
 
 /// A log of so many commits: states near the third of a real run, and at the end that one itself, so that the program goes on
 /// from there. Three quarters on stands a large moment.
-fn write_long(path: &Path, commits: u64) {
+pub fn write_long(path: &Path, commits: u64) {
     let scene = scene(SCENE);
     let stages = Stages::new(scene.clone());
     let start = stages.start().unwrap();
@@ -64,6 +64,7 @@ fn write_long(path: &Path, commits: u64) {
     let (real, record) = sink.stages.pop().unwrap();
     let manifest = Manifest::here(Path::new("long.toml"), SCENE, 1);
     let mut writer = JournalWriter::create(path, &manifest, SyncPolicy::AtEnd).unwrap();
+    let scene_hash = scene.hash();
     let (mut previous, mut parent): (Option<Commit>, _) = (None, start.hash());
     for ordinal in 0..commits {
         let mut state = State { step: ordinal + 1, ..real.clone() };
@@ -79,7 +80,7 @@ fn write_long(path: &Path, commits: u64) {
         }
         report.moment_n_mm = state.moment_n_mm;
         let hash = state.hash();
-        let commit = Commit::next(previous.as_ref(), report.stage, report.step, scene.hash(), parent, hash);
+        let commit = Commit::next(previous.as_ref(), report.stage, report.step, scene_hash, parent, hash);
         writer.commit(&state, &Record { report, commit, wall_s: 0.01 }).unwrap();
         (previous, parent) = (Some(commit), hash);
     }

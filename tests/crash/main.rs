@@ -13,6 +13,7 @@ mod kill;
 mod long;
 mod memory;
 mod mending;
+mod portions;
 mod power;
 mod resume;
 mod shim;

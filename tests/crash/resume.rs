@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use foldline::journal::{
-    Completeness, JournalWriter, Level, LockError, Log, RecoverError, RecoverOutcome, Resume, ResumeError, WriteError,
-    recover, verify,
+    Completeness, JournalWriter, Level, LockError, Log, NewLogError, RecoverError, RecoverOutcome, Resume, ResumeError,
+    WriteError, recover, verify,
 };
 use foldline::pipeline::Record;
 use foldline::scene::SyncPolicy;
@@ -139,7 +139,7 @@ fn what_damage_costs_is_kept_beside_the_log() {
     assert!(matches!(outcome, RecoverOutcome::Lossy { commits: 4, later_commits: 4, .. }), "{outcome:?}");
     assert_faultless(&copy);
     assert_prefix(&Log::read(&copy).unwrap(), &run);
-    assert!(matches!(recover(&path, &copy), Err(RecoverError::Exists { .. })));
+    assert!(matches!(recover(&path, &copy), Err(RecoverError::New(NewLogError::Exists { .. }))));
 
     let resumed = JournalWriter::resume(&path, &synthetic::manifest(), SyncPolicy::AtEnd).unwrap();
     let dropped = fs::read(resumed.dropped.as_ref().unwrap()).unwrap();

@@ -4,11 +4,19 @@
 //! cargo test --release --test restart cost -- --ignored --nocapture
 //! ```
 
+use std::fs;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use foldline::journal::{JournalWriter, Manifest};
-use foldline::pipeline::{MemorySink, Run, Stages};
+use foldline::pipeline::{MemorySink, Run, Sink, Stages};
 use foldline::scene::SyncPolicy;
+
+/// How often the log is written under each policy; the policies take turns.
+const ROUNDS: usize = 15;
+
+const POLICIES: [(&str, SyncPolicy); 3] =
+    [("at-end", SyncPolicy::AtEnd), ("each-second", SyncPolicy::EachSecond), ("each-stage", SyncPolicy::EachStage)];
 
 /// The stages of a run are made first and written afterwards, so that each is timed without the other.
 #[test]
@@ -24,23 +32,35 @@ fn the_journal_beside_the_run() {
     println!("the run: {run:?}, {} stages", sink.stages.len());
 
     let folder = tempfile::tempdir().unwrap();
-    for (name, policy) in
-        [("at-end", SyncPolicy::AtEnd), ("each-second", SyncPolicy::EachSecond), ("each-stage", SyncPolicy::EachStage)]
-    {
-        let path = folder.path().join(format!("{name}.mcap"));
-        let manifest = Manifest::here(&path, &scene.to_toml(), 2);
-        let mut writer = JournalWriter::create(&path, &manifest, policy).unwrap();
-        let (began, mut longest) = (Instant::now(), Duration::ZERO);
-        for (state, record) in &sink.stages {
-            let began = Instant::now();
-            writer.commit(state, record).unwrap();
-            longest = longest.max(began.elapsed());
+    let mut times = POLICIES.map(|_| [Vec::new(), Vec::new()]);
+    for round in 0..ROUNDS {
+        for ((name, policy), [wall, cpu]) in POLICIES.iter().zip(&mut times) {
+            let path = folder.path().join(format!("{name}-{round}.mcap"));
+            let manifest = Manifest::here(&path, &scene.to_toml(), 2);
+            let (began, cpu_began) = (Instant::now(), on_cpu());
+            let mut writer = JournalWriter::create(&path, &manifest, *policy).unwrap();
+            for (state, record) in &sink.stages {
+                writer.take(state, record).unwrap();
+            }
+            writer.finish().unwrap();
+            wall.push(began.elapsed());
+            cpu.push(on_cpu() - cpu_began);
+            fs::remove_file(path).unwrap();
         }
-        let commits = began.elapsed();
-        writer.finish().unwrap();
-        let (all, megabytes) = (began.elapsed(), std::fs::metadata(&path).unwrap().len() as f64 / 1e6);
-        let share = |time: Duration| 100.0 * time.as_secs_f64() / run.as_secs_f64();
-        println!("{name}: commits {commits:?} ({:.2} %), with the end {all:?} ({:.2} %)", share(commits), share(all));
-        println!("    longest commit {longest:?}; {megabytes:.2} MB");
     }
+    for ((name, _), times) in POLICIES.iter().zip(&mut times) {
+        let [wall, cpu] = times.each_mut().map(|times| {
+            times.sort();
+            let median = times[ROUNDS / 2];
+            let share = 100.0 * median.as_secs_f64() / run.as_secs_f64();
+            format!("{median:?} ({:?} a stage, {share:.2} % of the run)", median / sink.stages.len() as u32)
+        });
+        println!("{name}: wall {wall}, on the processor {cpu}");
+    }
+}
+
+/// Time that this thread has had a processor.
+fn on_cpu() -> Duration {
+    let told = fs::read_to_string(Path::new("/proc/thread-self/schedstat")).unwrap_or_default();
+    Duration::from_nanos(told.split(' ').next().and_then(|nanos| nanos.parse().ok()).unwrap_or(0))
 }

@@ -1,0 +1,107 @@
+//! A log that is made of another: whole or not there.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use mcap::records::Metadata;
+
+use super::encoder::{EncodeError, Encoder};
+use super::frame;
+use super::log::{Log, Part};
+use crate::whole_file::WholeFile;
+
+/// Bytes that are collected before they go to the new file.
+pub(super) const BATCH_BYTES: usize = 1 << 20;
+
+/// Why a new log cannot be made of another.
+#[derive(Debug, thiserror::Error)]
+pub enum NewLogError {
+    /// There is a file where it should go.
+    #[error("{new} exists and is not overwritten: choose another name")]
+    Exists {
+        /// The new log.
+        new: String,
+    },
+    /// It cannot be written.
+    #[error("cannot write {new}; the log itself is as it was")]
+    Write {
+        /// The new log.
+        new: String,
+        /// What the system says.
+        #[source]
+        source: io::Error,
+    },
+    /// MCAP refused a record of the log.
+    #[error("cannot write {new} anew from the log, which is as it was")]
+    Encode {
+        /// The new log.
+        new: String,
+        /// Why not.
+        #[source]
+        source: EncodeError,
+    },
+}
+
+/// A log that is being made. Dropped, it is as if it had never been.
+pub(super) struct NewLog {
+    target: PathBuf,
+    file: WholeFile,
+    encoder: Encoder,
+    pending: usize,
+}
+
+impl NewLog {
+    /// A new log without commits, whose header names `library`.
+    pub fn begin(target: &Path, library: &str) -> Result<Self, NewLogError> {
+        // Asked again when it comes to its name; here it spares the work.
+        if target.symlink_metadata().is_ok() {
+            return Err(not_written(target)(io::ErrorKind::AlreadyExists.into()));
+        }
+        let file = WholeFile::beside(target).map_err(not_written(target))?;
+        let encoder = Encoder::new(library).map_err(|source| refused(target)(source.into()))?;
+        Ok(Self { target: target.to_owned(), file, encoder, pending: 0 })
+    }
+
+    /// Adds a part of the other log, without the messages whose data begins at a place that `keeps` does not take.
+    pub fn add(&mut self, log: &Log, part: &Part, keeps: impl Fn(usize) -> bool) -> Result<(), NewLogError> {
+        let Some(Ok(record)) = frame::next(&log.bytes, part.at) else { return Ok(()) };
+        let added = self.encoder.again_if(&log.bytes, &record, keeps);
+        added.map_err(|source| refused(&self.target)(source.into()))?;
+        self.pending += part.end - part.at;
+        if self.pending >= BATCH_BYTES { self.write() } else { Ok(()) }
+    }
+
+    /// Adds a record that says something about the log.
+    pub fn metadata(&mut self, record: &Metadata) -> Result<(), NewLogError> {
+        self.encoder.metadata(record).map_err(|source| refused(&self.target)(source.into()))
+    }
+
+    /// Ends the log with the summary that viewers look for, and gives it its name; gives back its length, bytes.
+    pub fn finish(mut self, commits: usize) -> Result<u64, NewLogError> {
+        self.write()?;
+        let Self { target, file, encoder, .. } = self;
+        let kept = encoder.close(commits as u64, |piece| file.file().write_all(&piece)).and_then(|()| {
+            let length = file.file().metadata()?.len();
+            file.keep_as(&target).map(|()| length)
+        });
+        kept.map_err(not_written(&target))
+    }
+
+    fn write(&mut self) -> Result<(), NewLogError> {
+        self.pending = 0;
+        self.file.file().write_all(&self.encoder.take()).map_err(not_written(&self.target))
+    }
+}
+
+fn not_written(target: &Path) -> impl Fn(io::Error) -> NewLogError {
+    let new = target.display().to_string();
+    move |source| match source.kind() {
+        io::ErrorKind::AlreadyExists => NewLogError::Exists { new: new.clone() },
+        _ => NewLogError::Write { new: new.clone(), source },
+    }
+}
+
+fn refused(target: &Path) -> impl Fn(EncodeError) -> NewLogError {
+    let new = target.display().to_string();
+    move |source| NewLogError::Encode { new: new.clone(), source }
+}
