@@ -75,6 +75,11 @@ impl ReadLog {
             log.notes().iter().map(|note| format!("at byte {}: {}", note.at, note.text)).collect();
         warnings.extend(log.missed_manifests().map(ToString::to_string));
         warnings.extend(redefined_probes(log).iter().map(ToString::to_string));
+        let own = log.manifests().iter().rfind(|manifest| !manifest.own_terms.is_empty());
+        warnings.extend(own.map(|manifest| {
+            let names: Vec<&str> = manifest.own_terms.iter().map(|(name, _)| &name[..]).collect();
+            format!("made with terms of its program's own ({}), which are not part of its scene", names.join(", "))
+        }));
         match log.completeness() {
             Completeness::Finished | Completeness::Unfinished => {}
             Completeness::Truncated { at, dropped } => warnings.push(format!(
@@ -169,6 +174,7 @@ fn unreadable(path: &Path) -> impl Fn(ReadError) -> Failure {
 
 fn with_scene(log: Log, path: &Path) -> Result<ReadLog, Failure> {
     let (scene, scene_is_older) = match (scene_of(&log, path), log.manifests().last()) {
+        (_, Some(manifest)) if !manifest.own_terms.is_empty() => (scene_in(manifest, path, &[])?, false),
         (Err(Failure::SceneLost { .. }), Some(manifest)) => (scene_in(manifest, path, &[])?, true),
         (scene, _) => (scene?, false),
     };
@@ -197,6 +203,7 @@ pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]
     logged_scene(log, index, settings).map_err(|error| match error {
         LoggedSceneError::Lost { ordinal } => Failure::SceneLost { log: path.to_path_buf(), ordinal },
         LoggedSceneError::Unreadable(error) => unreadable_scene(error, path),
+        own @ LoggedSceneError::OwnTerms { .. } => Failure::WrongLog { log: path.to_path_buf(), source: Box::new(own) },
     })
 }
 

@@ -19,6 +19,17 @@ pub enum LoggedSceneError {
         /// Ordinal of the stage.
         ordinal: usize,
     },
+    /// The run had energies or loads that are not part of a scene.
+    #[error(
+        "stage {ordinal} was run with terms of its program's own ({names}), which this one does not have: it shows such a log, and \
+         neither goes on with it nor runs its stages again"
+    )]
+    OwnTerms {
+        /// Ordinal of the stage.
+        ordinal: usize,
+        /// Names of the terms.
+        names: String,
+    },
     /// It does not read with the settings.
     #[error(transparent)]
     Unreadable(#[from] SceneInLogError),
@@ -28,12 +39,16 @@ pub enum LoggedSceneError {
 /// hash in its commit, so that no other takes its place where it is lost.
 ///
 /// # Errors
-/// Where it is lost, or does not read with the settings.
+/// Where it is lost, does not read with the settings, or does not decide the states alone.
 pub fn logged_scene(log: &Log, index: usize, settings: &[String]) -> Result<Scene, LoggedSceneError> {
     let lost = LoggedSceneError::Lost { ordinal: index };
     let Some(entry) = log.entry(index) else { return Err(lost) };
     let expected = entry.record.commit.scene_hash;
     for manifest in log.manifests_of(index) {
+        if !manifest.own_terms.is_empty() {
+            let names: Vec<&str> = manifest.own_terms.iter().map(|(name, _)| &name[..]).collect();
+            return Err(LoggedSceneError::OwnTerms { ordinal: index, names: names.join(", ") });
+        }
         for chosen in 0..1 << DEFAULTS_BEFORE.len() {
             let is_chosen = |index: usize| chosen >> index & 1 == 1;
             let defaults = DEFAULTS_BEFORE.iter().enumerate().filter(|(index, _)| is_chosen(*index));

@@ -6,10 +6,12 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::encoder::EncodeError;
 use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT};
+use crate::model::TermSource;
 use crate::pipeline::NUMERICS_REVISION;
 use crate::printable::one_line;
 use crate::scene::{Scene, SceneError, parse_with_settings};
@@ -46,6 +48,8 @@ pub struct Manifest {
     pub first_ordinal: u64,
     /// Whether the scene reads as in the stretch before.
     pub same_scene: bool,
+    /// Terms of the caller's own that the run was made with: name and hash, in their order.
+    pub own_terms: Vec<(String, String)>,
 }
 
 /// Why a metadata record is not a manifest.
@@ -86,6 +90,12 @@ pub enum SceneInLogError {
     Wrong(#[from] Box<SceneError>),
 }
 
+fn own_terms(entries: &BTreeMap<String, String>) -> Vec<(String, String)> {
+    let terms = entries.iter().filter(|(key, _)| key.starts_with(OWN_TERM));
+    let parts = terms.map(|(_, value)| value.split_once(' ').unwrap_or((value, "")));
+    parts.map(|(hash, name)| (one_line(name).into_owned(), one_line(hash).into_owned())).collect()
+}
+
 impl Manifest {
     /// A manifest of this program on this machine, now.
     pub fn here(scene_file: &Path, scene_text: &str, threads: usize) -> Self {
@@ -103,7 +113,14 @@ impl Manifest {
             started_unix_s: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
             first_ordinal: 0,
             same_scene: false,
+            own_terms: Vec::new(),
         }
+    }
+
+    /// The same of a run with terms of the caller's own.
+    pub fn with_terms(self, own: &[Arc<dyn TermSource>]) -> Self {
+        let own_terms = own.iter().map(|source| (source.name().to_owned(), source.hash().to_string())).collect();
+        Self { own_terms, ..self }
     }
 
     /// Whether both were written by machines that compute alike as far as a manifest can tell.
@@ -205,6 +222,9 @@ impl Manifest {
             let what = if self.same_scene { SAME_SCENE } else { "another scene" };
             entries.insert(AGAIN.to_owned(), what.to_owned());
         }
+        for (place, (name, hash)) in self.own_terms.iter().enumerate() {
+            entries.insert(format!("{OWN_TERM}{place:04}"), format!("{hash} {name}"));
+        }
         entries
     }
 
@@ -234,6 +254,7 @@ impl Manifest {
             started_unix_s: number("started_unix_s", text("started_unix_s")?)?,
             first_ordinal: number("first_ordinal", text("first_ordinal")?)?,
             same_scene: record.metadata.get(AGAIN).is_some_and(|what| what == SAME_SCENE),
+            own_terms: own_terms(&record.metadata),
         };
         Ok((manifest, name))
     }
@@ -252,6 +273,9 @@ pub(super) const MANIFEST_LEN_AT_LEAST: usize = 256;
 
 /// Entry with what the program puts into the header of a log, which has no checksum of its own.
 pub(super) const LIBRARY: &str = "library";
+
+/// What the entries of terms of the caller's own begin with; their number in the order of the terms follows.
+const OWN_TERM: &str = "own_term_";
 
 /// Entry of a stretch that is not the first. It comes first in the record, so that even a torn one says whether its scene was
 /// that of the stretch before.

@@ -34,6 +34,11 @@ impl Stages {
         Self { scene, own, work: None }
     }
 
+    /// Energies and loads of the caller's own.
+    pub fn own_terms(&self) -> &[Arc<dyn TermSource>] {
+        &self.own
+    }
+
     /// Hash of what decides the results: of the scene, and of the terms where there are any of the caller's own.
     pub fn hash(&self) -> Hash {
         if self.own.is_empty() {

@@ -171,6 +171,7 @@ fn read_scene(name: &str) -> (Scene, Manifest) {
         started_unix_s: 0,
         first_ordinal: 0,
         same_scene: false,
+        own_terms: Vec::new(),
     };
     (scene, manifest)
 }

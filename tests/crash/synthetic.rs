@@ -147,5 +147,6 @@ pub fn manifest() -> Manifest {
         started_unix_s: 1_700_000_000,
         first_ordinal: 0,
         same_scene: false,
+        own_terms: Vec::new(),
     }
 }

@@ -5,6 +5,7 @@ mod changed;
 mod cost;
 mod cuts;
 mod numerics;
+mod own_terms;
 mod paths;
 mod program;
 mod reading;
