@@ -18,7 +18,10 @@ pub struct Under {
 impl Under {
     pub fn way(mut command: Command, stages: usize) -> Self {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        let mut out = BufReader::new(child.stdout.take().unwrap());
+        let out = child.stdout.take().unwrap();
+        // Room for a few lines: the run waits for its reader, and is still under way when a signal comes late.
+        rustix::pipe::fcntl_setpipe_size(&out, 4096).unwrap();
+        let mut out = BufReader::new(out);
         let mut line = String::new();
         for _ in 0..stages {
             assert!(out.read_line(&mut line).unwrap() > 0, "the run ended early");
