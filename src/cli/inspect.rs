@@ -76,7 +76,9 @@ impl Arguments {
             None => {}
         }
         let mut records = gathered.records;
-        keep_apart(&redefined_probes(&read.log), &mut records);
+        if !probes {
+            keep_apart(&redefined_probes(&read.log), &mut records);
+        }
         let older = read.older_scene().map_or_else(String::new, |line| line + "\n");
         let summary = Summary::new(&read.scene, &records);
         let mut text = format!("{}\n{}{older}{summary}", stage_table(&records), read.mixed());
