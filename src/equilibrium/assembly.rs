@@ -113,7 +113,7 @@ impl Assembled {
     }
 
     /// Energy, residual and stiffness of the shell, where this is the state without forces.
-    fn assemble_shell(
+    pub(super) fn assemble_shell(
         &mut self,
         discretization: &Discretization,
         displacement: &[[f64; 3]],

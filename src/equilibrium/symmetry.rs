@@ -23,8 +23,8 @@ impl SymmetryError {
     /// At a state.
     pub fn at(work: &mut Workspace, at: Standing) -> Self {
         let mut half = Assembled::new(&work.discretization);
-        half.assemble(&work.discretization, at.displacement, at.parameter, Want::Stiffness);
         let natural = work.discretization.free_strains.at(at.parameter);
+        half.assemble_shell(&work.discretization, at.displacement, natural, Want::Stiffness);
         measure(&work.discretization, at.displacement, &half, |point, u, hessian| {
             natural.map_or(*point, |natural| point.under(&natural.strain)).hessian(u, hessian);
         })

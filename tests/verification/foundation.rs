@@ -185,7 +185,8 @@ fn it_stands_in_the_sums() {
         10.0,
         3,
         r#"load = { kind = "steps", increment = 1 }
-        support = [{ on = "u-start", kind = "clamped" }]"#,
+        support = [{ on = "u-start", kind = "clamped" }]
+        action = [{ kind = "force", on = [1, 1], force_n = [0, 0, 1] }]"#,
     );
     let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(3.0))];
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
@@ -227,7 +228,8 @@ fn it_is_part_of_the_identity() {
             10.0,
             3,
             r#"load = { kind = "steps", increment = 1 }
-            support = [{ on = "u-start", kind = "clamped" }]"#,
+            support = [{ on = "u-start", kind = "clamped" }]
+        action = [{ kind = "force", on = [1, 1], force_n = [0, 0, 1] }]"#,
         )
     };
     let with = |k: f64| Stages::with_terms(scene(), vec![Arc::new(Foundation(k))]).hash();
