@@ -11,16 +11,18 @@ use crate::program::{Place, SMALL, Said, Straight, assert_ends_with};
 /// A run under way, which has reported so many stages as JSON lines.
 pub struct Under {
     child: Child,
-    out: BufReader<std::process::ChildStdout>,
+    out: BufReader<std::io::PipeReader>,
     seen: usize,
 }
 
 impl Under {
     pub fn way(mut command: Command, stages: usize) -> Self {
-        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        let out = child.stdout.take().unwrap();
         // Room for a few lines: the run waits for its reader, and is still under way when a signal comes late.
-        rustix::pipe::fcntl_setpipe_size(&out, 4096).unwrap();
+        let (out, into) = std::io::pipe().unwrap();
+        rustix::pipe::fcntl_setpipe_size(&into, 4096).unwrap();
+        let child = command.stdout(into).stderr(Stdio::piped()).spawn().unwrap();
+        // The command has the other end as well, at which the pipe would not end.
+        drop(command);
         let mut out = BufReader::new(out);
         let mut line = String::new();
         for _ in 0..stages {
