@@ -32,7 +32,7 @@ mod verify;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::{EXIT_CODES, Failure};
 
@@ -94,7 +94,7 @@ impl Command {
             Command::Study(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
             Command::Stress(arguments) => arguments.run(),
-            Command::Help(arguments) => arguments.run().map(|()| 0),
+            Command::Help(arguments) => arguments.run(Arguments::command()).map(|()| 0),
         }
     }
 }

@@ -9,7 +9,8 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::io;
 use std::path::Path;
 
-use super::encoder::{EncodeError, Encoder};
+use super::encode_error::EncodeError;
+use super::encoder::Encoder;
 use super::format::THINNED;
 use super::frame;
 use super::log::{Kept, Log};

@@ -1,9 +1,9 @@
 //! A NURBS surface as the user gives it: in the scene, or in a file of its own.
 
 use super::data::NurbsPatch;
-use super::error::Checked;
-use super::general::SEAMS;
+use super::fault::Checked;
 use super::keys::number;
+use super::kinds::SEAMS;
 use super::table::Table;
 
 /// Largest scene file, and largest file of a surface, bytes: a log holds the one with the other, and reads no larger ones.
