@@ -2,6 +2,20 @@
 //!
 //! Everything that can be wrong with the arguments and the scene is found before anything starts. What a program would
 //! read goes to standard output, what a person would watch to standard error.
+//!
+//! | file | what |
+//! |---|---|
+//! | `run`, `resume` | a run from its start, and from where it stopped |
+//! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | what a log is asked |
+//! | `recover`, `thin` | a log written again |
+//! | `bench`, `converge`, `study`, `stress` | suites, and how fast and exact runs are |
+//! | `help` | help on subcommands and topics |
+//! | `scene_file`, `log_file` | what is read |
+//! | `session` | threads, signals, the log of a run under way |
+//! | `new_probes` | probes that a log lacks |
+//! | `progress`, `load_step`, `stage_table`, `json_line` | stages, as they are shown |
+//! | `trace` | iterates of replayed stages |
+//! | `output`, `failure` | streams and files; what can stop a command |
 
 mod bench;
 mod bisect;

@@ -45,8 +45,10 @@ pub fn imports(sources: &Sources) -> Vec<Import> {
     let crate_ = Crate::new(sources);
     let mut found = BTreeSet::new();
     for (home, module) in &crate_.modules {
-        let passed_on = |path: &&Named| !path.passed_on || module.words.contains(path.bound());
-        for named in module.uses.iter().filter(passed_on).chain(&module.paths) {
+        // A folder that passes a name on imports it only where it uses it itself.
+        let is_folder = module.file.ends_with("mod.rs");
+        let is_import = |named: &&Named| !is_folder || !named.passed_on || module.words.contains(named.bound());
+        for named in module.uses.iter().filter(is_import).chain(&module.paths) {
             for to in crate_.files_of(home, &named.path) {
                 let (from, line, path) = (module.file.clone(), named.line, named.path.join("::"));
                 if to != from {

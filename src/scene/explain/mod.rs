@@ -1,4 +1,12 @@
 //! What is wrong with a scene, in words.
+//!
+//! | file | what |
+//! |---|---|
+//! | `explanation` | its parts, and words that several use |
+//! | `syntax` | text that is not TOML |
+//! | `names` | wrong names |
+//! | `values` | wrong values |
+//! | `stages` | wrong stages |
 
 mod explanation;
 mod names;
