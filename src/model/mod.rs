@@ -22,6 +22,7 @@
 //! | `unknowns` | free unknowns and coordinates |
 //! | `rotation`, `placement` | displacements at some coordinates |
 //! | `quadrature`, `imbalance` | Gauss points of each element, and whether they balance membrane forces |
+//! | `gauss` | Gauss points on parameters |
 //! | `connectivity` | control points of each element, and the order of sums |
 //! | `tables` | shape functions at the points |
 //! | `block_pattern`, `blocks` | 3 × 3 blocks of a matrix on control points |
@@ -44,6 +45,7 @@ mod elimination;
 mod error;
 mod expressions;
 mod free_strains;
+mod gauss;
 mod hold;
 mod imbalance;
 mod joint;
