@@ -112,7 +112,7 @@ fn index_arithmetic(text: &str) -> Vec<usize> {
             begin -= 2;
         }
         let before = begin >= 2 && matches!(at(begin - 1), "*" | "/" | "%") && is_value(begin - 2);
-        let after = matches!(at(end), "*" | "/" | "%") && is_value(end + 1).max(at(end + 1) == "(");
+        let after = matches!(at(end), "*" | "/" | "%") && (is_value(end + 1) || at(end + 1) == "(");
         let cut = begin >= 2 && at(begin - 1) == "(" && matches!(at(begin - 2), "chunks" | "chunks_exact" | "step_by");
         (before || after || cut) && at(end) != "["
     });
