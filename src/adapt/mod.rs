@@ -1,4 +1,10 @@
 //! Refinement: where bending concentrates, knots are inserted, and the displacement is carried over exactly.
+//!
+//! | file | what |
+//! |---|---|
+//! | `halving` | what halving every element would change |
+//! | `indicators` | refinement indicators, and the marks that they set |
+//! | `refinement` | knots inserted, displacements carried over |
 
 mod halving;
 mod indicators;

@@ -139,7 +139,7 @@ fn first_of_long(long: &LongLog, text: &str) -> Result<Result<Option<Vec<Record>
 
 /// A tolerance that rotations are resolved to.
 fn resolved(text: &str) -> Result<f64, String> {
-    match super::run::positive(text)? {
+    match super::session::positive(text)? {
         tolerance if tolerance < 1e-8 => {
             Err("jumps are not resolved more finely than 1e-8 (degrees, or load factor)".to_string())
         }

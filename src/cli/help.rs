@@ -1,6 +1,6 @@
 //! `foldline help`: on a subcommand, or on a topic.
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 
 use super::failure::Failure;
 use super::output::print;
@@ -16,9 +16,8 @@ pub(super) struct Arguments {
 const SCENE: &str = "scene";
 
 impl Arguments {
-    /// Shows it.
-    pub(super) fn run(self) -> Result<(), Failure> {
-        let mut command = super::Arguments::command();
+    /// Shows it; `command` has all subcommands.
+    pub(super) fn run(self, mut command: Command) -> Result<(), Failure> {
         // Gives the subcommands their full names in usage lines.
         command.build();
         match self.topic.as_deref() {

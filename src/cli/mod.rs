@@ -2,6 +2,20 @@
 //!
 //! Everything that can be wrong with the arguments and the scene is found before anything starts. What a program would
 //! read goes to standard output, what a person would watch to standard error.
+//!
+//! | file | what |
+//! |---|---|
+//! | `run`, `resume` | a run from its start, and from where it stopped |
+//! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | what a log is asked |
+//! | `recover`, `thin` | a log written again |
+//! | `bench`, `converge`, `study`, `stress` | suites, and how fast and exact runs are |
+//! | `help` | help on subcommands and topics |
+//! | `scene_file`, `log_file` | what is read |
+//! | `session` | threads, signals, the log of a run under way |
+//! | `new_probes` | probes that a log lacks |
+//! | `progress`, `load_step`, `stage_table`, `json_line` | stages, as they are shown |
+//! | `trace` | iterates of replayed stages |
+//! | `output`, `failure` | streams and files; what can stop a command |
 
 mod bench;
 mod bisect;
@@ -32,7 +46,7 @@ mod verify;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::{EXIT_CODES, Failure};
 
@@ -94,7 +108,7 @@ impl Command {
             Command::Study(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
             Command::Stress(arguments) => arguments.run(),
-            Command::Help(arguments) => arguments.run().map(|()| 0),
+            Command::Help(arguments) => arguments.run(Arguments::command()).map(|()| 0),
         }
     }
 }

@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     /// Log to go on with (MCAP)
     log: PathBuf,
     /// Stop after the first step at or beyond this rotation of each end, in degrees, or this load factor
-    #[arg(long, value_name = "AT", value_parser = super::run::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "AT", value_parser = super::session::positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Threads; the result is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]

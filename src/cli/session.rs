@@ -152,3 +152,27 @@ pub(super) fn drive(
         Ending::Finished | Ending::Until => Ok(records),
     }
 }
+
+/// A rotation that somebody could mean.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        Ok(_) => {
+            Err("a rotation or a load factor above 0 is wanted; by arc length it counts on both sides of 0".to_string())
+        }
+        Err(_) => Err("a number is wanted, such as 12.5: degrees, or a load factor".to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotations_are_positive_numbers() {
+        assert_eq!(positive("12.5"), Ok(12.5));
+        for wrong in ["0", "-1", "inf", "nan", "", "ten"] {
+            assert!(positive(wrong).is_err(), "{wrong}");
+        }
+    }
+}

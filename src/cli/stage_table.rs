@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use crate::pipeline::{Outcome, Parameter, Record, Report};
 use crate::scene::Stage;
+use crate::spline::Grid;
 use crate::units::reading;
 
 /// A column: its head, and whether its cells stand to the right.
@@ -190,7 +191,7 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
         lines.push(("energy released", released.map_or("not known".to_string(), |energy| format!("{energy} N·mm"))));
     }
     lines.extend([
-        ("elements", format!("{n1} × {n2} = {} (length × arc, of the model)", n1 * n2)),
+        ("elements", format!("{n1} × {n2} = {} (length × arc, of the model)", Grid::new(report.elements).len())),
         ("free unknowns", report.unknowns.to_string()),
     ]);
     if report.stage.finds_equilibrium() {

@@ -11,9 +11,6 @@ use crate::spline::Mesh;
 
 /// An iterate with where it belongs.
 pub(super) fn row(commit: &Commit, mesh: &Mesh, iterate: &Iterate) -> TraceRow {
-    let n2 = mesh.control_counts()[1];
-    let point = iterate.worst_point;
-    let [x, y, z, w] = mesh.control_points[point];
     TraceRow {
         ordinal: commit.ordinal,
         step: commit.step,
@@ -25,8 +22,8 @@ pub(super) fn row(commit: &Commit, mesh: &Mesh, iterate: &Iterate) -> TraceRow {
         step_length: iterate.step_length,
         shift_n_per_mm: iterate.shift,
         negative_pivots: iterate.negative_pivots,
-        worst_point: [point / n2, point % n2],
-        worst_point_mm: [x / w, y / w, z / w],
+        worst_point: mesh.grid().place(iterate.worst_point),
+        worst_point_mm: mesh.point(iterate.worst_point),
     }
 }
 

@@ -19,7 +19,7 @@ mod build;
 mod contraction;
 
 pub(crate) use build::Build;
-use contraction::{Block, add_residual, contract};
+use contraction::{BLOCK, Block, add_residual, contract};
 
 use crate::model::{BATCH, LANES, PointTable, Tables};
 use crate::shell::lanes::{FourLanes, Lanes, Portable};
@@ -27,8 +27,6 @@ use crate::shell::lanes::{FourLanes, Lanes, Portable};
 use crate::shell::lanes_x86::{Avx512, Fma, HasAvx512, HasFma};
 use crate::shell::{BatchGradient, BatchHessian, FreeStrain, PointBatch, PointKernel, StretchingBatch};
 
-/// Batches of points that the stiffness takes before it is stored: 16 points, all of a cubic element.
-const BLOCK: usize = 4;
 /// Numbers of P(l, d) for one (a, c) at most: `3 l + d`.
 const HALF_LEN: usize = 15;
 

@@ -1,4 +1,25 @@
 //! Equilibrium: assembly, the sparse solver, Newton's method as a descent on the energy.
+//!
+//! | file | what |
+//! |---|---|
+//! | `kernel` | energy, residual and stiffness of an element |
+//! | `assembly` | their sums over elements |
+//! | `symmetry` | how symmetric a stiffness is |
+//! | `pattern` | from blocks on control points to the matrix on free unknowns |
+//! | `sparse` | factor and solution |
+//! | `tangent_stiffness` | the matrix with its factor |
+//! | `vector`, `metric`, `gmres` | sums over vectors; lengths of motions; iterative solution |
+//! | `workspace` | tables, matrix and factor for one mesh, and the state in hand |
+//! | `iterate` | what is known of a solve under way |
+//! | `force_scale` | what a residual is compared with |
+//! | `ledger` | the balance of energy of a solve |
+//! | `descent` | Newton's method as a descent on the energy |
+//! | `newton` | equilibrium at a value of the parameter |
+//! | `equations`, `continuation` | equilibrium along a path |
+//! | `stability`, `condition` | the lowest eigenvalue and its mode; the spread of all |
+//! | `linear_release` | energy that a state out of balance releases |
+//! | `solved`, `solve_error` | what a solve leaves, and why there is none |
+//! | `timing` | the pieces of an iteration one by one |
 
 mod assembly;
 mod condition;

@@ -28,7 +28,7 @@ pub struct Solved {
     pub negative_pivots: usize,
     /// |residual| over the forces that it is held against.
     pub residual: f64,
-    /// The largest force met so far, N; see [`ForceScale::met`].
+    /// The largest force met so far, N; see [`super::ForceScale::met`].
     pub largest_force: f64,
     /// What it took.
     pub effort: Effort,
@@ -38,7 +38,7 @@ pub struct Solved {
 pub(super) struct Ended {
     /// Displacement of the control points, mm.
     pub displacement: Vec<[f64; 3]>,
-    /// Rotation vectors of the sections, radians; see [`Placement::turns`].
+    /// Rotation vectors of the sections, radians; see [`crate::model::Placement::turns`].
     pub turns: Vec<[f64; 3]>,
     /// Strokes of the actions on the way, N·mm.
     pub strokes: Vec<f64>,

@@ -21,7 +21,7 @@ pub struct Standing<'s> {
     pub turns: &'s [[f64; 3]],
     /// The scene's parameter.
     pub parameter: f64,
-    /// The largest force met so far, N; see [`ForceScale::met`].
+    /// The largest force met so far, N; see [`super::ForceScale::met`].
     pub largest_force: f64,
 }
 

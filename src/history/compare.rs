@@ -216,9 +216,8 @@ impl Found<'_> {
         }
         let Some((index, values, agreeing_bits)) = worst(a, b) else { return };
         // A finer mesh has more of them.
-        let place = self.mesh.control_points.get(index).filter(|_| a.len() == self.mesh.control_points.len());
-        let n2 = self.mesh.control_counts()[1];
-        let place = place.map(|[x, y, z, w]| ([index / n2, index % n2], [x / w, y / w, z / w]));
+        let is_on_mesh = a.len() == self.mesh.control_points.len();
+        let place = is_on_mesh.then(|| (self.mesh.grid().place(index), self.mesh.point(index)));
         self.numbers.push(Difference { field, place, values, agreeing_bits });
     }
 }

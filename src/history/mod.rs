@@ -1,4 +1,17 @@
 //! What a log can be asked: go on with it, run its stages again, find where two runs part, where a run jumped.
+//!
+//! | file | what |
+//! |---|---|
+//! | `logged_scene` | the scene of a stage |
+//! | `states` | states that a log holds, or that are made again |
+//! | `resume` | where a run goes on |
+//! | `replay` | stages run again |
+//! | `mending` | lost stages run again |
+//! | `part`, `compare` | where two runs part; two states in bits |
+//! | `bisection`, `condition` | what to look at next; conditions on reports |
+//! | `snap`, `stability` | where a run jumped; how stable its states are |
+//! | `probes` | probes read after the run |
+//! | `long` | what a long log is asked through its index |
 
 mod bisection;
 mod compare;

@@ -10,15 +10,16 @@ use mcap::write::NoSeek;
 use mcap::{McapError, WriteOptions, Writer};
 
 use super::chunk;
-use super::codec::{CodecError, EncodedState};
+use super::codec::EncodedState;
+use super::encode_error::EncodeError;
 use super::format::{
-    BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, MANIFEST_BYTES_LIMIT,
-    MESH_TOPIC, OWN_TOPICS, PROFILE, REPORT_BYTES_LIMIT, REPORT_TOPIC, STATE_TOPIC, log_time_ns, sequence,
+    BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, OWN_TOPICS,
+    PROFILE, REPORT_BYTES_LIMIT, REPORT_TOPIC, STATE_TOPIC, log_time_ns, sequence,
 };
 use super::frame::{self, Frame};
 use super::index::{Mark, Piece};
 use super::ledger::{ChunkPlace, Ledger};
-use super::manifest::{Manifest, SCENE_VALUES_LIMIT};
+use super::manifest::Manifest;
 use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, ReportMessage, schema_of, seal};
 use super::summary;
 use crate::pipeline::{Commit, Record};
@@ -46,52 +47,6 @@ pub struct ViewerMessage {
     pub topic: Arc<ViewerTopic>,
     /// Its bytes, in the topic's encoding.
     pub data: Vec<u8>,
-}
-
-/// Why a stage cannot be put into a log.
-#[derive(Debug, thiserror::Error)]
-pub enum EncodeError {
-    /// The state has no place in a log.
-    #[error("the state cannot be kept")]
-    State(#[from] CodecError),
-    /// More than a chunk can hold.
-    #[error("the stage takes {bytes} bytes, and a chunk of a log holds {CHUNK_BYTES_LIMIT}: use a coarser mesh{hint}")]
-    TooLarge {
-        /// Bytes that the stage takes.
-        bytes: usize,
-        /// What else would help.
-        hint: &'static str,
-    },
-    /// A message for viewers on a topic of the log's own.
-    #[error("viewers' messages cannot go to {topic}, which is the log's own")]
-    OwnTopic {
-        /// The topic.
-        topic: String,
-    },
-    /// JSON failed.
-    #[error("a report cannot be written as JSON")]
-    Json(#[from] serde_json::Error),
-    /// A report that no reader would take.
-    #[error("the report takes {bytes} bytes, and one in a log has no more than {REPORT_BYTES_LIMIT}: use fewer probes")]
-    ReportTooLarge {
-        /// Bytes that it takes.
-        bytes: usize,
-    },
-    /// A scene that no reader would take.
-    #[error(
-        "the scene takes {bytes} bytes with {values} values, and one in a log has no more than {MANIFEST_BYTES_LIMIT} bytes and \
-         {SCENE_VALUES_LIMIT} values, so that no log takes much memory to read: use a net of fewer control points, which the mesh \
-         then refines"
-    )]
-    SceneTooLarge {
-        /// Bytes that it takes.
-        bytes: usize,
-        /// Values in it.
-        values: usize,
-    },
-    /// MCAP refused.
-    #[error("MCAP refused a record")]
-    Mcap(#[from] McapError),
 }
 
 /// Bytes on their way out, shared with MCAP's writer, which would not give them back.
@@ -148,11 +103,6 @@ pub(super) struct Parts<'a> {
     /// Whether the log does not have the state's displacements yet.
     pub displacement_is_new: bool,
     pub viewer: &'a [ViewerMessage],
-}
-
-/// What the header names as the writer.
-pub(super) fn library() -> String {
-    format!("foldline {} {}", env!("CARGO_PKG_VERSION"), mcap::LIBRARY_IDENTIFIER)
 }
 
 impl Encoder {

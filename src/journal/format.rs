@@ -82,6 +82,9 @@ pub const REPORT_BYTES_LIMIT: usize = 1 << 20;
 /// Largest manifest that is written or read, bytes: room for the net of a hundred thousand control points.
 pub const MANIFEST_BYTES_LIMIT: usize = crate::scene::SCENE_BYTES_LIMIT as usize;
 
+/// Most values of a scene in a log: the parser takes 160 bytes for each, where two may stand for it in the text.
+pub(super) const SCENE_VALUES_LIMIT: usize = 350_000;
+
 /// Most bytes of manifests that are kept of one log.
 pub(super) const MANIFESTS_BYTES_LIMIT: usize = 24 << 20;
 
@@ -105,4 +108,9 @@ pub fn log_time_ns(ordinal: u64) -> u64 {
 /// `sequence` of the messages of the stage with this ordinal; stays at its largest value once it got there.
 pub(super) fn sequence(ordinal: u64) -> u32 {
     u32::try_from(ordinal).unwrap_or(u32::MAX)
+}
+
+/// What the header of a log names as the writer.
+pub(super) fn library() -> String {
+    format!("foldline {} {}", env!("CARGO_PKG_VERSION"), mcap::LIBRARY_IDENTIFIER)
 }

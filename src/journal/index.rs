@@ -12,8 +12,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::checkpoint::{Checkpoint, channels};
-use super::format::MANIFEST;
+use super::checkpoint::Checkpoint;
+use super::format::{MANIFEST, library};
 use super::frame;
 use super::ledger::{ChunkPlace, Ledger, Pattern};
 use super::manifest::Manifest;
@@ -295,8 +295,8 @@ impl Index {
             at: here.at,
             ordinal: last.first + last.commits - 1,
             chain_hash: chain_hash.0,
-            library: super::encoder::library(),
-            channels: channels(&ledger),
+            library: library(),
+            channels: ledger.channels_described(),
             stretches,
             mesh: Some(piece(mesh)?),
             displacement: Some(piece(displacement)?),

@@ -13,7 +13,6 @@ use std::time::{Duration, Instant};
 
 use rustix::fs::OFlags;
 
-use super::lock::not_ours;
 use super::manifest::host;
 use super::still_ours::patiently;
 use crate::whole_file::{WholeFile, beside};
@@ -32,6 +31,13 @@ const LONGEST_CLEARING: Duration = Duration::from_secs(5);
 
 /// Between two looks whether it is through.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
+
+/// There is a file of a lock's or lease's name that no run has put there.
+pub(super) fn not_ours() -> io::Error {
+    io::Error::other(
+        "there is something else of that name, which is left alone: move it away, or write elsewhere with `-o OTHER`",
+    )
+}
 
 /// A lease that this process wrote.
 #[derive(Debug)]

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::chunk::{self, MESSAGE_HEADER_LEN};
+use mcap::records::Record as McapRecord;
+
+use super::chunk::{self, Channels, MESSAGE_HEADER_LEN};
 use super::frame::{self, Frame, op};
 
 /// One chunk.
@@ -83,9 +85,21 @@ impl Ledger {
         messages
     }
 
+    /// The channels that it has the records of.
+    pub fn channels_described(&self) -> Channels {
+        let parsed = self.channels.values().filter_map(|record| {
+            let found = frame::next(record, 0)?.ok()?;
+            match frame::parse(found.opcode, &record[found.body]).ok()? {
+                McapRecord::Channel(channel) => Some((channel.id, channel)),
+                _ => None,
+            }
+        });
+        parsed.collect()
+    }
+
     /// Where the data of the last message on a topic lies, and its length.
     pub fn last_message(&self, topic: &str) -> Option<[u64; 2]> {
-        let mut channels = super::checkpoint::channels(self).into_iter();
+        let mut channels = self.channels_described().into_iter();
         channels.find_map(|(id, channel)| (channel.topic == topic).then(|| self.last_messages.get(&id).copied()))?
     }
 

@@ -16,7 +16,7 @@ use rustix::fs::OFlags;
 use rustix::io::Errno;
 
 use super::backend::{beside, is_at};
-use super::lease::{LONGEST, Lease, holder};
+use super::lease::{LONGEST, Lease, holder, not_ours};
 use crate::whole_file::{room_for, shortage};
 
 /// Why a log cannot be written, or no longer.
@@ -207,13 +207,6 @@ fn open_lock(path: &Path) -> io::Result<File> {
         return Err(not_ours());
     }
     Ok(lock)
-}
-
-/// There is a file of a lock's or lease's name that no run has put there.
-pub(super) fn not_ours() -> io::Error {
-    io::Error::other(
-        "there is something else of that name, which is left alone: move it away, or write elsewhere with `-o OTHER`",
-    )
 }
 
 /// Whether a file system, or the server behind it, has no locks, as network ones may.

@@ -5,13 +5,13 @@ use std::io;
 use std::path::Path;
 
 use super::backend::beside;
-use super::checkpoint::read_in_parts;
 use super::chunk::{self, Content};
 use super::index::{Builder, Head, Index, Mark, Piece, record_at};
 use super::index_keeper::{LONG_BYTES, Rewritten};
 use super::ledger::Ledger;
 use super::log::{Entry, Log};
 use super::message::HexHash;
+use super::parts::read_in_parts;
 use super::reader::open_regular;
 use crate::pipeline::Record;
 
@@ -124,7 +124,7 @@ impl LongLog {
         let at = self.ledger.chunks.get(ordinal).map_or(0, |place| place.at);
         let changed = || LongLogError::Changed { ordinal: ordinal as u64, at };
         let (bytes, record) = record_at(&self.file, at)?.ok_or_else(changed)?;
-        let mut channels = super::checkpoint::channels(&self.ledger);
+        let mut channels = self.ledger.channels_described();
         match chunk::open(&bytes, &record, &mut channels) {
             Ok((Content::Commit(content), _)) if content.commit.ordinal == ordinal as u64 => {
                 let commit = content.commit.commit();

@@ -9,8 +9,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use super::encoder::EncodeError;
-use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT};
+use super::encode_error::EncodeError;
+use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT, SCENE_VALUES_LIMIT, library};
 use crate::model::TermSource;
 use crate::pipeline::NUMERICS_REVISION;
 use crate::printable::one_line;
@@ -205,7 +205,7 @@ impl Manifest {
                 ("program", "foldline".to_owned()),
                 ("program_version", self.program_version.clone()),
                 ("scene_file", self.scene_file.clone()),
-                (LIBRARY, super::encoder::library()),
+                (LIBRARY, library()),
                 ("scene", self.scene_text.clone()),
                 ("cpu", self.cpu.clone()),
                 ("cpu_features", self.cpu_features.join(" ")),
@@ -259,9 +259,6 @@ impl Manifest {
         Ok((manifest, name))
     }
 }
-
-/// Most values of a scene in a log: the parser takes 160 bytes for each, where two may stand for it in the text.
-pub(super) const SCENE_VALUES_LIMIT: usize = 350_000;
 
 /// Values of a scene, or somewhat more: what may begin one is counted.
 fn values(scene_text: &str) -> usize {

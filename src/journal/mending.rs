@@ -2,7 +2,8 @@
 //! the chain.
 
 use super::codec::{encode_mesh, encode_state_on};
-use super::encoder::{EncodeError, Encoder, Parts};
+use super::encode_error::EncodeError;
+use super::encoder::{Encoder, Parts};
 use super::ledger::Ledger;
 use super::log::Log;
 use super::reader::ReadError;

@@ -18,15 +18,16 @@
 //! | `format` | topics, encodings, versions, limits, times |
 //! | `codec`, `soundness` | states and meshes as bytes, and what they must satisfy |
 //! | `message`, `manifest` | reports, commits, the end, who wrote it |
-//! | `ledger`, `summary`, `encoder`, `backend`, `writer` | from a stage to bytes in a file |
+//! | `ledger`, `summary`, `encoder`, `encode_error`, `backend`, `writer` | from a stage to bytes in a file |
 //! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
-//! | `checkpoint`, `index`, `index_keeper`, `long` | a long log, of which only the end is read |
+//! | `checkpoint`, `parts`, `index`, `index_keeper`, `long` | a long log, of which only the end is read |
 //! | `portions` | a log of any length, read through without holding it |
 //! | `resume`, `recovery` | going on with a log, copying what is good of one |
 //! | `new_log`, `thin` | a log that is made of another, without some of its states |
 //! | `mending` | a log with stages put back that it had lost |
 //! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
 //! | `rewriting`, `agreement`, `verify` | all that can be checked, all of it |
+//! | `trace` | what a solve did, iterate by iterate, as a log of its own |
 //!
 //! # Writing, stopping, going on
 //!
@@ -85,6 +86,7 @@ mod checkpoint;
 mod chunk;
 mod codec;
 mod damage;
+mod encode_error;
 mod encoder;
 pub mod format;
 mod frame;
@@ -99,6 +101,7 @@ mod manifest;
 mod mending;
 pub mod message;
 mod new_log;
+mod parts;
 mod portions;
 mod reader;
 mod recovery;
@@ -118,7 +121,8 @@ pub use agreement::Disagreement;
 pub use backend::{Backend, FileBackend};
 pub use codec::{CODEC_VERSION, CodecError, EncodedState, decode_mesh, decode_state, encode_mesh, encode_state};
 pub use damage::{Completeness, Damage, LaterCommit, Problem};
-pub use encoder::{EncodeError, ViewerMessage, ViewerTopic};
+pub use encode_error::EncodeError;
+pub use encoder::{ViewerMessage, ViewerTopic};
 pub use index::word_number;
 pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};

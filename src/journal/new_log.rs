@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use mcap::records::Metadata;
 
-use super::encoder::{EncodeError, Encoder};
+use super::encode_error::EncodeError;
+use super::encoder::Encoder;
 use super::frame;
 use super::log::{Log, Part};
 use crate::whole_file::WholeFile;

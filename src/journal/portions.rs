@@ -3,11 +3,12 @@
 use std::fs::File;
 use std::path::Path;
 
-use super::checkpoint::{Checkpoint, PART_BYTES, read_part};
+use super::checkpoint::Checkpoint;
 use super::format::FORMAT_VERSION;
 use super::index_keeper::LONG_BYTES;
 use super::ledger::Ledger;
 use super::log::{Entry, Log, Part};
+use super::parts::{PART_BYTES, read_part};
 use super::reader::{ReadError, open_regular};
 
 /// The portions of a log, in their order; a short log is one. Where something is not as it was written, all of the rest is the

@@ -7,7 +7,8 @@ use std::path::Path;
 
 use super::backend::Backend;
 use super::damage::Completeness;
-use super::encoder::{EncodeError, Encoder};
+use super::encode_error::EncodeError;
+use super::encoder::Encoder;
 use super::frame;
 use super::log::{Kept, Log};
 use super::new_log::{BATCH_BYTES, NewLog, NewLogError};

@@ -20,7 +20,9 @@ use std::path::{Path, PathBuf};
 
 use super::backend::{Backend, FileBackend, beside};
 use super::damage::Completeness;
-use super::encoder::{EncodeError, Encoder, library};
+use super::encode_error::EncodeError;
+use super::encoder::Encoder;
+use super::format::library;
 use super::frame;
 use super::index::{Builder, Index};
 use super::index_keeper::{IndexKeeper, is_index};

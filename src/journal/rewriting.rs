@@ -1,6 +1,7 @@
 //! A log written again and compared: a byte that no hash covers (a time, an index, the summary) shows here.
 
-use super::encoder::{EncodeError, Encoder};
+use super::encode_error::EncodeError;
+use super::encoder::Encoder;
 use super::frame;
 use super::log::Log;
 

@@ -1,7 +1,7 @@
 //! What a mesh and a state must hold so that no later code can stumble over them, whoever wrote them.
 
 use crate::scene::{Scene, Stage};
-use crate::spline::DEGREES;
+use crate::spline::{DEGREES, KnotFlaw, check_knots};
 use crate::state::{CriticalAhead, Mesh, PathMemory, Refinement, State, StepControl};
 
 /// What is wrong with a mesh or a state.
@@ -119,30 +119,23 @@ fn finite(what: &'static str, values: impl IntoIterator<Item = f64, IntoIter: Cl
 /// # Errors
 /// The first flaw.
 pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
-    let mut expected = 1_usize;
     for way in 0..2 {
         let (degree, knots) = (mesh.degree[way], &mesh.knots[way]);
         if !DEGREES.contains(&degree) {
             return Err(Flaw::Degree { way, degree });
         }
-        if knots.len() < 2 * (degree + 1) {
-            return Err(Flaw::FewKnots { way, degree, found: knots.len() });
-        }
-        finite("knot", knots.iter().copied())?;
-        if let Some(index) = (1..knots.len()).find(|&index| knots[index] < knots[index - 1]) {
-            return Err(Flaw::KnotOrder { way, index, value: knots[index] });
-        }
-        let (first, last) = (knots[0], knots[knots.len() - 1]);
-        for group in knots.chunk_by(|left, right| left == right) {
-            let value = group[0];
-            let at_end = value == first || value == last;
-            let allowed = if at_end { degree + 1..=degree + 1 } else { 1..=degree };
-            if !allowed.contains(&group.len()) {
-                return Err(Flaw::KnotMultiplicity { way, degree, value, found: group.len() });
+        check_knots(knots, degree, 0.0).map_err(|flaw| match flaw {
+            KnotFlaw::Few { .. } => Flaw::FewKnots { way, degree, found: knots.len() },
+            KnotFlaw::NotFinite { index } => Flaw::NotFinite { what: "knot", index, value: knots[index] },
+            KnotFlaw::Descending { index } => Flaw::KnotOrder { way, index, value: knots[index] },
+            // No distance is asked for.
+            KnotFlaw::TooNear { pair: [value, _], .. } => Flaw::KnotMultiplicity { way, degree, value, found: 1 },
+            KnotFlaw::NotClamped { knot: value, times: found } | KnotFlaw::Tears { knot: value, times: found } => {
+                Flaw::KnotMultiplicity { way, degree, value, found }
             }
-        }
-        expected = expected.saturating_mul(knots.len() - degree - 1);
+        })?;
     }
+    let expected = mesh.grid().len();
     if mesh.control_points.len() != expected {
         return Err(Flaw::Length { what: "control points", expected, found: mesh.control_points.len() });
     }

@@ -5,12 +5,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::agreement::disagreement;
-use super::checkpoint::read_in_parts;
 use super::damage::Completeness;
-use super::encoder::EncodeError;
+use super::encode_error::EncodeError;
 use super::index_keeper::LONG_BYTES;
 use super::ledger::Ledger;
 use super::log::{Entry, Log};
+use super::parts::read_in_parts;
 use super::reader::{open_regular, read_at};
 use super::rewriting::Rewriting;
 

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 use super::backend::{Backend, FileBackend, beside};
 use super::codec::{encode_mesh, encode_state_on};
-use super::encoder::{EncodeError, Encoder, Parts, ViewerMessage, library};
+use super::encode_error::EncodeError;
+use super::encoder::{Encoder, Parts, ViewerMessage};
+use super::format::library;
 use super::index_keeper::IndexKeeper;
 use super::lock::{LockError, LogLock};
 use super::log::Log;

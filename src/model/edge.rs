@@ -1,9 +1,10 @@
 //! Edges of a mesh as supports see them: two rows of control points, normals, centroid.
 
 use crate::model::ModelError;
+use crate::model::gauss::span_points;
 use crate::scene::Edge;
-use crate::shell::{cross, dot, gauss_legendre, norm, scaled, sub};
-use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
+use crate::shell::{cross, dot, norm, scaled, sub};
+use crate::spline::{Mesh, SurfacePoint, mid_surface_point};
 
 /// Control points of an edge and beside it, in the order of the growing parameter along it.
 #[derive(Clone, Debug)]
@@ -87,15 +88,12 @@ fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f
 fn centroid(mesh: &Mesh, edge: Edge) -> [f64; 3] {
     let (way, _) = side(edge);
     let running = 1 - way;
-    let rule = gauss_legendre(CENTROID_POINTS);
     let (mut length, mut moment) = (0.0, [0.0; 3]);
-    for [from, to] in Spans::of(&mesh.knots[running], mesh.degree[running]).bounds {
-        for [node, weight] in &rule {
-            let point = on_edge(mesh, edge, 0.5 * (from + to) + 0.5 * (to - from) * node);
-            let share = 0.5 * (to - from) * weight * norm(point.derivatives[running]);
-            length += share;
-            (0..3).for_each(|c| moment[c] += share * point.position[c]);
-        }
+    for [parameter, weight] in span_points(mesh, running, CENTROID_POINTS) {
+        let point = on_edge(mesh, edge, parameter);
+        let share = weight * norm(point.derivatives[running]);
+        length += share;
+        (0..3).for_each(|c| moment[c] += share * point.position[c]);
     }
     scaled(1.0 / length, moment)
 }

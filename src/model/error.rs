@@ -1,7 +1,6 @@
 //! Why a scene cannot be made discrete.
 
-use crate::model::joint::SMOOTH;
-use crate::model::patch::MOST_CONTROL_POINTS;
+use crate::model::limits::{MOST_CONTROL_POINTS, SMOOTH};
 use crate::units::significant;
 
 /// A scene that cannot be made discrete.

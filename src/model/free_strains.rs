@@ -1,8 +1,9 @@
 //! What changes of temperature and of natural curvature make of the shell's free strain, over the scene's parameter.
 
+use crate::model::gauss::span_points;
 use crate::scene::{Action, ActionKind, History, Scene};
-use crate::shell::{FreeStrain, cross, gauss_legendre, norm, thermal_strain};
-use crate::spline::{Mesh, Spans, mid_surface_point};
+use crate::shell::{FreeStrain, cross, norm, thermal_strain};
+use crate::spline::{Mesh, mid_surface_point};
 
 /// Free strain of the shell over the parameter.
 #[derive(Debug, Default)]
@@ -87,14 +88,7 @@ impl FreeStrains {
 
 /// Area of the undeformed surface, mm².
 fn reference_area(mesh: &Mesh) -> f64 {
-    let [along, across] = [0, 1].map(|way| {
-        let rule = gauss_legendre(mesh.degree[way] + 1);
-        let in_span = |[from, to]: &[f64; 2]| {
-            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-            rule.iter().map(|[node, weight]| [middle + half * node, half * weight]).collect::<Vec<_>>()
-        };
-        Spans::of(&mesh.knots[way], mesh.degree[way]).bounds.iter().flat_map(in_span).collect::<Vec<_>>()
-    });
+    let [along, across] = [0, 1].map(|way| span_points(mesh, way, mesh.degree[way] + 1));
     let points = along.iter().flat_map(|one| across.iter().map(move |two| (one, two)));
     points
         .map(|([u, along], [v, across])| {

@@ -7,6 +7,7 @@
 //! of the three lines in one ratio all along.
 
 use crate::model::ModelError;
+use crate::model::limits::SMOOTH;
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
@@ -24,10 +25,6 @@ pub struct Joint {
     /// Share of the line after, times the sum of both.
     pub after_weight: f64,
 }
-
-/// Angles (rad) and shares up to which the geometry counts as smooth: coordinates given to five digits are off by that much
-/// over the distance of two control points.
-pub const SMOOTH: f64 = 1e-3;
 
 /// Joints in a direction: interior knots of full multiplicity.
 ///

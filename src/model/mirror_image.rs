@@ -4,15 +4,15 @@
 //! surface, supports and actions must be mapped onto themselves. The parameter across the line goes over into 1 − ξ; tangents
 //! along it are mirrored and those across mirrored and turned round, so that the normal of the image is the image of the normal:
 //! loads along directions of the surface keep their size. Forces and translations are mirrored, moments and turns mirrored and
-//! turned round. What acts on the whole surface is looked at on the line ([`super::mirror`]).
+//! turned round. What acts on the whole surface is looked at on the line ([`super::mirror_check`]).
 
 use crate::model::ModelError;
 use crate::model::edge::{on_edge, side};
-use crate::model::mirror::{Mirror, SAME_PARAMETER};
+use crate::model::limits::{ANGLE, POSITION, ROUNDING, SAME_PARAMETER};
+use crate::model::mirror::Mirror;
 use crate::model::place::{parameters_of, sample_parameters};
-use crate::model::soundness::POSITION;
-use crate::model::supports::supports_of;
-use crate::model::symmetry_plane::{ANGLE, ROUNDING, unit};
+use crate::model::scene_supports::supports_of;
+use crate::model::symmetry_plane::unit;
 use crate::scene::{
     Action, ActionKind, ForceVector, History, Hold, Motion, ParametricDirection, Place, Scene, Support,
 };

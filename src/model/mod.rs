@@ -1,18 +1,59 @@
 //! A scene made discrete: the patch that it starts from, and for a mesh its tables, supports and free unknowns.
+//!
+//! | file | what |
+//! |---|---|
+//! | `limits` | how near is near enough, how much too much |
+//! | `error` | why a scene cannot be made discrete |
+//! | `shape` | the surface of a scene in its fewest elements |
+//! | `joint` | knot lines across which it is smooth |
+//! | `soundness`, `thinness`, `overhang` | whether a shell can have it |
+//! | `subdivision`, `patch` | the mesh that a run starts from |
+//! | `place`, `edge`, `direction` | parameters of fractions; rows and normals of edges; directions at a point |
+//! | `expressions` | places as sums of control points |
+//! | `symmetry_plane`, `symmetric_line`, `mirror` | planes of symmetry |
+//! | `mirror_check`, `mirror_image` | whether what acts there is its own image |
+//! | `scene_supports` | the supports of a scene |
+//! | `ties` | joints, seams and planes that tie rows |
+//! | `body` | a rigid body and its motions |
+//! | `supports` | what supports ask of a mesh |
+//! | `hold`, `rigid_support` | the constraints that each kind makes |
+//! | `rigid_motion` | motions that they leave free |
+//! | `elimination` | constraints eliminated |
+//! | `unknowns` | free unknowns and coordinates |
+//! | `rotation`, `placement` | displacements at some coordinates |
+//! | `quadrature`, `imbalance` | Gauss points of each element, and whether they balance membrane forces |
+//! | `gauss` | Gauss points on parameters |
+//! | `connectivity` | control points of each element, and the order of sums |
+//! | `tables` | shape functions at the points |
+//! | `block_pattern`, `blocks` | 3 × 3 blocks of a matrix on control points |
+//! | `term` | energies and loads beside the shell's own |
+//! | `loads` | the actions of a scene as terms |
+//! | `load_balance` | whether they balance where only rigid motions are held |
+//! | `free_strains` | strains without energy over the parameter |
+//! | `reactions` | what supports exert |
+//! | `remarks` | what a scene leaves open, in words |
+//! | `discretization` | all of that for one mesh |
 
 mod block_pattern;
 mod blocks;
+mod body;
 mod connectivity;
 mod direction;
+mod discretization;
 mod edge;
 mod elimination;
 mod error;
 mod expressions;
 mod free_strains;
+mod gauss;
+mod hold;
 mod imbalance;
 mod joint;
+mod limits;
+mod load_balance;
 mod loads;
 mod mirror;
+mod mirror_check;
 mod mirror_image;
 mod overhang;
 mod patch;
@@ -24,6 +65,7 @@ mod remarks;
 mod rigid_motion;
 mod rigid_support;
 mod rotation;
+mod scene_supports;
 mod shape;
 mod soundness;
 mod subdivision;
@@ -33,6 +75,7 @@ mod symmetry_plane;
 mod tables;
 mod term;
 mod thinness;
+mod ties;
 mod unknowns;
 
 pub use block_pattern::BlockPattern;
@@ -40,76 +83,20 @@ pub(crate) use blocks::BLOCK;
 pub use blocks::Blocks;
 pub use connectivity::{Connectivity, Strand};
 pub(crate) use direction::{Site, direction_at};
+pub use discretization::Discretization;
 pub use error::ModelError;
 pub(crate) use expressions::control_expressions;
 pub use free_strains::{FreeStrains, NaturalState};
-pub use patch::{MOST_CONTROL_POINTS, starting_mesh};
+pub use limits::MOST_CONTROL_POINTS;
+pub(crate) use load_balance::check_balance;
+pub use patch::starting_mesh;
 pub(crate) use place::{line_place, parameters_of};
 pub use placement::Placement;
 pub use reactions::{Exerted, PointForces};
 pub(crate) use remarks::remarks;
 pub(crate) use rigid_motion::free_motion;
-pub(crate) use rigid_support::check_balance;
 pub use supports::Supports;
 pub(crate) use tables::{BATCH, LANES};
 pub use tables::{PointTable, Tables};
 pub use term::{At, Tangent, Term, TermSource, Terms};
 pub use unknowns::{Entry, Unknowns};
-
-use std::sync::Arc;
-
-use crate::scene::Scene;
-use crate::spline::Mesh;
-
-/// A scene on a mesh: everything that assembly and constraints need and that a state does not carry.
-#[derive(Debug)]
-pub struct Discretization {
-    /// The mesh that it was built for.
-    pub mesh: Arc<Mesh>,
-    /// Shape functions and undeformed shell at the quadrature points.
-    pub tables: Tables,
-    /// Which control points meet in a matrix.
-    pub blocks: BlockPattern,
-    /// Free unknowns and how control points follow from them.
-    pub unknowns: Unknowns,
-    /// Loads and energies beside the shell's own.
-    pub terms: Terms,
-    /// Strains without energy.
-    pub free_strains: FreeStrains,
-}
-
-impl Discretization {
-    /// Builds tables, unknowns and loads; a pure function of scene and mesh.
-    ///
-    /// # Errors
-    /// Where supports or loads do not fit the mesh.
-    pub fn new(scene: &Scene, mesh: &Arc<Mesh>) -> Result<Self, ModelError> {
-        Self::with_terms(scene, mesh, &[])
-    }
-
-    /// The same with terms of the caller's own.
-    ///
-    /// # Errors
-    /// Where supports, loads or those terms do not fit the mesh.
-    pub fn with_terms(scene: &Scene, mesh: &Arc<Mesh>, own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
-        let unknowns = Unknowns::new(scene, mesh)?;
-        let tables = Tables::new(scene, mesh);
-        let terms = Terms::new(scene, mesh, &tables, own)?;
-        Ok(Self {
-            mesh: mesh.clone(),
-            blocks: BlockPattern::new(&[&tables.connectivity], &terms.pairs()),
-            tables,
-            unknowns,
-            terms,
-            free_strains: FreeStrains::new(scene, mesh),
-        })
-    }
-
-    /// Forces that loads and other terms exert on the control points, N; empty where there are no terms.
-    pub fn external_forces(&self, displacement: &[[f64; 3]], parameter: f64) -> Vec<[f64; 3]> {
-        match self.terms.is_empty() {
-            true => Vec::new(),
-            false => self.terms.forces(At { mesh: &self.mesh, displacement, parameter }),
-        }
-    }
-}

@@ -1,8 +1,9 @@
 //! Forces by the projected area: which of two layers one above the other carries them, the area alone does not say.
 
 use crate::model::ModelError;
+use crate::model::limits::ANGLE;
 use crate::model::place::sample_parameters;
-use crate::model::symmetry_plane::{ANGLE, unit};
+use crate::model::symmetry_plane::unit;
 use crate::scene::{ActionKind, ForceVector, LoadedArea, Scene};
 use crate::shell::{cross, dot, norm};
 use crate::spline::{Mesh, mid_surface_point};

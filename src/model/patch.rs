@@ -1,16 +1,14 @@
 //! The mesh that a scene starts from: an exact NURBS surface with the scene's elements.
 
 use crate::model::ModelError;
-use crate::model::mirror::check_mirror_images;
+use crate::model::limits::MOST_CONTROL_POINTS;
+use crate::model::mirror_check::check_mirror_images;
 use crate::model::overhang::check_overhangs;
 use crate::model::shape::shape;
 use crate::model::subdivision::subdivide;
 use crate::model::thinness::check_thinness;
 use crate::scene::Scene;
 use crate::spline::{Grid, Mesh};
-
-/// Control points of a mesh at most: tables and matrix of more would not fit in the memory of a large workstation.
-pub const MOST_CONTROL_POINTS: usize = 500_000;
 
 /// Builds the starting mesh.
 ///

@@ -3,7 +3,7 @@
 
 use crate::model::rotation::{Rotation, apply};
 use crate::model::supports::{Section, Supports};
-use crate::model::unknowns::{Entry, Share, Unknowns, unit};
+use crate::model::unknowns::{Entry, Home, Share, Unknowns, unit};
 use crate::shell::{add, dot, scaled, sub};
 
 /// The displacement at some coordinates, and its derivatives with respect to them.
@@ -23,7 +23,7 @@ pub struct Placement<'a> {
 
 /// Where a section stands.
 #[derive(Clone, Debug)]
-pub(super) struct Pose {
+struct Pose {
     /// Translation (mm) and rotation vector (radians).
     pub motions: [f64; 6],
     rotation: Rotation,
@@ -45,8 +45,32 @@ impl Pose {
 }
 
 impl Unknowns {
+    /// The displacement that belongs to free unknowns at a parameter.
+    pub fn place(&self, unknowns: &[f64], parameter: f64) -> Placement<'_> {
+        Placement::new(self, unknowns, parameter)
+    }
+
+    /// The free unknowns of a displacement that can be represented at a parameter. `turns` are the rotation vectors of
+    /// the sections where one of them turns freely, and empty otherwise.
+    pub fn of_displacement(&self, displacement: &[[f64; 3]], turns: &[[f64; 3]], parameter: f64) -> Vec<f64> {
+        let poses = self.poses_of(displacement, turns, parameter);
+        self.home
+            .iter()
+            .map(|home| match *home {
+                Home::Component(point, c) => match self.supports.section_of[point] {
+                    Some(section) => poses[section].local(self.points[point], displacement[point])[c],
+                    None => displacement[point][c],
+                },
+                Home::Motion { section, motion, .. } => {
+                    let size = if motion < 3 { 1.0 } else { self.supports.sections[section].size };
+                    poses[section].motions[motion] * size
+                }
+            })
+            .collect()
+    }
+
     /// Poses of the sections in a displacement.
-    pub(super) fn poses_of(&self, displacement: &[[f64; 3]], turns: &[[f64; 3]], parameter: f64) -> Vec<Pose> {
+    fn poses_of(&self, displacement: &[[f64; 3]], turns: &[[f64; 3]], parameter: f64) -> Vec<Pose> {
         let given = self.given_at(parameter);
         let pose = |(index, section): (usize, &Section)| {
             let mut motions = [0.0; 6];
@@ -75,7 +99,7 @@ impl Unknowns {
 }
 
 impl<'a> Placement<'a> {
-    pub(super) fn new(unknowns: &'a Unknowns, free: &[f64], parameter: f64) -> Self {
+    fn new(unknowns: &'a Unknowns, free: &[f64], parameter: f64) -> Self {
         let mut coordinates = free.to_vec();
         coordinates.extend(unknowns.given_at(parameter));
         let turn = |(section, motions): (&Section, &[usize; 6])| {

@@ -1,8 +1,8 @@
 //! What the words of a scene come to where they leave it open.
 
+use crate::model::limits::ROUNDING;
 use crate::model::mirror::Mirror;
 use crate::model::place::parameters_of;
-use crate::model::symmetry_plane::ROUNDING;
 use crate::model::thinness::{ERROR_OF_OFFSET, Extent, THICK};
 use crate::model::{At, FreeStrains, ModelError, Terms, Unknowns};
 use crate::scene::{Action, ActionKind, ForceVector, Geometry, History, Scene, SurfaceDirection};

@@ -8,14 +8,13 @@
 //!
 //! The points stand at fixed fractions of the surface, so that a refined mesh holds the same.
 
-use nalgebra::{DMatrix, DVector};
-
+use crate::model::ModelError;
+use crate::model::body::{Body, HeldMotions};
 use crate::model::elimination::Expression;
 use crate::model::expressions::control_expressions;
 use crate::model::place::parameters_of;
-use crate::model::rigid_motion::{Body, FreeMotions};
+use crate::model::rigid_motion::free_motions;
 use crate::model::supports::Supports;
-use crate::model::{At, ModelError, Terms, Unknowns};
 use crate::scene::{Place, Scene};
 use crate::shell::{cross, dot, norm, sub};
 use crate::spline::{Mesh, mid_surface_point};
@@ -25,20 +24,6 @@ use crate::spline::{Mesh, mid_surface_point};
 const FRACTIONS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
 /// Points nearer to each other than this share of the largest distance are one: a turn meets itself.
 const SAME: f64 = 1e-6;
-/// Work of the loads on a free motion, relative to all their forces, that is rounding and quadrature. A force that these
-/// few points have to carry bends a thin free shell without stretching it: on a tube, (R/t)² times as far as pressure of
-/// the same sum widens it.
-const BALANCE: f64 = 1e-9;
-
-/// What such a support holds.
-#[derive(Clone, Debug)]
-pub struct HeldMotions {
-    /// Index of the support.
-    pub support: usize,
-    /// What the others leave free.
-    pub free: FreeMotions,
-}
-
 /// A point whose displacement counts.
 struct Point {
     position: [f64; 3],
@@ -62,7 +47,7 @@ impl Supports {
             return Err(ModelError::TooFewPoints { support, count: spread.len() });
         }
         let body = Body::around(&positions);
-        let free = FreeMotions::new(body, self, points);
+        let free = free_motions(body, self, points);
         if free.basis.ncols() == 0 {
             return Err(ModelError::NoFreeMotion { support: self.traces[index].name.clone() });
         }
@@ -113,35 +98,4 @@ fn on_one_line(points: &[[f64; 3]]) -> bool {
     let arms = points.iter().map(|point| sub(*point, *first));
     let longest = arms.clone().fold([0.0; 3], |best, arm| if norm(arm) > norm(best) { arm } else { best });
     arms.map(|arm| norm(cross(arm, longest))).fold(0.0, f64::max) <= SAME * dot(longest, longest)
-}
-
-/// Refuses loads that push along a motion that only a support of rigid motions holds.
-///
-/// # Errors
-/// Where they do, at the end or at a kink of a history.
-pub fn check_balance(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<(), ModelError> {
-    let Some(held) = &unknowns.supports().held_motions else { return Ok(()) };
-    let loads = Terms::of_actions(scene, mesh)?;
-    let still = vec![[0.0; 3]; unknowns.points.len()];
-    let kinks = scene.actions.iter().flat_map(|action| action.history.kinks());
-    for load_factor in kinks.chain([scene.load.target()]) {
-        let forces = loads.forces(At { mesh, displacement: &still, parameter: load_factor });
-        let mut work = DVector::<f64>::zeros(6);
-        for (force, point) in forces.iter().zip(&unknowns.points) {
-            let fields = held.free.body.fields(*point);
-            (0..6).for_each(|k| work[k] += (0..3).map(|c| force[c] * fields[k][c]).sum::<f64>());
-        }
-        let on_free = &held.free.basis * held.free.basis.tr_mul(&work);
-        let all: f64 = forces.iter().map(|force| norm(*force)).sum();
-        if on_free.norm() > BALANCE * all {
-            let motion = DMatrix::from_column_slice(6, 1, (&on_free / on_free.norm()).as_slice());
-            return Err(ModelError::Unbalanced {
-                support: unknowns.supports().traces[held.support].name.clone(),
-                motion: held.free.body.words(&motion),
-                share: on_free.norm() / all,
-                load_factor,
-            });
-        }
-    }
-    Ok(())
 }

@@ -7,7 +7,8 @@ use crate::model::joint::smoothed;
 use crate::model::soundness::{check_normals, check_seam, closed_directions};
 use crate::scene::{Geometry, NurbsPatch, Scene, Seam};
 use crate::spline::{
-    Grid, HomogeneousCurve, Mesh, basis_derivatives, basis_derivatives_len, circular_arc, find_span, straight_line,
+    Grid, HomogeneousCurve, Mesh, basis_derivatives, basis_derivatives_len, circular_arc, control_count, find_span,
+    straight_line,
 };
 
 /// A surface, and how many elements the scene asks for.
@@ -114,9 +115,9 @@ fn sound(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
 
 /// The patch whose points are listed with u running fastest.
 fn listed_the_other_way(patch: &NurbsPatch) -> NurbsPatch {
-    let n1 = patch.knots_u.len() - patch.degrees[0] - 1;
-    let n2 = patch.knots_v.len() - patch.degrees[1] - 1;
-    let listed = Grid::new([n2, n1]);
+    let [along, across] = [(&patch.knots_u, patch.degrees[0]), (&patch.knots_v, patch.degrees[1])]
+        .map(|(knots, degree)| control_count(knots, degree));
+    let listed = Grid::new([across, along]);
     NurbsPatch {
         control_points_mm: listed.first_fastest().map(|k| patch.control_points_mm[k]).collect(),
         weights: listed.first_fastest().map(|k| patch.weights[k]).collect(),
@@ -158,7 +159,7 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
         }
     }
     let degree = mesh.degree[way] + 1;
-    let count = knots.len() - degree - 1;
+    let count = control_count(&knots, degree);
     let greville: Vec<f64> = (0..count)
         .map(|k| (knots[k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64).clamp(0.0, 1.0))
         .collect();

@@ -6,13 +6,12 @@
 //! points, the area of a parameter square is followed to its least value, which a fold or a collapse takes to zero.
 
 use crate::model::ModelError;
+use crate::model::limits::POSITION;
 use crate::scene::Seam;
 use crate::shell::{cross, dot, norm, scaled, sub};
 use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 use crate::units::{place, significant};
 
-/// Distances, relative to the size of what they are distances of, that are rounding of coordinates given to five digits.
-pub const POSITION: f64 = 1e-4;
 /// Areas of a parameter square, relative to the largest, that are none.
 const NO_AREA: f64 = 1e-9;
 /// Halvings of a step after which a normal that still turns over does so for good.
@@ -128,8 +127,7 @@ struct Gaps {
 
 impl Gaps {
     fn new(mesh: &Mesh) -> Self {
-        let first = mesh.control_points[0];
-        let corner = [first[0] / first[3], first[1] / first[3], first[2] / first[3]];
+        let corner = mesh.point(0);
         let arms = mesh.points().map(|point| sub(point, corner));
         let tolerance = POSITION * arms.map(norm).fold(0.0, f64::max);
         let gap = |way: usize, reversed: bool| {

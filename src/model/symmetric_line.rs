@@ -9,11 +9,7 @@
 //! where they hold for each j, whether a knot stands at ξ₀ or not: Σ_i N_i w_ij u_ij,⊥ = 0 and Σ_i (N_i′ − c N_i) w_ij u_ij,∥ = 0.
 //! The undeformed surface must meet them itself; then so does the deformed one, at any rotation.
 
-use crate::model::ModelError;
-use crate::model::elimination::Expression;
 use crate::model::expressions::{Sum, line_terms, nonzero, shares};
-use crate::model::mirror::Mirror;
-use crate::model::supports::{Supports, along, in_plane};
 use crate::model::symmetry_plane::NoPlane;
 use crate::shell::{add, scaled};
 use crate::spline::Mesh;
@@ -24,36 +20,9 @@ const EVEN: f64 = 1e-9;
 /// A line of a mesh.
 pub(super) struct Line {
     /// Its displacement: one sum for each of its control points as a curve; weights of 1 in all.
-    places: Vec<Sum>,
+    pub places: Vec<Sum>,
     /// The derivative of its displacement across it, alike, in parts of the largest weight.
-    slopes: Vec<Sum>,
-}
-
-impl Supports {
-    /// No displacement across the plane of a line, and slopes that are even on both sides of it.
-    pub(super) fn mirror_line(&mut self, index: usize, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
-        let line = Line::new(mesh, mirror.way, mirror.parameter).map_err(|reason| ModelError::NotASymmetryPlane {
-            support: mirror.support.clone(),
-            reason: reason.to_string(),
-        })?;
-        let points: Vec<usize> = line.places.iter().chain(&line.slopes).flatten().map(|(point, _)| *point).collect();
-        self.check_sections_keep(&points, mirror)?;
-        let directed = |sum: &[(usize, f64)], direction: [f64; 3]| -> Expression {
-            let of_point = |(point, factor): &(usize, f64)| along(*point, scaled(*factor, direction));
-            sum.iter().flat_map(of_point).collect()
-        };
-        for (place, slope) in line.places.iter().zip(&line.slopes) {
-            self.push(Some(index), directed(place, mirror.normal));
-            let tangents = in_plane(mirror.normal);
-            tangents.into_iter().for_each(|direction| self.push(Some(index), directed(slope, direction)));
-        }
-        let curve = line.points(mesh);
-        let share = 1.0 / curve.len() as f64;
-        let middle = curve.iter().fold([0.0; 3], |sum, x| add(sum, scaled(share, *x)));
-        let trace = &mut self.traces[index];
-        (trace.points, trace.pole, trace.is_inner_mirror) = (points, middle, true);
-        Ok(())
-    }
+    pub slopes: Vec<Sum>,
 }
 
 impl Line {

@@ -1,16 +1,9 @@
 //! The plane of symmetry that an edge, or a line inside, can lie in: found from the control points of the line as a curve and
 //! the steps from them across it.
 
-use crate::model::joint::SMOOTH;
-use crate::model::soundness::POSITION;
+use crate::model::limits::{ANGLE, POSITION, ROUNDING};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::units::{place, significant};
-
-/// Angles (rad) between a line's normal plane and the surface that are rounding of coordinates given to five digits; also
-/// the share of a stiffness that turning the axes by as much makes.
-pub(super) const ANGLE: f64 = SMOOTH;
-/// Deviations below this are rounding of a computation: elimination finds constraints redundant that differ by as little.
-pub(super) const ROUNDING: f64 = 1e-12;
 
 /// Why an edge or a line is no plane of symmetry.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,7 +1,6 @@
 //! Energies and loads beside the shell's own, each a [`Term`]; all others see their sum.
 
 use std::fmt::Debug;
-use std::sync::Arc;
 
 use crate::digest::Hash;
 use crate::model::{BlockPattern, Blocks, ModelError, Tables};
@@ -126,18 +125,6 @@ pub struct Terms {
 }
 
 impl Terms {
-    /// The actions of a scene, and terms of the caller's own.
-    ///
-    /// # Errors
-    /// Where one of them does not fit the mesh.
-    pub fn new(scene: &Scene, mesh: &Mesh, tables: &Tables, own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
-        let mut terms = Self::of_actions(scene, mesh)?;
-        for source in own {
-            terms.list.push(source.on(scene, mesh, tables)?);
-        }
-        Ok(terms)
-    }
-
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()

@@ -2,9 +2,10 @@
 //! curvature and the shorter side of the surface.
 
 use crate::model::ModelError;
+use crate::model::gauss::span_points;
 use crate::scene::{Material, Scene};
-use crate::shell::{PointReference, cross, gauss_legendre, norm};
-use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
+use crate::shell::{PointReference, cross, norm};
+use crate::spline::{Mesh, SurfacePoint, mid_surface_point};
 use crate::units::place;
 
 /// Share of a radius or a side from which on a thickness is said: plates so thick bend by shear too, by about (t/L)² more.
@@ -40,7 +41,7 @@ struct Sample {
 impl Extent {
     /// Of the surface of a mesh, which has a normal everywhere.
     pub fn of(mesh: &Mesh, material: &Material) -> Self {
-        let [us, vs] = [0, 1].map(|way| nodes(mesh, way));
+        let [us, vs] = [0, 1].map(|way| span_points(mesh, way, POINTS));
         let sample = |[u, along]: [f64; 2], [v, across]: [f64; 2]| {
             let SurfacePoint { position, derivatives } = mid_surface_point(mesh, &[], [u, v]);
             let curvature = PointReference::new(derivatives, material, 1.0).largest_curvature();
@@ -58,20 +59,10 @@ impl Extent {
     }
 }
 
-/// Gauss points of all spans of a direction, each with its weight.
-fn nodes(mesh: &Mesh, way: usize) -> Vec<[f64; 2]> {
-    let rule = gauss_legendre(POINTS);
-    let in_span = |[from, to]: [f64; 2]| {
-        let half = 0.5 * (to - from);
-        rule.iter().map(|[node, weight]| [from + half * (1.0 + node), half * weight]).collect::<Vec<_>>()
-    };
-    Spans::of(&mesh.knots[way], mesh.degree[way]).bounds.into_iter().flat_map(in_span).collect()
-}
-
 /// Length of the line through the middle that runs in a direction, mm.
 fn side_mm(mesh: &Mesh, way: usize) -> f64 {
     let point = |at: f64| mid_surface_point(mesh, &[], if way == 0 { [at, 0.5] } else { [0.5, at] });
-    nodes(mesh, way).into_iter().map(|[at, weight]| weight * norm(point(at).derivatives[way])).sum()
+    span_points(mesh, way, POINTS).into_iter().map(|[at, weight]| weight * norm(point(at).derivatives[way])).sum()
 }
 
 /// Refuses a body that is no shell, and a surface drawn too far from its middle.

@@ -17,9 +17,10 @@
 
 use std::collections::BTreeMap;
 
+use crate::model::ModelError;
 use crate::model::elimination::{Expression, eliminate};
 use crate::model::supports::{Law, Section, Supports};
-use crate::model::{ModelError, Placement};
+
 use crate::scene::Scene;
 use crate::spline::{Grid, Mesh};
 
@@ -236,30 +237,6 @@ impl Unknowns {
         self.free_end.push(self.entries.len() + all.iter().filter(|entry| entry.coordinate < self.count).count());
         self.entries.extend(all);
         self.start.push(self.entries.len());
-    }
-
-    /// The displacement that belongs to free unknowns at a parameter.
-    pub fn place(&self, unknowns: &[f64], parameter: f64) -> Placement<'_> {
-        Placement::new(self, unknowns, parameter)
-    }
-
-    /// The free unknowns of a displacement that can be represented at a parameter. `turns` are the rotation vectors of
-    /// the sections where one of them turns freely, and empty otherwise.
-    pub fn of_displacement(&self, displacement: &[[f64; 3]], turns: &[[f64; 3]], parameter: f64) -> Vec<f64> {
-        let poses = self.poses_of(displacement, turns, parameter);
-        self.home
-            .iter()
-            .map(|home| match *home {
-                Home::Component(point, c) => match self.supports.section_of[point] {
-                    Some(section) => poses[section].local(self.points[point], displacement[point])[c],
-                    None => displacement[point][c],
-                },
-                Home::Motion { section, motion, .. } => {
-                    let size = if motion < 3 { 1.0 } else { self.supports.sections[section].size };
-                    poses[section].motions[motion] * size
-                }
-            })
-            .collect()
     }
 }
 

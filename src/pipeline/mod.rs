@@ -1,4 +1,17 @@
 //! Stages, the loop that runs them, step control, and the sinks that see every stage.
+//!
+//! | file | what |
+//! |---|---|
+//! | `stages` | the stages |
+//! | `load_solve`, `path_solve` | solve by load, and by arc length |
+//! | `step_control`, `path_control` | how far the next step goes |
+//! | `run` | the loop |
+//! | `sink` | where stages go |
+//! | `record`, `report`, `fields` | what is kept of a stage |
+//! | `probes` | readings at an equilibrium |
+//! | `warning`, `doubts`, `ripple` | when numbers are doubted, and how it is said |
+//! | `stage_error` | why a stage did not end |
+//! | `revision` | the revision of the numerics |
 
 mod doubts;
 mod fields;

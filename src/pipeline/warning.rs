@@ -29,7 +29,7 @@ pub enum Warning {
         parameter: f64,
         /// Elements each way of the model there.
         elements: [usize; 2],
-        /// What halving them would change of the strain energy, relative to it ([`Halving::energy_share`]).
+        /// What halving them would change of the strain energy, relative to it ([`crate::adapt::Halving::energy_share`]).
         energy_share: f64,
     },
     /// A probe would read another value with every element halved.

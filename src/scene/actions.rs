@@ -1,8 +1,8 @@
 //! The array of tables `[[action]]`: what acts on the shell.
 
 use super::data::{Action, ActionKind, ForceVector, Geometry, LoadedArea, Material, Place, SurfaceDirection};
-use super::error::{Checked, Fault};
-use super::general::{edge, history, place, point};
+use super::fault::{Checked, Fault};
+use super::places::{edge, has_centre, history, place, point};
 use super::table::{ANY, Table};
 
 /// Acceleration of free fall, m/s².
@@ -111,19 +111,6 @@ fn vector(table: &Table<'_, '_>, name: &'static str, geometry: &Geometry) -> Che
             Ok(ForceVector::Along(size, direction))
         }
     }
-}
-
-/// Refuses the word `radial` where the shape has neither axis nor centre.
-pub(super) fn has_centre(table: &Table<'_, '_>, key: &str, geometry: &Geometry) -> Checked<()> {
-    if geometry.away_from_centre([0.0; 3]).is_some() {
-        return Ok(());
-    }
-    let shape = if matches!(geometry, Geometry::Plate { .. }) { "a plate" } else { "a nurbs surface" };
-    Err(table.wrong(
-        table.place_of(key).as_ref(),
-        format!("{shape} has no axis and no centre that \"radial\" could be away from"),
-        "write \"normal\", or use components in x, y and z",
-    ))
 }
 
 impl ForceVector {

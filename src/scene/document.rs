@@ -1,16 +1,16 @@
 //! TOML text and settings as one list of entries that know their place in the text. Nothing is judged here but syntax.
 
 use std::borrow::Cow;
-use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::{Checked, Fault, Place, Problem};
-use super::general::{ARRAYS, GEOMETRIES, LOADS, MATERIALS};
-use super::keys::Key;
+use super::entry::Entry;
+use super::fault::{Checked, Fault, Place};
+use super::kinds::{ARRAYS, GEOMETRIES, LOADS, MATERIALS};
+use super::problem::Problem;
 use super::table::Table;
-use super::{names, syntax};
+use super::{meant, syntax};
 
 /// What stands in a scene file, with settings applied.
 pub(super) struct Document<'t> {
@@ -42,46 +42,6 @@ pub(super) struct Header {
     pub place: Place,
     /// Whether it is written `[name]` on a line of its own, so that lines may be added below.
     own_line: bool,
-}
-
-/// A key with its value.
-pub(super) struct Entry<'t> {
-    pub section: String,
-    pub name: String,
-    pub place: Place,
-    pub value: Spanned<DeValue<'t>>,
-    /// Where the text begins that the spans in `value` count from.
-    base: Place,
-}
-
-impl Entry<'static> {
-    /// The entry that a key's default stands for.
-    ///
-    /// # Errors
-    /// Where the default is not TOML.
-    pub fn of_default(key: &Key, text: &'static str) -> Result<Self, toml::de::Error> {
-        let place = Place { source: 0, span: 0..0 };
-        let value = DeValue::parse(text)?;
-        Ok(Self { section: key.section.into(), name: key.name.into(), base: place.clone(), place, value })
-    }
-}
-
-impl Entry<'_> {
-    /// A word as the value would be written: a setting needs no quotes, and a shell would take them away.
-    pub fn written(&self, word: &str) -> String {
-        if self.base.source == 0 { format!("\"{word}\"") } else { word.into() }
-    }
-
-    /// Where the value stands.
-    pub fn value_place(&self) -> Place {
-        self.place_of(self.value.span())
-    }
-
-    /// Where a part of the value stands.
-    pub fn place_of(&self, span: Range<usize>) -> Place {
-        let start = self.base.span.start;
-        Place { source: self.base.source, span: start + span.start..start + span.end }
-    }
 }
 
 impl<'t> Document<'t> {
@@ -199,13 +159,13 @@ impl<'t> Document<'t> {
     fn set(&mut self, source: usize, setting: &'t str) -> Checked<()> {
         let whole = Place { source, span: 0..setting.len() };
         let Some((path, value_text)) = setting.split_once('=') else {
-            let key = names::key(setting.trim());
+            let key = meant::key(setting.trim());
             return Err(Fault::new(Problem::SettingWithoutValue { key }, &whole));
         };
         let start = path.len() - path.trim_start().len();
         let place = Place { source, span: start..start + path.trim().len() };
         let Some((section, name)) = path.trim().split_once('.') else {
-            return Err(names::setting_without_section(path.trim(), &place));
+            return Err(meant::setting_without_section(path.trim(), &place));
         };
         let section_place = Place { source, span: start..start + section.len() };
         if ARRAYS.contains(&section) {
@@ -223,7 +183,7 @@ impl<'t> Document<'t> {
         let value =
             setting_value(value_text.trim()).map_err(|error| syntax::fault(&error, value_text.trim(), &base))?;
 
-        let displaced = names::stands_in_for(section, name);
+        let displaced = meant::stands_in_for(section, name);
         self.entries
             .retain(|entry| entry.section != section || !(entry.name == name || displaced.contains(&&*entry.name)));
         if self.header(section).is_none() {

@@ -10,17 +10,7 @@ use serde_json::Value;
 
 use super::data::Scene;
 use super::key_table::KEYS;
-
-/// How far a change of a key reaches into a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Reach {
-    /// No state changes: what is written beside the states, and where the run stops.
-    Free,
-    /// The steps taken change, not the problem solved: a state of one run can start the other.
-    Steps,
-    /// The problem changes: no state of one run means anything in the other.
-    Everything,
-}
+use super::keys::Reach;
 
 /// A key on which two scenes differ.
 #[derive(Clone, Debug, PartialEq)]

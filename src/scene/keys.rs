@@ -1,8 +1,6 @@
 //! What can be said about a key of a scene file. The keys themselves stand in `key_table`; reading, checking,
 //! suggesting, explaining, comparing and the help text all draw on that one table.
 
-use super::identity::Reach;
-
 /// A key of a scene file, and all that is known about it.
 #[derive(Debug, PartialEq)]
 pub struct Key {
@@ -57,6 +55,17 @@ impl Key {
             Kind::Text => "text in quotes".into(),
         }
     }
+}
+
+/// How far a change of a key reaches into a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// No state changes: what is written beside the states, and where the run stops.
+    Free,
+    /// The steps taken change, not the problem solved: a state of one run can start the other.
+    Steps,
+    /// The problem changes: no state of one run means anything in the other.
+    Everything,
 }
 
 /// A table of a scene file.
@@ -210,6 +219,11 @@ impl std::fmt::Display for Limits {
             (true, false) => write!(f, "at least {low} and less than {high}"),
         }
     }
+}
+
+/// A word of a key.
+pub(super) const fn choice(word: &'static str, meaning: &'static str) -> Choice {
+    Choice { word, meaning }
 }
 
 /// A number as an engineer would write it: `300`, `0.019`, `1e-7`.

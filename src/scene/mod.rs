@@ -7,37 +7,56 @@
 //! |---|---|
 //! | `data` | what a scene holds |
 //! | `keys`, `key_table` | every key of a scene file, described once, as data |
-//! | `document` | TOML text and `--set` settings as one list of entries that know their place |
+//! | `kinds` | kinds of tables whose keys that table does not hold, and arrays of tables |
+//! | `document`, `entry`, `value` | TOML text and `--set` settings as one list of entries that know their place |
 //! | `syntax` | text that is not TOML |
-//! | `names`, `foreign_unit` | wrong names, and what was meant by them |
+//! | `names` | wrong names |
+//! | `meant`, `nearest`, `foreign_unit` | what was meant by a wrong name |
 //! | `read` | one entry to one value, within the limits of its key |
-//! | `table`, `general`, `actions` | tables whose keys depend on their kind: geometries, materials, supports, actions, probes |
+//! | `table` | one table whose keys depend on its kind |
+//! | `geometries`, `materials`, `load_steps` | tables of such kinds: shells other than tape springs, layers, steps of a load factor |
 //! | `nurbs` | surfaces of the user's own |
-//! | `check`, `stage_order`, `nearness` | entries to a scene; what must hold between keys, between stages, between places |
-//! | `error`, `explain`, `render` | what can be wrong, in words, and with the text underlined |
+//! | `supports`, `actions`, `probes`, `places` | arrays of tables, and where their items stand |
+//! | `check`, `structure`, `stage_order`, `nearness` | entries to a scene; what must hold between keys, between supports and actions, between stages, between places |
+//! | `problem`, `fault` | what can be wrong, and where it stands |
+//! | `explain`, `render`, `error` | that in words, with the text underlined, as callers see it |
 //! | `identity` | hash and differences of scenes |
-//! | `write`, `help` | a scene as TOML; the help text |
+//! | `write`, `write_general` | a scene as TOML |
+//! | `help` | the help text |
 
 mod actions;
 mod check;
 mod data;
 mod document;
+mod entry;
 mod error;
 mod explain;
+mod fault;
 mod foreign_unit;
-mod general;
+mod geometries;
 mod help;
 mod identity;
 mod key_table;
 mod keys;
+mod kinds;
+mod load_steps;
+mod materials;
+mod meant;
 mod names;
+mod nearest;
 mod nearness;
 mod nurbs;
+mod places;
+mod probes;
+mod problem;
 mod read;
 mod render;
 mod stage_order;
+mod structure;
+mod supports;
 mod syntax;
 mod table;
+mod value;
 mod write;
 mod write_general;
 
@@ -48,9 +67,10 @@ pub use data::{
     Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe, ProbeKind,
     Quadrature, Reaction, Scene, Seam, Sense, Solver, Stage, Support, SurfaceDirection, Symmetry, SyncPolicy,
 };
-pub use error::{Direction, Problem, SceneError, StageOrderProblem, SyntaxSlip, ValueType};
+pub use error::SceneError;
 pub use help::help_text;
-pub use identity::{Difference, Reach, shown_values};
+pub use identity::{Difference, shown_values};
 pub use key_table::{KEYS, SECTIONS};
-pub use keys::{Choice, Key, Kind, Limit, Limits, Presence, Section, Unit};
+pub use keys::{Choice, Key, Kind, Limit, Limits, Presence, Reach, Section, Unit};
 pub use nurbs::SCENE_BYTES_LIMIT;
+pub use problem::{Direction, Problem, StageOrderProblem, SyntaxSlip, ValueType};

@@ -2,7 +2,7 @@
 
 use super::data::{Action, ActionKind, Edge, ParametricDirection, Place, Support};
 use super::document::Document;
-use super::error::Checked;
+use super::fault::Checked;
 use super::table::Table;
 use crate::units::significant;
 

@@ -1,10 +1,11 @@
 //! A NURBS surface as the user gives it: in the scene, or in a file of its own.
 
 use super::data::NurbsPatch;
-use super::error::Checked;
-use super::general::SEAMS;
+use super::fault::Checked;
 use super::keys::number;
+use super::kinds::SEAMS;
 use super::table::Table;
+use crate::spline::{Grid, KnotFlaw, check_knots, control_count};
 
 /// Largest scene file, and largest file of a surface, bytes: a log holds the one with the other, and reads no larger ones.
 pub const SCENE_BYTES_LIMIT: u64 = 8 << 20;
@@ -106,11 +107,11 @@ impl Unsound {
 const CLAMPED: &str = "knots are ascending and clamped: the first and the last stand degree + 1 times";
 
 fn sound(patch: &NurbsPatch) -> Result<(), Unsound> {
-    check_knots("u", "knots_u", &patch.knots_u, patch.degrees[0])?;
-    check_knots("v", "knots_v", &patch.knots_v, patch.degrees[1])?;
+    sound_knots("u", "knots_u", &patch.knots_u, patch.degrees[0])?;
+    sound_knots("v", "knots_v", &patch.knots_v, patch.degrees[1])?;
     let counts = [(&patch.knots_u, patch.degrees[0]), (&patch.knots_v, patch.degrees[1])]
-        .map(|(knots, degree)| knots.len() - degree - 1);
-    let expected = counts[0] * counts[1];
+        .map(|(knots, degree)| control_count(knots, degree));
+    let expected = Grid::new(counts).len();
     if patch.control_points_mm.len() != expected {
         return Err(Unsound::new(
             "control_points_mm",
@@ -139,54 +140,39 @@ fn sound(patch: &NurbsPatch) -> Result<(), Unsound> {
     Ok(())
 }
 
-fn check_knots(name: &str, key: &'static str, knots: &[f64], degree: usize) -> Result<(), Unsound> {
+fn sound_knots(name: &str, key: &'static str, knots: &[f64], degree: usize) -> Result<(), Unsound> {
     let wrong = |problem: String| Err(Unsound::new(key, problem, CLAMPED));
     if !(1..=5).contains(&degree) {
         let problem = format!("degree {degree} in {name} is not offered: 1 to 5 are");
         return Err(Unsound::new("degrees", problem, "write a surface of a higher degree as one of degree 5 or less"));
     }
-    let least = 2 * (degree + 1);
-    if knots.len() < least {
-        return wrong(format!("{} knots in {name} are too few for degree {degree}: at least {least}", knots.len()));
-    }
-    if let Some(index) = knots.iter().position(|knot| !knot.is_finite()) {
-        return wrong(format!("knot {} in {name} is not a finite number", index + 1));
-    }
-    if let Some(pair) = knots.windows(2).find(|pair| pair[1] < pair[0]) {
-        return wrong(format!(
+    let Err(flaw) = check_knots(knots, degree, NEAR) else { return Ok(()) };
+    match flaw {
+        KnotFlaw::Few { least } => {
+            wrong(format!("{} knots in {name} are too few for degree {degree}: at least {least}", knots.len()))
+        }
+        KnotFlaw::NotFinite { index } => wrong(format!("knot {} in {name} is not a finite number", index + 1)),
+        KnotFlaw::Descending { index } => wrong(format!(
             "the knots in {name} do not ascend: {} stands behind {}",
-            number(pair[1]),
-            number(pair[0])
-        ));
-    }
-    let ends = [knots[0], knots[knots.len() - 1]];
-    let range = ends[1] - ends[0];
-    if let Some(pair) = knots.windows(2).find(|pair| pair[1] > pair[0] && pair[1] - pair[0] < NEAR * range) {
-        let problem = format!(
-            "the knots {} and {} in {name} are neither equal nor apart: they differ by {:.1e} of the range",
-            pair[0],
-            pair[1],
-            (pair[1] - pair[0]) / range
-        );
-        let remedy = format!("write the same number for both, or put them apart by {NEAR:e} of the range or more");
-        return Err(Unsound::new(key, problem, remedy));
-    }
-    for group in knots.chunk_by(|a, b| a == b) {
-        let (knot, times) = (number(group[0]), group.len());
-        let at_end = ends.contains(&group[0]);
-        if at_end && times != degree + 1 {
-            return wrong(format!(
-                "the knots in {name} are not clamped: {knot} stands {times} times at an end, not {}",
-                degree + 1
-            ));
+            number(knots[index]),
+            number(knots[index - 1])
+        )),
+        KnotFlaw::TooNear { pair: [one, other], share } => {
+            let problem = format!(
+                "the knots {one} and {other} in {name} are neither equal nor apart: they differ by {share:.1e} of the range"
+            );
+            let remedy = format!("write the same number for both, or put them apart by {NEAR:e} of the range or more");
+            Err(Unsound::new(key, problem, remedy))
         }
-        if !at_end && times > degree {
-            return Err(Unsound::new(
-                key,
-                format!("knot {knot} in {name} stands {times} times: the surface would tear"),
-                format!("inside, a knot stands at most as often as the degree: {degree} times"),
-            ));
-        }
+        KnotFlaw::NotClamped { knot, times } => wrong(format!(
+            "the knots in {name} are not clamped: {} stands {times} times at an end, not {}",
+            number(knot),
+            degree + 1
+        )),
+        KnotFlaw::Tears { knot, times } => Err(Unsound::new(
+            key,
+            format!("knot {} in {name} stands {times} times: the surface would tear", number(knot)),
+            format!("inside, a knot stands at most as often as the degree: {degree} times"),
+        )),
     }
-    Ok(())
 }

@@ -4,13 +4,16 @@ use std::cell::RefCell;
 
 use serde::de::DeserializeOwned;
 use toml::Spanned;
-use toml::de::{DeInteger, DeValue};
+use toml::de::DeValue;
 
-use super::document::{Document, Entry};
-use super::error::{Checked, Fault, Place, Problem, ValueType};
+use super::document::Document;
+use super::entry::Entry;
+use super::fault::{Checked, Fault, Place};
 use super::foreign_unit;
 use super::keys::{Key, Kind, Limits, Presence, toml_float};
-use super::names;
+use super::nearest::nearest;
+use super::problem::Problem;
+use super::value::{as_float, integer_value, value_type};
 
 /// A value, and where it stands.
 pub(super) struct Found<T> {
@@ -128,7 +131,7 @@ pub(super) fn known_word(key: &'static Key, entry: &Entry<'_>) -> Checked<&'stat
     let found = entry.value.get_ref().as_str().ok_or_else(|| wrong_type(key, entry))?;
     let words = choices.iter().map(|choice| choice.word);
     words.clone().find(|word| *word == found).ok_or_else(|| {
-        let meant = names::nearest(found, words);
+        let meant = nearest(found, words);
         let fault = Fault::new(Problem::UnknownWord { key, found: found.into(), meant }, &place);
         match meant {
             Some(meant) => fault.edit(&place, entry.written(meant)),
@@ -199,36 +202,5 @@ fn wrong_type_at(key: &'static Key, value: &DeValue<'_>, place: &Place) -> Box<F
     match meant {
         Some(meant) => fault.edit(place, meant),
         None => fault,
-    }
-}
-
-/// The value as a number, if it is one.
-pub(super) fn as_float(value: &DeValue<'_>) -> Option<f64> {
-    match value {
-        DeValue::Integer(integer) => Some(integer_value(integer)),
-        DeValue::Float(float) => float.as_str().parse().ok(),
-        _ => None,
-    }
-}
-
-/// An integer of any length; where it does not fit a number exactly, all limits are far below.
-fn integer_value(integer: &DeInteger<'_>) -> f64 {
-    match i128::from_str_radix(integer.as_str(), integer.radix()) {
-        Ok(value) => value as f64,
-        Err(_) if integer.as_str().starts_with('-') => f64::MIN,
-        Err(_) => f64::MAX,
-    }
-}
-
-/// The type of a value.
-pub(super) fn value_type(value: &DeValue<'_>) -> ValueType {
-    match value {
-        DeValue::String(_) => ValueType::Text,
-        DeValue::Integer(_) => ValueType::Integer,
-        DeValue::Float(_) => ValueType::Float,
-        DeValue::Boolean(_) => ValueType::Boolean,
-        DeValue::Datetime(_) => ValueType::Date,
-        DeValue::Array(_) => ValueType::Array,
-        DeValue::Table(_) => ValueType::Table,
     }
 }

@@ -5,8 +5,8 @@ use std::ops::Range;
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Patch, Renderer, Snippet};
 
-use super::error::{Fault, Place, Source};
 use super::explain::{Explanation, explain};
+use super::fault::{Fault, Place, Source};
 
 pub(super) fn plain(fault: &Fault, sources: &[Source]) -> String {
     render(fault, sources, &Renderer::plain())

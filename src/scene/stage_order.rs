@@ -5,10 +5,12 @@
 use toml::de::DeValue;
 
 use super::data::Stage;
-use super::document::Entry;
-use super::error::{Checked, Fault, Place, Problem, StageOrderProblem, ValueType};
+use super::entry::Entry;
+use super::fault::{Checked, Fault, Place};
 use super::keys::Key;
-use super::{names, read};
+use super::nearest::nearest;
+use super::problem::{Problem, StageOrderProblem, ValueType};
+use super::value::value_type;
 
 /// What a stage takes from the one before it.
 pub(super) fn needs(stage: Stage) -> Option<Stage> {
@@ -42,7 +44,7 @@ pub(super) fn read(key: &'static Key, entry: &Entry<'_>) -> Checked<Vec<Stage>> 
                 None => fault,
             });
         }
-        other => return Err(Fault::new(Problem::WrongType { key, found: read::value_type(other) }, &whole)),
+        other => return Err(Fault::new(Problem::WrongType { key, found: value_type(other) }, &whole)),
     };
     let named = items.iter().map(|item| {
         let place = entry.place_of(item.span());
@@ -63,10 +65,10 @@ fn problem(problem: StageOrderProblem, place: &Place) -> Box<Fault> {
 
 fn stage(item: &DeValue<'_>, place: &Place) -> Checked<Stage> {
     let Some(found) = item.as_str() else {
-        return Err(problem(StageOrderProblem::NotAName { found: read::value_type(item) }, place));
+        return Err(problem(StageOrderProblem::NotAName { found: value_type(item) }, place));
     };
     by_name(found).ok_or_else(|| {
-        let meant = names::nearest(found, Stage::ALL.iter().map(|stage| stage.name())).and_then(by_name);
+        let meant = nearest(found, Stage::ALL.iter().map(|stage| stage.name())).and_then(by_name);
         let fault = problem(StageOrderProblem::Unknown { found: found.into(), meant }, place);
         match meant {
             Some(meant) => fault.edit(place, format!("\"{meant}\"")),

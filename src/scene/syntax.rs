@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use super::error::{Fault, Place, Problem, SyntaxSlip};
-use super::general::ARRAYS;
+use super::fault::{Fault, Place};
+use super::kinds::ARRAYS;
+use super::problem::{Problem, SyntaxSlip};
 
 /// The error for a text that is not TOML; `base` is where the text begins.
 pub(super) fn fault(error: &toml::de::Error, text: &str, base: &Place) -> Box<Fault> {

@@ -5,11 +5,13 @@ use std::cell::RefCell;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::document::Entry;
-use super::error::{Checked, Fault, Place, Problem};
+use super::entry::Entry;
+use super::fault::{Checked, Fault, Place};
 use super::keys::number;
-use super::names;
-use super::read::{as_float, value_type};
+use super::meant;
+use super::nearest::nearest;
+use super::problem::Problem;
+use super::value::{as_float, value_type};
 use crate::printable::breaks_a_line;
 
 /// The entries of one table.
@@ -70,11 +72,11 @@ impl<'d, 't> Table<'d, 't> {
     pub fn missing(&self, name: &str, remedy: impl Into<String>) -> Box<Fault> {
         let remedy = remedy.into();
         let asked = self.asked.borrow();
-        let known = |entry: &Entry<'_>| asked.contains(&entry.name.as_str()) || names::is_known(&entry.name);
+        let known = |entry: &Entry<'_>| asked.contains(&entry.name.as_str()) || meant::is_known(&entry.name);
         match self.entries.iter().find(|entry| !known(entry)) {
             None => self.wrong(None, format!("`{name}` is missing"), remedy),
             Some(stray) => {
-                let meant = names::nearest(&stray.name, std::iter::once(name));
+                let meant = nearest(&stray.name, std::iter::once(name));
                 let remedy = match meant {
                     Some(_) => format!("perhaps `{name}` is meant, which is missing: {remedy}"),
                     None => format!("take it out; `{name}` is missing: {remedy}"),
@@ -86,7 +88,7 @@ impl<'d, 't> Table<'d, 't> {
 
     fn not_a(&self, entry: &Entry<'_>, wanted: &str) -> Box<Fault> {
         let found = value_type(entry.value.get_ref());
-        let found = super::explain::type_name(found);
+        let found = super::explain::type_words(found);
         self.wrong(Some(&entry.value_place()), format!("`{}` must be {wanted}, not {found}", entry.name), "")
     }
 
@@ -189,7 +191,7 @@ impl<'d, 't> Table<'d, 't> {
         let Some(text) = self.maybe_text(name)? else { return Ok(None) };
         words.iter().find(|(word, _)| *word == text).map(|(_, value)| Some(*value)).ok_or_else(|| {
             let all: Vec<String> = words.iter().map(|(word, _)| format!("\"{word}\"")).collect();
-            let meant = names::nearest(&text, words.iter().map(|(word, _)| *word));
+            let meant = nearest(&text, words.iter().map(|(word, _)| *word));
             let remedy = match meant {
                 Some(meant) => format!("perhaps \"{meant}\" is meant; allowed are {}", all.join(", ")),
                 None => format!("allowed are {}", all.join(", ")),
@@ -232,7 +234,7 @@ impl<'d, 't> Table<'d, 't> {
         let mut all: Vec<String> = asked.iter().map(|name| format!("`{name}`")).collect();
         all.sort();
         all.dedup();
-        let remedy = match names::nearest(&extra.name, open()) {
+        let remedy = match nearest(&extra.name, open()) {
             Some(meant) => format!("perhaps `{meant}` is meant; the keys here are {}", all.join(", ")),
             None => format!("the keys here are {}", all.join(", ")),
         };

@@ -1,5 +1,18 @@
 //! The Kirchhoff–Love shell at a point: strains, energy and its derivatives, material, quadrature.
+//!
+//! | file | what |
+//! |---|---|
+//! | `vector` | three numbers |
+//! | `material` | from a material to a quadratic form of the strains |
+//! | `free_strain` | strains without forces |
+//! | `quadrature` | Gauss–Legendre rules |
+//! | `point` | a point: energy, gradient, Hessian |
+//! | `lanes`, `lanes_x86` | several numbers at once |
+//! | `lane_vector` | vectors of them |
+//! | `batch` | four points at once: what both kinds share |
+//! | `point_batch`, `stretching_batch` | bending and stretching; stretching alone |
 
+mod batch;
 mod free_strain;
 mod lane_vector;
 pub(crate) mod lanes;
@@ -12,11 +25,11 @@ mod quadrature;
 mod stretching_batch;
 mod vector;
 
+pub(crate) use batch::{BatchGradient, BatchHessian, PointKernel};
 pub use free_strain::{FreeStrain, thermal_strain};
 pub use material::{ShellStiffness, shell_stiffness};
 pub use point::{Hessian, PointReference, Strains};
 pub use point_batch::PointBatch;
-pub(crate) use point_batch::{BatchGradient, BatchHessian, PointKernel};
 pub use quadrature::gauss_legendre;
 pub use stretching_batch::StretchingBatch;
 pub(crate) use vector::{add, cross, dot, norm, scaled, sub};

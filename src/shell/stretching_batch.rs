@@ -3,11 +3,11 @@
 //!
 //! With f the membrane forces and C their stiffness: ∂w/∂a_α = f^{αβ} a_β and H_αβ = f^{αβ} I + Σ C^{αγβδ} a_γ a_δᵀ.
 
+use super::batch::{Four, PointKernel, covariant, lanes_of, load3, put, splat3, stiffness_of, store3, stretch};
 use super::free_strain::FreeStrain;
 use super::lane_vector::{accumulate, add, cross, dot, outer, scaled, sub};
 use super::lanes::FourLanes;
 use super::point::PointReference;
-use super::point_batch::{Four, PointKernel, covariant, lanes_of, load3, put, splat3, stiffness_of, store3, stretch};
 
 /// The undeformed shell at four quadrature points; where fewer are left, the last stands for the rest, without
 /// stiffness.

@@ -1,7 +1,7 @@
 //! The spline space with its geometry: what knot insertion changes.
 
 use crate::digest::{Feed, Hash};
-use crate::spline::{Grid, insert_knots_into_net};
+use crate::spline::{Grid, control_count, insert_knots_into_net};
 
 /// Tensor-product NURBS mid-surface; its control points are numbered as a [`Grid`], the second direction (arc) fastest.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Mesh {
 impl Mesh {
     /// Control points each way.
     pub fn control_counts(&self) -> [usize; 2] {
-        [0, 1].map(|k| self.knots[k].len() - self.degree[k] - 1)
+        [0, 1].map(|k| control_count(&self.knots[k], self.degree[k]))
     }
 
     /// Numbers of the control points.
@@ -52,7 +52,7 @@ impl Mesh {
             let (knots, degree) = (&self.knots[way], self.degree[way]);
             let total = knots[knots.len() - 1] - knots[0];
             let integral = |i: usize| (knots[i + degree + 1] - knots[i]) / ((degree + 1) as f64 * total);
-            (0..knots.len() - degree - 1).map(integral).collect::<Vec<f64>>()
+            (0..control_count(knots, degree)).map(integral).collect::<Vec<f64>>()
         });
         ways[0].iter().flat_map(|along| ways[1].iter().map(move |across| along * across)).collect()
     }

@@ -1,11 +1,22 @@
 //! NURBS: basis functions, knot insertion, exact arcs, tensor-product surfaces.
 //!
 //! Piegl & Tiller, *The NURBS Book*, 2nd ed. (1997); algorithm numbers below refer to it.
+//!
+//! | file | what |
+//! |---|---|
+//! | `basis` | basis functions and spans |
+//! | `knots` | whether knots make a spline space |
+//! | `arc` | exact curves |
+//! | `insertion` | knots inserted |
+//! | `grid` | numbers of rows and columns |
+//! | `mesh` | the spline space with its geometry |
+//! | `surface` | points and derivatives |
 
 mod arc;
 mod basis;
 mod grid;
 mod insertion;
+mod knots;
 mod mesh;
 mod surface;
 
@@ -13,5 +24,6 @@ pub use arc::{HomogeneousCurve, circular_arc, segment_count, straight_line};
 pub use basis::{DEGREES, Spans, basis_derivatives, basis_derivatives_len, find_span};
 pub use grid::Grid;
 pub use insertion::{insert_knots, insert_knots_into_net};
+pub use knots::{KnotFlaw, check_knots, control_count};
 pub use mesh::{Mesh, cartesian};
 pub use surface::{SurfacePoint, evaluate_surface, mid_surface_point, quotient_derivatives, tensor_derivatives};

@@ -1,5 +1,14 @@
 //! What a run says when it is held against theory: the closed-form laws of tape springs, the summary of a run, and suites
 //! of scenes that state how they end.
+//!
+//! | file | what |
+//! |---|---|
+//! | `wuest`, `section_shape` | closed-form laws of tape springs |
+//! | `path` | the equilibria of a run, and its jumps |
+//! | `summary`, `summary_text` | what a run found |
+//! | `timed_run`, `bench` | what it costs |
+//! | `accuracy`, `convergence` | error against that |
+//! | `stress`, `stress_run`, `stress_curve`, `stress_fault` | scenes that state how they end |
 
 mod accuracy;
 mod bench;

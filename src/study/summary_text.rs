@@ -7,6 +7,7 @@ use super::TapeSpring;
 use super::summary::{FoldMean, MeshChange, PeakFound, Said};
 use crate::pipeline::{Parameter, Reading, released_in_words};
 use crate::scene::Sense;
+use crate::spline::Grid;
 use crate::units::{count, duration, reading, rounded, signed};
 
 impl Display for Summary {
@@ -276,10 +277,11 @@ impl Summary {
         let whole = if self.symmetric_parts > 1 { "   whole shell" } else { "" };
         writeln!(f, "  {:<11}   {:>18}{whole}   {:>8}", "mesh from", "elements", "unknowns")?;
         for &MeshChange { parameter, elements: [n1, n2], unknowns } in &self.meshes {
-            let elements = format!("{n1} × {n2} = {}", n1 * n2);
+            let count = Grid::new([n1, n2]).len();
+            let elements = format!("{n1} × {n2} = {count}");
             let whole = match self.symmetric_parts {
                 1 => String::new(),
-                parts => format!("   {:>11}", n1 * n2 * parts),
+                parts => format!("   {:>11}", count * parts),
             };
             let degree = if self.driven_by == Parameter::Rotation { "°" } else { " " };
             writeln!(f, "  {parameter:>10.3}{degree}   {elements:>18}{whole}   {unknowns:>8}")?;

@@ -1,9 +1,9 @@
 //! The deformed shell as samples for pictures: the whole of it, whatever part is modelled.
 
-use super::samples::{SamplesError, SurfaceSamples};
+use super::samples::{SamplesError, SurfaceSamples, cells_of};
 use crate::scene::Scene;
 use crate::shell::{cross, dot, norm};
-use crate::spline::{Mesh, SurfacePoint, mid_surface_point};
+use crate::spline::{Grid, Mesh, SurfacePoint, mid_surface_point};
 
 /// Points and values on a grid that follows the elements.
 struct Patch {
@@ -73,37 +73,50 @@ fn bending_strain(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) 
 }
 
 impl Patch {
+    /// A line of points on which direction `way` stands still.
+    fn line(&self, way: usize, along: usize) -> impl DoubleEndedIterator<Item = [f64; 3]> + ExactSizeIterator {
+        Grid::new(self.counts).line(way, along).map(|point| self.points[point])
+    }
+
+    /// A row of values between two lines of points along the arc.
+    fn value_row(&self, along: usize) -> impl DoubleEndedIterator<Item = f64> {
+        cells_of(self.counts).line(0, along).map(|cell| self.values[cell])
+    }
+
+    /// Points each way with an image that shares one line in a direction.
+    fn counts_doubled(&self, way: usize) -> [usize; 2] {
+        let mut counts = self.counts;
+        counts[way] = 2 * counts[way] - 1;
+        counts
+    }
+
     /// With its image beyond the last row, in the plane x = const. through that row.
     fn with_reflection_along(self) -> Self {
-        let [n1, n2] = self.counts;
-        let last_row = &self.points[(n1 - 1) * n2..];
-        let plane = last_row.iter().map(|point| point[0]).sum::<f64>() / n2 as f64;
-        let image = |&[x, y, z]: &[f64; 3]| [2.0 * plane - x, y, z];
-        let rows = self.points.chunks(n2).rev().skip(1).flatten().map(image);
+        let n1 = self.counts[0];
+        let last_row = self.line(0, n1 - 1);
+        let count = last_row.len() as f64;
+        let plane = last_row.map(|point| point[0]).sum::<f64>() / count;
+        let image = |[x, y, z]: [f64; 3]| [2.0 * plane - x, y, z];
+        let rows = (0..n1 - 1).rev().flat_map(|i| self.line(0, i)).map(image);
         let points = self.points.iter().copied().chain(rows).collect();
-        let values = self.values.chunks(n2 - 1).chain(self.values.chunks(n2 - 1).rev()).flatten().copied().collect();
-        Self { counts: [2 * n1 - 1, n2], points, values }
+        let values = (0..n1 - 1).chain((0..n1 - 1).rev()).flat_map(|i| self.value_row(i)).collect();
+        Self { counts: self.counts_doubled(0), points, values }
     }
 
     /// With its image before the first column, in the plane y = 0 through it.
     fn with_reflection_across(self) -> Self {
-        let [n1, n2] = self.counts;
-        let image = |&[x, y, z]: &[f64; 3]| [x, -y, z];
-        let widened = |row: &[[f64; 3]]| -> Vec<[f64; 3]> {
-            row[1..].iter().rev().map(image).chain(row.iter().copied()).collect()
-        };
-        let points = self.points.chunks(n2).flat_map(widened).collect();
-        let mirrored = |row: &[f64]| -> Vec<f64> { row.iter().rev().chain(row).copied().collect() };
-        let values = self.values.chunks(n2 - 1).flat_map(mirrored).collect();
-        Self { counts: [n1, 2 * n2 - 1], points, values }
+        let n1 = self.counts[0];
+        let image = |[x, y, z]: [f64; 3]| [x, -y, z];
+        let widened = |i: usize| self.line(0, i).skip(1).rev().map(image).chain(self.line(0, i));
+        let points = (0..n1).flat_map(widened).collect();
+        let values = (0..n1 - 1).flat_map(|i| self.value_row(i).rev().chain(self.value_row(i))).collect();
+        Self { counts: self.counts_doubled(1), points, values }
     }
 
     /// Every `parts`-th line of the grid each way.
     fn knot_lines(&self, parts: usize) -> Vec<Vec<[f64; 3]>> {
-        let [n1, n2] = self.counts;
-        let across = (0..n1).step_by(parts).map(|i| self.points[i * n2..(i + 1) * n2].to_vec());
-        let along = (0..n2).step_by(parts).map(|j| (0..n1).map(|i| self.points[i * n2 + j]).collect());
-        across.chain(along).collect()
+        let lines = |way: usize| (0..self.counts[way]).step_by(parts).map(move |along| self.line(way, along).collect());
+        lines(0).chain(lines(1)).collect()
     }
 }
 
@@ -165,8 +178,8 @@ mod tests {
         let scene = scene::parse(SCENE, "test").unwrap();
         let mesh = starting_mesh(&scene).unwrap();
         // Onto the tangent plane at the apex, along the z axis.
-        let apex = mesh.control_points.iter().map(|[_, _, z, w]| z / w).fold(f64::MIN, f64::max);
-        let displacement: Vec<_> = mesh.control_points.iter().map(|[_, _, z, w]| [0.0, 0.0, apex - z / w]).collect();
+        let apex = mesh.points().map(|[_, _, z]| z).fold(f64::MIN, f64::max);
+        let displacement: Vec<_> = mesh.points().map(|[_, _, z]| [0.0, 0.0, apex - z]).collect();
         let samples = deformed_surface(&scene, &mesh, &displacement, 3).unwrap();
         assert!(samples.points.iter().all(|point| (point[2] - apex).abs() < 1e-12));
         assert!(samples.cell_values.iter().all(|value| (value - 0.1).abs() < 1e-12), "{:?}", samples.cell_values);

@@ -1,4 +1,14 @@
 //! Pictures of runs: the moment–rotation curve, the deformed mesh, and the mesh for ParaView.
+//!
+//! | file | what |
+//! |---|---|
+//! | `samples` | a sampled surface |
+//! | `deformed_surface` | the deformed shell as one |
+//! | `camera`, `colour`, `ticks` | projection, colours, round numbers |
+//! | `plot` | curves |
+//! | `mesh_picture` | the mesh as a picture |
+//! | `mesh_history` | the mesh for viewers of logs |
+//! | `vtu` | the mesh for ParaView |
 
 mod camera;
 mod colour;

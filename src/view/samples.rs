@@ -1,5 +1,7 @@
 //! A sampled surface: what pictures are drawn from, whatever made it.
 
+use crate::spline::Grid;
+
 /// A surface as a grid of points with a value for each cell, and lines upon it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceSamples {
@@ -44,12 +46,12 @@ pub enum SamplesError {
 impl SurfaceSamples {
     /// Points of a grid of `counts` points.
     pub fn points_len(counts: [usize; 2]) -> usize {
-        counts[0] * counts[1]
+        Grid::new(counts).len()
     }
 
     /// Cells of a grid of `counts` points.
     pub fn cell_values_len(counts: [usize; 2]) -> usize {
-        counts[0].saturating_sub(1) * counts[1].saturating_sub(1)
+        cells_of(counts).len()
     }
 
     /// A surface of `counts` points each way, at least 2. `points` are in mm, the second direction fastest
@@ -85,12 +87,10 @@ impl SurfaceSamples {
 
     /// Point indices of the corners of every cell, around it, in the order of the cell values.
     pub(super) fn cells(&self) -> impl Iterator<Item = [usize; 4]> {
-        let [n1, n2] = self.counts;
-        (0..n1 - 1).flat_map(move |i| {
-            (0..n2 - 1).map(move |j| {
-                let corner = i * n2 + j;
-                [corner, corner + n2, corner + n2 + 1, corner + 1]
-            })
+        let (points, cells) = (Grid::new(self.counts), cells_of(self.counts));
+        (0..cells.len()).map(move |cell| {
+            let [i, j] = cells.place(cell);
+            [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|corner| points.index(corner))
         })
     }
 
@@ -99,4 +99,9 @@ impl SurfaceSamples {
         let finite = || self.cell_values.iter().copied().filter(|value| value.is_finite());
         Some([finite().reduce(f64::min)?, finite().reduce(f64::max)?])
     }
+}
+
+/// The cells between the points of a grid.
+pub(super) fn cells_of(counts: [usize; 2]) -> Grid {
+    Grid::new(counts.map(|count| count.saturating_sub(1)))
 }

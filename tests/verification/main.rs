@@ -13,6 +13,7 @@ mod extreme;
 mod foundation;
 mod free_strain;
 mod house;
+mod imports;
 mod mirrors;
 mod path;
 mod quadrature;

@@ -4,10 +4,12 @@
 //! Loops over arrays, not `map`: a closure is a function of its own without the vector instructions, and where it is not
 //! inlined its vectors go through memory (the residual took twice as long).
 
-use super::BLOCK;
 use crate::model::BATCH;
 use crate::shell::lanes::Lanes;
 use crate::shell::{BatchGradient, BatchHessian};
+
+/// Batches of points that the stiffness takes before it is stored: 16 points, all of a cubic element.
+pub(super) const BLOCK: usize = 4;
 
 /// A block of points, which adds to the sums of an element; `ROWS` derivatives of the functions at each.
 pub(super) struct Block<'a, W: Lanes, const ROWS: usize> {

@@ -1,6 +1,6 @@
 //! How far the rows of a symmetric structure reach, what that costs, and where to cut it.
 
-use crate::equilibrium::sparse::Couplings;
+use crate::equilibrium::sparse::structure::Couplings;
 
 /// A cut must leave the longer side with at most this share of the operations.
 const CUT_PAYS: f64 = 0.8;

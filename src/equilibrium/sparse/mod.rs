@@ -3,12 +3,22 @@
 //! The signs of D give the inertia (Sylvester). Two storages, of which the structure decides: [`strips`] for what is long
 //! and narrow in the order of the unknowns, as a tape spring is, and [`supernodal`] for the rest. Factor and solve give
 //! the same bits on any number of threads.
+//!
+//! | file | what |
+//! |---|---|
+//! | `structure` | which unknowns meet; what a factorization tells |
+//! | `envelope` | how far rows reach, and where to cut |
+//! | `chain`, `strips`, `strip_kernel` | rows in strips: where they stand, the solver, its loops |
+//! | `supernodal` | any structure |
 
+mod chain;
 mod envelope;
 mod strip_kernel;
 mod strips;
+mod structure;
 mod supernodal;
 
+pub use structure::{Couplings, FactorError, NegativePivots};
 pub use supernodal::DenseProduct;
 
 use crate::equilibrium::kernel::Build;
@@ -21,64 +31,6 @@ const WORTH_ASKING_FLOPS: f64 = 1e9;
 /// How many times faster than faer's supernodes strips do an operation, on one thread: on 128 × 16 cubic elements the
 /// strips take 14 ms and the supernodes 20.
 const STRIPS_PAY: f64 = 1.5;
-
-/// Why a matrix has no usable factor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum FactorError {
-    /// A pivot is exactly zero or not a number.
-    #[error("the pivot of unknown {index} of {size} is zero or not a number")]
-    BadPivot {
-        /// The unknown.
-        index: usize,
-        /// Size of the matrix.
-        size: usize,
-    },
-    /// Out of memory, or 2³² entries and more.
-    #[error("a matrix of {size} unknowns and {entries} entries is too large for this machine")]
-    TooLarge {
-        /// Size of the matrix.
-        size: usize,
-        /// Stored entries.
-        entries: usize,
-    },
-}
-
-/// The negative part of D.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct NegativePivots {
-    /// How many.
-    pub count: usize,
-    /// Largest magnitude among them; 0 where there are none.
-    pub largest: f64,
-}
-
-impl NegativePivots {
-    /// Takes one more pivot.
-    fn see(&mut self, pivot: f64) {
-        if pivot < 0.0 {
-            self.count += 1;
-            self.largest = self.largest.max(-pivot);
-        }
-    }
-}
-
-/// Which unknowns meet in the matrix.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Couplings {
-    /// Number of unknowns.
-    pub unknowns: usize,
-    /// Unknowns of each group, such as those of a control point; they meet each other.
-    pub groups: Vec<Vec<usize>>,
-    /// Groups whose unknowns meet; a group with itself need not be listed.
-    pub pairs: Vec<[usize; 2]>,
-}
-
-impl Couplings {
-    /// Groups whose unknowns meet, each with itself too.
-    fn meetings(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
-        self.pairs.iter().copied().chain((0..self.groups.len()).map(|group| [group, group]))
-    }
-}
 
 /// A matrix structure with room for one matrix, in place of which comes its factor. [`Self::place`] says where among the
 /// [`Self::value_count`] numbers of a matrix each entry is.
@@ -213,14 +165,6 @@ impl SparseSolver {
             Self::Supernodal(solver) => solver.flops(),
         }
     }
-}
-
-/// Zeros; `None` where memory does not hold so many.
-fn room(length: usize) -> Option<Vec<f64>> {
-    let mut numbers = Vec::new();
-    numbers.try_reserve_exact(length).ok()?;
-    numbers.resize(length, 0.0);
-    Some(numbers)
 }
 
 #[cfg(test)]

@@ -9,14 +9,12 @@
 //!
 //! Tiles of twelve rows and four columns stay in registers for the whole of that sum.
 
-use super::strips::Chain;
+use super::chain::{Chain, HEIGHT};
 use crate::equilibrium::kernel::Build;
 use crate::shell::lanes::{FourLanes, Portable};
 #[cfg(target_arch = "x86_64")]
 use crate::shell::lanes_x86::{Fma, HasFma};
 
-/// Rows of a strip.
-pub(super) const HEIGHT: usize = 12;
 /// Columns of a tile.
 const WIDTH: usize = 4;
 /// Tiles of a square block.

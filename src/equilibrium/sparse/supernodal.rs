@@ -13,7 +13,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use crate::equilibrium::sparse::{Couplings, FactorError, NegativePivots, room};
+use crate::equilibrium::sparse::structure::{Couplings, FactorError, NegativePivots, room};
 
 /// Symbolic factor of one structure with room for the numeric one.
 pub struct SupernodalSolver {

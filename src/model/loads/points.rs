@@ -1,9 +1,10 @@
 //! Quadrature points of loads on lines and areas of the surface.
 
 use crate::model::direction::Site;
+use crate::model::gauss::gauss_points;
 use crate::model::quadrature::PointCounts;
 use crate::scene::{Edge, ForceVector, LoadedArea, Scene};
-use crate::shell::{add, cross, dot, gauss_legendre, norm, scaled, sub};
+use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};
 
 /// A quadrature point of a load.
@@ -77,7 +78,7 @@ pub(super) fn line_points(mesh: &Mesh, way: usize, at: f64, limits: [f64; 2]) ->
         return points;
     }
     let spans = mesh.element_counts()[running];
-    for (parameter, weight) in gauss_points(mesh, running, &vec![0; spans], limits[running]) {
+    for [parameter, weight] in load_points(mesh, running, &vec![0; spans], limits[running]) {
         let place = if way == 0 { [at, parameter] } else { [parameter, at] };
         let mut point = LoadPoint::new(mesh, place, weight);
         point.weight *= norm(point.site.tangents[running]);
@@ -92,23 +93,19 @@ pub(super) fn line_points(mesh: &Mesh, way: usize, at: f64, limits: [f64; 2]) ->
 /// p − 1 points inside is 32 % off).
 pub(super) fn area_points(scene: &Scene, mesh: &Mesh, limits: [f64; 2]) -> Vec<LoadPoint> {
     let least = PointCounts::of(scene, mesh);
-    let [along, across] = [0, 1].map(|way| gauss_points(mesh, way, &least.most()[way], limits[way]));
+    let [along, across] = [0, 1].map(|way| load_points(mesh, way, &least.most()[way], limits[way]));
     let pairs = along.iter().flat_map(|one| across.iter().map(move |two| (one, two)));
-    let mut points: Vec<_> = pairs.map(|((u, wu), (v, wv))| LoadPoint::new(mesh, [*u, *v], wu * wv)).collect();
+    let mut points: Vec<_> = pairs.map(|([u, wu], [v, wv])| LoadPoint::new(mesh, [*u, *v], wu * wv)).collect();
     points.sort_by_key(|point| point.first);
     points
 }
 
-/// Parameters and weights of Gauss points in every span or the part of it below `limit`, at least `least` in each. A pressure integrates N x,₁ × x,₂, of degree
-/// 3p − 1 each way: so many points are exact where the weights are equal, and only then is its tangent symmetric to rounding.
-fn gauss_points(mesh: &Mesh, way: usize, least: &[usize], limit: f64) -> Vec<(f64, f64)> {
+/// Gauss points in every span or the part of it below `limit`, at least `least` in each. A pressure integrates N x,₁ × x,₂, of
+/// degree 3p − 1 each way: so many points are exact where the weights are equal, and only then is its tangent symmetric to
+/// rounding.
+fn load_points(mesh: &Mesh, way: usize, least: &[usize], limit: f64) -> Vec<[f64; 2]> {
     let count = (3 * mesh.degree[way]).div_ceil(2);
     let spans = Spans::of(&mesh.knots[way], mesh.degree[way]);
-    let in_span = |([from, to], least): (&[f64; 2], &usize)| {
-        let to = to.min(limit);
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let rule = gauss_legendre(count.max(*least));
-        rule.into_iter().map(move |[node, weight]| (middle + half * node, half * weight)).collect::<Vec<_>>()
-    };
-    spans.bounds.iter().zip(least).filter(|([from, _], _)| *from < limit).flat_map(in_span).collect()
+    let in_part = |([from, to], least): (&[f64; 2], &usize)| gauss_points([*from, to.min(limit)], count.max(*least));
+    spans.bounds.iter().zip(least).filter(|([from, _], _)| *from < limit).flat_map(in_part).collect()
 }

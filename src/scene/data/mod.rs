@@ -1,4 +1,12 @@
 //! What a scene holds: plain data, every default filled in.
+//!
+//! | file | what |
+//! |---|---|
+//! | `geometry` | the undeformed surface |
+//! | `material` | law and thickness |
+//! | `boundary` | supports and actions |
+//! | `probe` | what reports read |
+//! | `expectation` | how a run is to end |
 
 mod boundary;
 mod expectation;

@@ -1,69 +1,22 @@
 //! What is wrong with a scene, in words.
+//!
+//! | file | what |
+//! |---|---|
+//! | `explanation` | its parts, and words that several use |
+//! | `syntax` | text that is not TOML |
+//! | `names` | wrong names |
+//! | `values` | wrong values |
+//! | `stages` | wrong stages |
 
+mod explanation;
 mod names;
 mod stages;
 mod syntax;
 mod values;
 
-use super::error::{Problem, ValueType};
-use super::keys::join_or;
+pub(super) use explanation::{Explanation, type_words};
 
-/// The words around an annotated snippet.
-#[derive(Debug, Default)]
-pub(super) struct Explanation {
-    /// The problem in one line.
-    pub title: String,
-    /// Beside the offending text.
-    pub label: String,
-    /// Beside the second place, where there is one.
-    pub also: String,
-    /// A note where there is no second place.
-    pub alone: String,
-    /// Below the snippet: why it is a problem, what is allowed.
-    pub notes: Vec<String>,
-    /// What to do.
-    pub help: Vec<String>,
-    /// What to do, where no mended text can be shown.
-    pub example: String,
-    /// Above the mended text, where it can be shown.
-    pub fix: String,
-}
-
-impl Explanation {
-    fn new(title: impl Into<String>, label: impl Into<String>) -> Self {
-        Self { title: title.into(), label: label.into(), ..Self::default() }
-    }
-
-    fn also(mut self, text: impl Into<String>) -> Self {
-        self.also = text.into();
-        self
-    }
-
-    fn alone(mut self, text: impl Into<String>) -> Self {
-        self.alone = text.into();
-        self
-    }
-
-    fn note(mut self, text: impl Into<String>) -> Self {
-        self.notes.push(text.into());
-        self
-    }
-
-    fn help(mut self, text: impl Into<String>) -> Self {
-        self.help.push(text.into());
-        self
-    }
-
-    fn example(mut self, text: impl Into<String>) -> Self {
-        self.example = text.into();
-        self
-    }
-
-    fn fix(mut self, text: impl Into<String>) -> Self {
-        self.fix = text.into();
-        self
-    }
-}
+use super::problem::Problem;
 
 /// Says what the problem is, why it is one, and what to do.
 pub(super) fn explain(problem: &Problem) -> Explanation {
@@ -107,50 +60,4 @@ pub(super) fn explain(problem: &Problem) -> Explanation {
         Problem::AdaptUnused => stages::adapt_unused(),
         Problem::Stages(problem) => stages::wrong_order(problem),
     }
-}
-
-/// Where to look when nothing is near.
-const ALL_KEYS: &str = "`foldline help scene` lists every key";
-
-/// The type in words.
-pub(super) fn type_name(found: ValueType) -> &'static str {
-    type_words(found)
-}
-
-fn type_words(found: ValueType) -> &'static str {
-    match found {
-        ValueType::Text => "text",
-        ValueType::Integer => "a whole number",
-        ValueType::Float => "a number",
-        ValueType::Boolean => "true or false",
-        ValueType::Date => "a date or time",
-        ValueType::Array => "a list",
-        ValueType::Table => "a table",
-    }
-}
-
-fn join_and(names: &[String]) -> String {
-    match names {
-        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
-        _ => join_or(names),
-    }
-}
-
-/// A meaning from the table of keys as a part of a sentence.
-fn lower(meaning: &str) -> String {
-    let meaning = meaning.trim_end_matches('.');
-    let mut letters = meaning.chars();
-    let is_name = meaning.starts_with("Young") || meaning.starts_with("Poisson") || meaning.starts_with("Newton");
-    let first = letters.next().filter(|_| !is_name);
-    first.map_or_else(|| meaning.to_owned(), |first| first.to_lowercase().chain(letters).collect())
-}
-
-/// What stands in the scene, cut to what fits into a line.
-fn shorten(text: &str) -> String {
-    const LONGEST: usize = 40;
-    let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if line.chars().count() <= LONGEST {
-        return line;
-    }
-    line.chars().take(LONGEST).collect::<String>() + "..."
 }

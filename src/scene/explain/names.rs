@@ -1,9 +1,9 @@
 //! Wrong, missing and misplaced names, in words.
 
-use super::{ALL_KEYS, Explanation, join_and, lower, shorten, type_words};
-use crate::scene::error::ValueType;
+use super::explanation::{ALL_KEYS, Explanation, join_and, lower, shorten, type_words};
 use crate::scene::key_table::{KEYS, SECTIONS};
 use crate::scene::keys::{Key, number};
+use crate::scene::problem::ValueType;
 
 pub(super) fn setting_without_section(found: &str, meant: Option<&Key>) -> Explanation {
     let found = shorten(found);

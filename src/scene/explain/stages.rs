@@ -1,8 +1,8 @@
 //! Stages that cannot run, in words.
 
-use super::{Explanation, shorten, type_words};
+use super::explanation::{Explanation, shorten, type_words};
 use crate::scene::data::Stage;
-use crate::scene::error::StageOrderProblem;
+use crate::scene::problem::StageOrderProblem;
 
 pub(super) fn wrong_order(problem: &StageOrderProblem) -> Explanation {
     let explanation = match problem {

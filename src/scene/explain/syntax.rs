@@ -1,8 +1,8 @@
 //! Text that is not TOML, in words.
 
-use super::Explanation;
-use crate::scene::error::SyntaxSlip;
+use super::explanation::Explanation;
 use crate::scene::keys::Key;
+use crate::scene::problem::SyntaxSlip;
 
 pub(super) fn not_toml(message: &str, slip: Option<SyntaxSlip>) -> Explanation {
     const TITLE: &str = "this is not TOML";

@@ -1,9 +1,9 @@
 //! Wrong values, in words.
 
-use super::{Explanation, lower, shorten, type_words};
-use crate::scene::error::{Direction, ValueType};
+use super::explanation::{Explanation, lower, shorten, type_words};
 use crate::scene::key_table::KEYS;
 use crate::scene::keys::{Key, Kind, Presence, Unit, number};
+use crate::scene::problem::{Direction, ValueType};
 
 fn must_be(key: &Key, label: impl Into<String>) -> Explanation {
     Explanation::new(format!("`{}` must be {}", key.path(), key.allowed()), label)

@@ -1,0 +1,44 @@
+//! Whether loads balance by themselves where a support holds rigid motions and nothing else.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::model::{At, ModelError, Terms, Unknowns};
+use crate::scene::Scene;
+use crate::shell::norm;
+use crate::spline::Mesh;
+
+/// Work of the loads on a free motion, relative to all their forces, that is rounding and quadrature. A force that these
+/// few points have to carry bends a thin free shell without stretching it: on a tube, (R/t)² times as far as pressure of
+/// the same sum widens it.
+const BALANCE: f64 = 1e-9;
+
+/// Refuses loads that push along a motion that only a support of rigid motions holds.
+///
+/// # Errors
+/// Where they do, at the end or at a kink of a history.
+pub fn check_balance(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<(), ModelError> {
+    let Some(held) = &unknowns.supports().held_motions else { return Ok(()) };
+    let loads = Terms::of_actions(scene, mesh)?;
+    let still = vec![[0.0; 3]; unknowns.points.len()];
+    let kinks = scene.actions.iter().flat_map(|action| action.history.kinks());
+    for load_factor in kinks.chain([scene.load.target()]) {
+        let forces = loads.forces(At { mesh, displacement: &still, parameter: load_factor });
+        let mut work = DVector::<f64>::zeros(6);
+        for (force, point) in forces.iter().zip(&unknowns.points) {
+            let fields = held.free.body.fields(*point);
+            (0..6).for_each(|k| work[k] += (0..3).map(|c| force[c] * fields[k][c]).sum::<f64>());
+        }
+        let on_free = &held.free.basis * held.free.basis.tr_mul(&work);
+        let all: f64 = forces.iter().map(|force| norm(*force)).sum();
+        if on_free.norm() > BALANCE * all {
+            let motion = DMatrix::from_column_slice(6, 1, (&on_free / on_free.norm()).as_slice());
+            return Err(ModelError::Unbalanced {
+                support: unknowns.supports().traces[held.support].name.clone(),
+                motion: held.free.body.words(&motion),
+                share: on_free.norm() / all,
+                load_factor,
+            });
+        }
+    }
+    Ok(())
+}

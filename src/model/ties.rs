@@ -1,0 +1,69 @@
+//! What ties rows of control points to each other: joints, seams and planes of symmetry.
+
+use crate::model::ModelError;
+use crate::model::edge::{EdgeRows, edge_rows};
+use crate::model::joint::{Joint, joints, seam};
+use crate::model::soundness::closed_directions;
+use crate::scene::{Edge, Geometry, Hold, NurbsPatch, ParametricDirection, Place, Scene, Seam, Support};
+use crate::spline::Mesh;
+
+/// What ties rows of control points to each other.
+#[derive(Debug)]
+pub struct Ties {
+    /// Joints each way.
+    pub joints: [Vec<Joint>; 2],
+    /// One or none each way.
+    pub seam: [Vec<Joint>; 2],
+    /// Edges in planes of symmetry.
+    mirrors: Vec<Edge>,
+}
+
+impl Ties {
+    /// Joints and seams of a mesh, and the planes of symmetry among some supports.
+    ///
+    /// # Errors
+    /// Where the geometry is not smooth at a joint.
+    pub fn new(scene: &Scene, mesh: &Mesh, supports: &[Support]) -> Result<Self, ModelError> {
+        let closed = match scene.geometry {
+            Geometry::CylinderPanel { seam: Some(Seam::Smooth), .. }
+            | Geometry::Annulus { seam: Some(Seam::Smooth), .. } => [false, true],
+            Geometry::SphereZone { seam: Some(Seam::Smooth), .. } => [true, false],
+            Geometry::Nurbs(NurbsPatch { seam: Some(Seam::Smooth), .. }) => closed_directions(mesh),
+            _ => [false, false],
+        };
+        let closing = |way: usize| if closed[way] { seam(mesh, way).map(|joint| vec![joint]) } else { Ok(vec![]) };
+        let mirrors = supports.iter().filter(|support| support.hold == Hold::Symmetric).filter_map(|s| match s.on {
+            Place::Edge(edge) => Some(edge),
+            _ => None,
+        });
+        Ok(Self {
+            joints: [joints(mesh, 0)?, joints(mesh, 1)?],
+            seam: [closing(0)?, closing(1)?],
+            mirrors: mirrors.collect(),
+        })
+    }
+
+    /// Rows of an edge. Control points that a plane of symmetry or a C¹ joint holds on one line span the tangent there
+    /// and share its normal: their own would take a free motion away.
+    ///
+    /// # Errors
+    /// Where the surface has no normal on the edge.
+    pub fn rows(&self, mesh: &Mesh, edge: Edge) -> Result<EdgeRows, ModelError> {
+        let mut rows = edge_rows(mesh, edge)?;
+        let (across, _) = edge.side();
+        let running = if across == ParametricDirection::U { 1 } else { 0 };
+        let last = rows.normals.len() - 1;
+        for mirror in &self.mirrors {
+            match mirror.side() {
+                (direction, _) if direction == across => {}
+                (_, false) => rows.normals[1] = rows.normals[0],
+                (_, true) => rows.normals[last - 1] = rows.normals[last],
+            }
+        }
+        for joint in self.joints[running].iter().chain(&self.seam[running]) {
+            rows.normals[joint.before] = rows.normals[joint.index];
+            rows.normals[joint.after] = rows.normals[joint.index];
+        }
+        Ok(rows)
+    }
+}

@@ -1,0 +1,104 @@
+//! The parts of an explanation, and words that several of them use.
+
+use crate::scene::keys::join_or;
+use crate::scene::problem::ValueType;
+
+/// The words around an annotated snippet.
+#[derive(Debug, Default)]
+pub struct Explanation {
+    /// The problem in one line.
+    pub title: String,
+    /// Beside the offending text.
+    pub label: String,
+    /// Beside the second place, where there is one.
+    pub also: String,
+    /// A note where there is no second place.
+    pub alone: String,
+    /// Below the snippet: why it is a problem, what is allowed.
+    pub notes: Vec<String>,
+    /// What to do.
+    pub help: Vec<String>,
+    /// What to do, where no mended text can be shown.
+    pub example: String,
+    /// Above the mended text, where it can be shown.
+    pub fix: String,
+}
+
+impl Explanation {
+    pub fn new(title: impl Into<String>, label: impl Into<String>) -> Self {
+        Self { title: title.into(), label: label.into(), ..Self::default() }
+    }
+
+    pub fn also(mut self, text: impl Into<String>) -> Self {
+        self.also = text.into();
+        self
+    }
+
+    pub fn alone(mut self, text: impl Into<String>) -> Self {
+        self.alone = text.into();
+        self
+    }
+
+    pub fn note(mut self, text: impl Into<String>) -> Self {
+        self.notes.push(text.into());
+        self
+    }
+
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.help.push(text.into());
+        self
+    }
+
+    pub fn example(mut self, text: impl Into<String>) -> Self {
+        self.example = text.into();
+        self
+    }
+
+    pub fn fix(mut self, text: impl Into<String>) -> Self {
+        self.fix = text.into();
+        self
+    }
+}
+
+/// Where to look when nothing is near.
+pub const ALL_KEYS: &str = "`foldline help scene` lists every key";
+
+/// The type in words.
+pub fn type_words(found: ValueType) -> &'static str {
+    match found {
+        ValueType::Text => "text",
+        ValueType::Integer => "a whole number",
+        ValueType::Float => "a number",
+        ValueType::Boolean => "true or false",
+        ValueType::Date => "a date or time",
+        ValueType::Array => "a list",
+        ValueType::Table => "a table",
+    }
+}
+
+/// Items in a sentence: `a, b and c`.
+pub fn join_and(names: &[String]) -> String {
+    match names {
+        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => join_or(names),
+    }
+}
+
+/// A meaning from the table of keys as a part of a sentence.
+pub fn lower(meaning: &str) -> String {
+    let meaning = meaning.trim_end_matches('.');
+    let mut letters = meaning.chars();
+    let is_name = meaning.starts_with("Young") || meaning.starts_with("Poisson") || meaning.starts_with("Newton");
+    let first = letters.next().filter(|_| !is_name);
+    first.map_or_else(|| meaning.to_owned(), |first| first.to_lowercase().chain(letters).collect())
+}
+
+/// What stands in the scene, cut to what fits into a line.
+pub fn shorten(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if line.chars().count() <= LONGEST {
+        return line;
+    }
+    line.chars().take(LONGEST).collect::<String>() + "..."
+}

@@ -1,0 +1,102 @@
+//! Whether a sequence of numbers is a knot vector that a surface can have.
+
+/// Why it is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum KnotFlaw {
+    /// Fewer than two times degree + 1.
+    Few {
+        /// Knots that the degree takes at least.
+        least: usize,
+    },
+    /// NaN or an infinity.
+    NotFinite {
+        /// Place in the sequence.
+        index: usize,
+    },
+    /// A knot smaller than the one before it.
+    Descending {
+        /// Place of the second in the sequence.
+        index: usize,
+    },
+    /// Two neighbours that differ by less than they may.
+    TooNear {
+        /// The knots.
+        pair: [f64; 2],
+        /// Their difference as a share of the range.
+        share: f64,
+    },
+    /// The first or the last knot does not stand degree + 1 times: the vector is not open (clamped).
+    NotClamped {
+        /// The knot.
+        knot: f64,
+        /// How often it stands.
+        times: usize,
+    },
+    /// A knot inside stands more often than the degree, so that the surface is torn.
+    Tears {
+        /// The knot.
+        knot: f64,
+        /// How often it stands.
+        times: usize,
+    },
+}
+
+/// Checks that knots are finite, ascend, stand degree + 1 times at both ends and no more often than the degree inside, and that
+/// neighbours are equal or differ by `least_gap` of the range.
+///
+/// # Errors
+/// The first flaw, in that order but for the last, which comes before multiplicities: knots that are nearly equal are most
+/// likely meant to be so.
+pub fn check_knots(knots: &[f64], degree: usize, least_gap: f64) -> Result<(), KnotFlaw> {
+    let least = 2 * (degree + 1);
+    if knots.len() < least {
+        return Err(KnotFlaw::Few { least });
+    }
+    if let Some(index) = knots.iter().position(|knot| !knot.is_finite()) {
+        return Err(KnotFlaw::NotFinite { index });
+    }
+    if let Some(before) = knots.windows(2).position(|pair| pair[1] < pair[0]) {
+        return Err(KnotFlaw::Descending { index: before + 1 });
+    }
+    let ends = [knots[0], knots[knots.len() - 1]];
+    let range = ends[1] - ends[0];
+    let gaps = || knots.windows(2).map(|pair| [pair[0], pair[1]]);
+    if let Some(pair) = gaps().find(|[one, other]| other > one && other - one < least_gap * range) {
+        return Err(KnotFlaw::TooNear { pair, share: (pair[1] - pair[0]) / range });
+    }
+    for group in knots.chunk_by(|a, b| a == b) {
+        let (knot, times) = (group[0], group.len());
+        let at_end = ends.contains(&knot);
+        if at_end && times != degree + 1 {
+            return Err(KnotFlaw::NotClamped { knot, times });
+        }
+        if !at_end && times > degree {
+            return Err(KnotFlaw::Tears { knot, times });
+        }
+    }
+    Ok(())
+}
+
+/// Control points in a direction with these knots, which must be more than the degree.
+pub fn control_count(knots: &[f64], degree: usize) -> usize {
+    knots.len() - degree - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_flaw_is_found() {
+        let check = |knots: &[f64]| check_knots(knots, 2, 1e-5);
+        assert_eq!(check(&[0.0, 0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 1.0]), Ok(()));
+        assert_eq!(check(&[0.0, 0.0, 1.0, 1.0]), Err(KnotFlaw::Few { least: 6 }));
+        assert_eq!(check(&[0.0, 0.0, 0.0, f64::NAN, 1.0, 1.0]), Err(KnotFlaw::NotFinite { index: 3 }));
+        assert_eq!(check(&[0.0, 0.0, 0.0, 1.0, 0.5, 1.0]), Err(KnotFlaw::Descending { index: 4 }));
+        assert_eq!(check(&[0.0, 0.0, 1e-6, 1.0, 1.0, 1.0]), Err(KnotFlaw::TooNear { pair: [0.0, 1e-6], share: 1e-6 }));
+        assert_eq!(check(&[0.0, 0.0, 0.5, 1.0, 1.0, 1.0]), Err(KnotFlaw::NotClamped { knot: 0.0, times: 2 }));
+        let torn = [0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 1.0, 1.0, 1.0];
+        assert_eq!(check(&torn), Err(KnotFlaw::Tears { knot: 0.5, times: 3 }));
+        assert_eq!(check(&[0.0; 6]), Err(KnotFlaw::NotClamped { knot: 0.0, times: 6 }));
+    }
+}
