@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
 use crate::equilibrium::iterate::Effort;
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
-use crate::equilibrium::sparse::NegativePivots;
+use crate::equilibrium::sparse::{FactorError, NegativePivots};
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::model::{At, Discretization, TermSource};
 use crate::scene::Scene;
@@ -69,7 +69,14 @@ impl Workspace {
     /// # Errors
     /// Where supports, loads or those terms do not fit the mesh, or the factor does not fit in memory.
     pub fn with_terms(scene: &Scene, mesh: &Arc<Mesh>, own: &[Arc<dyn TermSource>]) -> Result<Self, WorkspaceError> {
-        let discretization = Discretization::with_terms(scene, mesh, own)?;
+        Self::of(Discretization::with_terms(scene, mesh, own)?).map_err(WorkspaceError::from)
+    }
+
+    /// Structure and symbolic factor for a scene on a mesh.
+    ///
+    /// # Errors
+    /// Where the factor does not fit in memory.
+    pub fn of(discretization: Discretization) -> Result<Self, FactorError> {
         let tangent = TangentStiffness::new(&discretization)?;
         let assembled = Assembled::new(&discretization);
         Ok(Self { discretization, tangent, assembled, factored_at: None })

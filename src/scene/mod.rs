@@ -6,6 +6,7 @@
 //! | file | lives there |
 //! |---|---|
 //! | `data` | what a scene holds |
+//! | `drive` | what drives a run: load or path, and what its parameter is |
 //! | `keys`, `key_table` | every key of a scene file, described once, as data |
 //! | `document` | TOML text and `--set` settings as one list of entries that know their place |
 //! | `syntax` | text that is not TOML |
@@ -22,6 +23,7 @@ mod actions;
 mod check;
 mod data;
 mod document;
+mod drive;
 mod error;
 mod explain;
 mod foreign_unit;
@@ -48,6 +50,7 @@ pub use data::{
     Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe, ProbeKind,
     Quadrature, Reaction, Scene, Seam, Sense, Solver, Stage, Support, SurfaceDirection, Symmetry, SyncPolicy,
 };
+pub use drive::{Drive, Parameter};
 pub use error::{Direction, Problem, SceneError, StageOrderProblem, SyntaxSlip, ValueType};
 pub use help::help_text;
 pub use identity::{Difference, Reach, shown_values};
