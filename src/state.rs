@@ -110,7 +110,23 @@ impl Course {
             Course::Load(Previous { displacement, parameter }) => {
                 Course::Load(Previous { displacement: project(displacement), parameter: *parameter })
             }
-            Course::Path(path) => Course::Path(PathMemory { heading: project(&path.heading), ..path.clone() }),
+            Course::Path(PathMemory {
+                heading,
+                parameter_rate,
+                first_mm,
+                next_mm,
+                travelled_mm,
+                critical_ahead,
+                at_bifurcation,
+            }) => Course::Path(PathMemory {
+                heading: project(heading),
+                parameter_rate: *parameter_rate,
+                first_mm: *first_mm,
+                next_mm: *next_mm,
+                travelled_mm: *travelled_mm,
+                critical_ahead: *critical_ahead,
+                at_bifurcation: *at_bifurcation,
+            }),
         }
     }
 }

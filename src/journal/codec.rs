@@ -489,3 +489,6 @@ pub fn decode_state<'a>(
     check_state(&state)?;
     Ok(state)
 }
+
+#[cfg(test)]
+mod tests;

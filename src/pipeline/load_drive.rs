@@ -15,13 +15,15 @@ use crate::state::{Course, DriveMemory, Previous, State};
 const LEFT: f64 = 4.0;
 
 /// Moves the load on by increments.
-pub(super) struct LoadDrive<'a>(pub Step<'a>);
+pub(super) struct LoadDrive<'a> {
+    pub step: Step<'a>,
+}
 
 impl Drives for LoadDrive<'_> {
     /// Moves the load on by one increment. Where that fails or jumps too coarsely, the state stays and only its step
     /// control changes.
     fn solve(&mut self) -> Result<(State, Report), StageError> {
-        let Step { scene, work, state, observer } = &mut self.0;
+        let Step { scene, work, state, observer } = &mut self.step;
         let attempt = next_attempt(scene, state);
         let mut watch = Watch::new(state, scene.symmetry.copies() as f64);
         let solved = reach(scene, work, state, attempt.target_deg, &mut |iterate| {
@@ -31,39 +33,39 @@ impl Drives for LoadDrive<'_> {
         let solved = match solved {
             Ok(solved) => solved,
             Err(cause @ SolveError::Stopped { .. }) => {
-                let report = self.0.failed(Outcome::RejectedJump, attempt.target_deg, &cause);
+                let report = self.step.failed(Outcome::RejectedJump, attempt.target_deg, &cause);
                 return Ok((self.before_jump(attempt), report));
             }
-            Err(cause) => return self.0.cut(attempt, cause),
+            Err(cause) => return self.step.cut(attempt, cause),
         };
-        let way = Way::of(self.0.state, &attempt, &watch, &solved);
+        let way = Way::of(self.step.state, &attempt, &watch, &solved);
         let is_to_be_located = match way {
             Way::Along => watch.unstable,
             Way::OverRipple => false,
             Way::OffPath => true,
         };
         if is_to_be_located && !attempt.may_jump {
-            let report = self.0.rejected(Outcome::RejectedJump, attempt.target_deg, solved.effort);
+            let report = self.step.rejected(Outcome::RejectedJump, attempt.target_deg, solved.effort);
             return Ok((self.before_jump(attempt), report));
         }
         Ok(self.take(attempt, way, &solved))
     }
 
     fn re_equilibrate(&mut self) -> Result<(State, Report), StageError> {
-        self.0.relax()
+        self.step.relax()
     }
 }
 
 impl LoadDrive<'_> {
     /// The state where it was, with a jump ahead to be located.
     fn before_jump(&self, attempt: Attempt) -> State {
-        let DriveMemory { control, course } = &self.0.state.drive;
-        self.0.stay(attempt.control_after_jump(control), course.clone())
+        let DriveMemory { control, course } = &self.step.state.drive;
+        self.step.stay(attempt.control_after_jump(control), course.clone())
     }
 
     /// The state at the load that was tried.
     fn take(&mut self, attempt: Attempt, way: Way, solved: &Solved) -> (State, Report) {
-        let Step { scene, state, .. } = self.0;
+        let Step { scene, state, .. } = self.step;
         let released = energy_released(state, solved);
         let mut next = settle(state, solved);
         next.step = state.step + 1;
@@ -80,7 +82,7 @@ impl LoadDrive<'_> {
         if let Some(refinement) = next.refinement.as_mut().filter(|_| way != Way::Along) {
             refinement.ripple_n_mm = if way == Way::OverRipple { released.max(0.0) } else { 0.0 };
         }
-        let mut report = self.0.arrived(&next, solved);
+        let mut report = self.step.arrived(&next, solved);
         report.jumped = way == Way::OffPath;
         report.rippled = way == Way::OverRipple;
         report.critical_point = CriticalPoint::passed_by_load(state, &next).filter(|_| way == Way::Along);

@@ -123,7 +123,7 @@ impl Stages {
     ) -> Result<Box<dyn Drives + 'a>, StageError> {
         let step = self.step(stage, state, observer)?;
         Ok(match Drive::of(step.scene) {
-            Drive::Load(_) => Box::new(LoadDrive(step)),
+            Drive::Load(_) => Box::new(LoadDrive { step }),
             Drive::Path(_, limits) => Box::new(PathDrive { step, limits }),
         })
     }
@@ -218,18 +218,40 @@ impl Stages {
         let Some(finer) = &state.refined else {
             return Err(out_of_order(state, Stage::ProjectDisplacements, "there is no refined mesh"));
         };
-        let project = |vectors: &[[f64; 3]]| project_displacements(&state.mesh, finer, vectors);
-        let displacement = project(&state.displacement);
-        let (scene, work) = self.workspace(finer, state.step, Stage::ProjectDisplacements)?;
-        let energy = work.energy(&displacement, state.parameter);
-        let DriveMemory { control, course } = &state.drive;
+        let State {
+            mesh,
+            displacement,
+            marked,
+            refined: _,
+            step,
+            stage,
+            parameter,
+            turns,
+            moment_n_mm,
+            strain_energy_n_mm: _,
+            negative_pivots,
+            drive: DriveMemory { control, course },
+            largest_force_n,
+            refinement,
+        } = state;
+        let project = |vectors: &[[f64; 3]]| project_displacements(mesh, finer, vectors);
+        let displacement = project(displacement);
+        let (scene, work) = self.workspace(finer, *step, Stage::ProjectDisplacements)?;
         let next = State {
             mesh: finer.clone(),
+            marked: marked.clone(),
             refined: None,
+            step: *step,
+            stage: *stage,
+            parameter: *parameter,
+            turns: turns.clone(),
+            moment_n_mm: *moment_n_mm,
+            strain_energy_n_mm: scene.symmetry.copies() as f64 * work.energy(&displacement, *parameter),
             displacement,
-            strain_energy_n_mm: scene.symmetry.copies() as f64 * energy,
+            negative_pivots: *negative_pivots,
             drive: DriveMemory { control: *control, course: course.projected(project) },
-            ..state.clone()
+            largest_force_n: *largest_force_n,
+            refinement: *refinement,
         };
         let report = Report::of(scene, &next, work.discretization().unknowns.count());
         Ok((next, report))
