@@ -32,12 +32,8 @@ pub struct State {
     pub strain_energy_n_mm: f64,
     /// Negative pivots of the (symmetric part of the) tangent stiffness at the last equilibrium; 0 where it is stable.
     pub negative_pivots: u64,
-    /// What the next solve will try.
-    pub control: StepControl,
-    /// How the path of equilibria goes on, where it is followed by arc length; from its first step on.
-    pub path: Option<PathMemory>,
-    /// The equilibrium that the load was moved on from, for the next predictor; `None` where the shell jumped since.
-    pub previous: Option<Previous>,
+    /// What the drive remembers from step to step.
+    pub drive: DriveMemory,
     /// The largest force that residuals were held against so far, N; 0 before the first equilibrium, and in states that
     /// were logged before residuals were held against it.
     pub largest_force_n: f64,
@@ -62,6 +58,76 @@ impl Refinement {
     /// What refining the whole mesh would change, if all of it were as the part that was refined, N·mm.
     pub fn of_all_n_mm(&self) -> f64 {
         self.changed_n_mm / self.growth
+    }
+}
+
+/// What drives a run, load or path, remembers from step to step. A path begins with an increment of the parameter, and so
+/// with the control of load steps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DriveMemory {
+    /// What the next solve will try.
+    pub control: StepControl,
+    /// How equilibria led to the present one.
+    pub course: Course,
+}
+
+impl DriveMemory {
+    /// The path that is followed.
+    pub fn path(&self) -> Option<&PathMemory> {
+        match &self.course {
+            Course::Path(path) => Some(path),
+            Course::Unknown | Course::Load(_) => None,
+        }
+    }
+
+    /// The equilibrium that the load was moved on from.
+    pub fn previous(&self) -> Option<&Previous> {
+        match &self.course {
+            Course::Load(previous) => Some(previous),
+            Course::Unknown | Course::Path(_) => None,
+        }
+    }
+}
+
+/// How equilibria led to the present one, for the predictor of the next. What drove the run before stays here until the next
+/// drive has made a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Course {
+    /// In no way that goes on: the shell is undeformed, or it jumped since.
+    #[default]
+    Unknown,
+    /// By moving the load on from the equilibrium before.
+    Load(Previous),
+    /// Along a path of equilibria, by arc length.
+    Path(PathMemory),
+}
+
+impl Course {
+    /// The same on another mesh, where `project` carries vectors on the control points over.
+    pub fn projected(&self, project: impl Fn(&[[f64; 3]]) -> Vec<[f64; 3]>) -> Self {
+        match self {
+            Course::Unknown => Course::Unknown,
+            Course::Load(Previous { displacement, parameter }) => {
+                Course::Load(Previous { displacement: project(displacement), parameter: *parameter })
+            }
+            Course::Path(PathMemory {
+                heading,
+                parameter_rate,
+                first_mm,
+                next_mm,
+                travelled_mm,
+                critical_ahead,
+                at_bifurcation,
+            }) => Course::Path(PathMemory {
+                heading: project(heading),
+                parameter_rate: *parameter_rate,
+                first_mm: *first_mm,
+                next_mm: *next_mm,
+                travelled_mm: *travelled_mm,
+                critical_ahead: *critical_ahead,
+                at_bifurcation: *at_bifurcation,
+            }),
+        }
     }
 }
 
@@ -158,9 +224,7 @@ impl State {
             moment_n_mm: 0.0,
             strain_energy_n_mm: 0.0,
             negative_pivots: 0,
-            control: StepControl::default(),
-            path: None,
-            previous: None,
+            drive: DriveMemory::default(),
             largest_force_n: 0.0,
             refinement: None,
         }
@@ -173,70 +237,101 @@ impl State {
 
     /// The same where the hash of its mesh is known.
     pub(crate) fn hash_on(&self, mesh: Hash) -> Hash {
+        let Self {
+            mesh: _,
+            displacement,
+            marked,
+            refined,
+            step,
+            stage,
+            parameter,
+            turns,
+            moment_n_mm,
+            strain_energy_n_mm,
+            negative_pivots,
+            drive: DriveMemory { control, course },
+            largest_force_n,
+            refinement,
+        } = self;
         let mut feed = Feed::new("foldline state");
         feed.bytes(mesh.as_bytes());
-        feed.integer(self.displacement.len() as u64);
-        feed.each(self.displacement.as_flattened());
-        self.marked.iter().for_each(|knots| feed.numbers(knots));
-        feed.integer(u64::from(self.refined.is_some()));
-        if let Some(mesh) = &self.refined {
+        feed.integer(displacement.len() as u64);
+        feed.each(displacement.as_flattened());
+        marked.iter().for_each(|knots| feed.numbers(knots));
+        feed.integer(u64::from(refined.is_some()));
+        if let Some(mesh) = refined {
             feed.bytes(mesh.hash().as_bytes());
         }
-        feed.integer(self.step);
-        feed.integer(self.stage.map_or(0, |stage| 1 + stage as u64));
-        feed.number(self.parameter);
-        feed.number(self.moment_n_mm);
-        feed.number(self.strain_energy_n_mm);
-        feed.integer(self.negative_pivots);
-        // As 32 bits without a sign: they had none before increments could grow.
-        feed.integer(u64::from(self.control.halvings.cast_unsigned()));
-        feed.integer(u64::from(self.control.jump_seen_at_deg.is_some()));
-        feed.number(self.control.jump_seen_at_deg.unwrap_or(0.0));
-        feed.integer(match self.control.rejection {
-            None => 0,
-            Some(Rejection::NoEquilibrium) => 1,
-            Some(Rejection::Jump) => 2,
-            Some(Rejection::CriticalPoint) => 3,
-            Some(Rejection::SharpTurn) => 4,
-        });
+        feed.integer(*step);
+        feed.integer(stage.map_or(0, |stage| 1 + stage as u64));
+        feed.number(*parameter);
+        feed.number(*moment_n_mm);
+        feed.number(*strain_energy_n_mm);
+        feed.integer(*negative_pivots);
+        control.feed(&mut feed);
         // Only where there are any, so that states without them hash as they always did.
-        if !self.turns.is_empty() {
+        if !turns.is_empty() {
             feed.bytes(b"turns");
-            feed.each(self.turns.as_flattened());
+            feed.each(turns.as_flattened());
         }
-        if let Some(path) = &self.path {
-            path.feed(&mut feed);
-        }
-        if let Some(previous) = &self.previous {
-            feed.bytes(b"previous");
-            feed.each(previous.displacement.as_flattened());
-            feed.number(previous.parameter);
-        }
-        if self.largest_force_n != 0.0 {
+        course.feed(&mut feed);
+        if *largest_force_n != 0.0 {
             feed.bytes(b"largest force");
-            feed.number(self.largest_force_n);
+            feed.number(*largest_force_n);
         }
-        if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = self.refinement {
+        if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = refinement {
             feed.bytes(b"refinement");
-            feed.numbers(&[changed_n_mm, growth, ripple_n_mm]);
+            feed.numbers(&[*changed_n_mm, *growth, *ripple_n_mm]);
             feed.numbers(expected_n_mm.as_slice());
         }
         feed.finish()
     }
 }
 
+impl StepControl {
+    fn feed(&self, feed: &mut Feed) {
+        let Self { halvings, jump_seen_at_deg, rejection } = self;
+        // As 32 bits without a sign: they had none before increments could grow.
+        feed.integer(u64::from(halvings.cast_unsigned()));
+        feed.integer(u64::from(jump_seen_at_deg.is_some()));
+        feed.number(jump_seen_at_deg.unwrap_or(0.0));
+        feed.integer(match rejection {
+            None => 0,
+            Some(Rejection::NoEquilibrium) => 1,
+            Some(Rejection::Jump) => 2,
+            Some(Rejection::CriticalPoint) => 3,
+            Some(Rejection::SharpTurn) => 4,
+        });
+    }
+}
+
+impl Course {
+    fn feed(&self, feed: &mut Feed) {
+        match self {
+            Course::Unknown => {}
+            Course::Load(Previous { displacement, parameter }) => {
+                feed.bytes(b"previous");
+                feed.each(displacement.as_flattened());
+                feed.number(*parameter);
+            }
+            Course::Path(path) => path.feed(feed),
+        }
+    }
+}
+
 impl PathMemory {
     fn feed(&self, feed: &mut Feed) {
+        let Self { heading, parameter_rate, first_mm, next_mm, travelled_mm, critical_ahead, at_bifurcation } = self;
         feed.bytes(b"path");
-        feed.each(self.heading.as_flattened());
-        for value in [self.parameter_rate, self.first_mm, self.next_mm, self.travelled_mm] {
-            feed.number(value);
+        feed.each(heading.as_flattened());
+        for value in [parameter_rate, first_mm, next_mm, travelled_mm] {
+            feed.number(*value);
         }
-        feed.integer(u64::from(self.critical_ahead.is_some()));
-        if let Some(ahead) = self.critical_ahead {
-            feed.number(ahead.within_mm);
-            feed.number(ahead.rate_beyond);
+        feed.integer(u64::from(critical_ahead.is_some()));
+        if let Some(CriticalAhead { within_mm, rate_beyond }) = critical_ahead {
+            feed.number(*within_mm);
+            feed.number(*rate_beyond);
         }
-        feed.integer(u64::from(self.at_bifurcation));
+        feed.integer(u64::from(*at_bifurcation));
     }
 }

@@ -113,7 +113,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     }
     lost.for_each(|line| say(&line));
     let mut stages = Stages::new(scene.clone());
-    let basis = basis(log, plan.keep, &stages).map_err(|source| unusable(Box::new(source)))?;
+    let basis = basis(log, plan.keep, &mut stages).map_err(|source| unusable(Box::new(source)))?;
     let (first, all) = (log.first(), log.commits());
     let kept = log.entries().iter().take(plan.keep.saturating_sub(first));
     let mut before: Vec<Record> = kept.map(|entry| entry.record.clone()).collect();

@@ -81,7 +81,7 @@ impl Job {
             }
             say(&format!("{} holds nothing: begun anew", options.log.display()));
         }
-        let stages = Stages::new(scene.clone());
+        let mut stages = Stages::new(scene.clone());
         let start = stages.start()?;
         let raised = watch_signals()?;
         make_default_folder(&options.log)?;

@@ -4,9 +4,10 @@
 //! Computations*, 4th ed., section 8.2). Both approach from inside, so that the ratio is a lower bound; a few per
 //! cent of it are of no interest, and the iterations stop there.
 
+use crate::equilibrium::configuration::Standing;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::vector::product;
-use crate::equilibrium::workspace::{Standing, Workspace};
+use crate::equilibrium::workspace::{Formed, Workspace};
 
 /// Relative change of an eigenvalue in one iteration at which it is known well enough.
 const SETTLED: f64 = 1e-4;
@@ -29,10 +30,10 @@ impl Condition {
     /// # Errors
     /// Where the stiffness has no factor.
     pub fn at(work: &mut Workspace, at: Standing) -> Result<Self, SolveError> {
-        let matrix = work.form_at(at).to_vec();
-        let count = work.discretization.unknowns.count();
-        work.factorize_formed()?;
-        let solver = &work.tangent.solver;
+        let Formed { tangent, configuration, .. } = work.form_at(at);
+        let (matrix, count) = (tangent.matrix(), configuration.free.len());
+        tangent.factorize_formed()?;
+        let solver = &tangent.solver;
         let largest = magnitude(count, |vector| solver.multiply(&matrix, vector));
         let smallest = magnitude(count, |vector| {
             let mut solved = vector.to_vec();
@@ -92,7 +93,7 @@ mod tests {
             let displacement = work.discretization.unknowns.place(&free, parameter).displacement();
             let at = Standing { displacement: &displacement, turns: &[], parameter, largest_force: 0.0 };
             let found = Condition::at(&mut work, at).unwrap();
-            let matrix = work.form_at(at).to_vec();
+            let matrix = work.form_at(at).tangent.matrix();
             let dense = DMatrix::from_fn(count, count, |row, column| {
                 let mut unit = vec![0.0; count];
                 unit[column] = 1.0;

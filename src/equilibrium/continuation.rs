@@ -9,13 +9,14 @@
 //! Lengths are of displacements alone, λ has no weight (Crisfield's cylindrical choice): λ may be degrees or a load factor,
 //! and a prescribed motion shows in the displacements anyway. See [`Metric`] for how they are measured.
 
+use crate::equilibrium::configuration::Standing;
 use crate::equilibrium::equations::{Equations, Point};
 use crate::equilibrium::iterate::{Effort, Observer};
 use crate::equilibrium::ledger::Before;
 use crate::equilibrium::metric::Metric;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::solved::Solved;
-use crate::equilibrium::workspace::{Standing, Workspace};
+use crate::equilibrium::workspace::Workspace;
 use crate::scene::Scene;
 use crate::shell::{add, scaled, sub};
 
@@ -163,9 +164,9 @@ impl<'a> Continuation<'a> {
         let between = |a: &[[f64; 3]], b: &[[f64; 3]]| -> Vec<[f64; 3]> {
             a.iter().zip(b).map(|(a, b)| add(*a, scaled(share, sub(*b, *a)))).collect()
         };
-        let displacement = between(from.displacement, &beyond.solved.displacement);
-        let turns = between(from.turns, &beyond.solved.turns);
-        let free = self.work.discretization.unknowns.of_displacement(&displacement, &turns, parameter);
+        let displacement = &between(from.displacement, &beyond.solved.displacement);
+        let turns = &between(from.turns, &beyond.solved.turns);
+        let free = Standing { displacement, turns, parameter, ..from }.free(&self.work.discretization.unknowns);
         self.solve(from, &tangent.direction, (free, parameter), &Constraint::Parameter(parameter), None, observer)
     }
 
@@ -181,8 +182,7 @@ impl<'a> Continuation<'a> {
         observer: Observer,
     ) -> Result<ContinuedPoint, SolveError> {
         let constraint = if held { Constraint::Parameter(from.parameter) } else { Constraint::Nearest };
-        let unknowns = &self.work.discretization.unknowns;
-        let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
+        let free = from.free(&self.work.discretization.unknowns);
         self.solve(from, heading, (free, from.parameter), &constraint, Some(&heading.motion), observer)
     }
 
@@ -204,7 +204,7 @@ impl<'a> Continuation<'a> {
         let mut equations = Equations::factored_at(self.work, at)?;
         let point = equations.at_standing(at)?;
         let tangent = tangent(&mut equations, &point, &self.metric, sense)?;
-        Ok((tangent, point.free))
+        Ok((tangent, point.here.free))
     }
 
     /// `onwards` tells which way the path goes on; otherwise the chord from `from` does.
@@ -240,13 +240,13 @@ impl<'a> Continuation<'a> {
             let rates = equations.solve(&point, &negative(&point.gradient_rate));
             let change = constraint.change(&point, metric, off, &step, &rates);
             if !change.is_finite() {
-                return Err(SolveError::NothingMoves { parameter: point.parameter, effort });
+                return Err(SolveError::NothingMoves { parameter: point.here.parameter, effort });
             }
             effort.iterations += 1;
             parameter += change;
-            free = along(&along(&point.free, &step, 1.0), &rates, change);
+            free = along(&along(&point.here.free, &step, 1.0), &rates, change);
         };
-        let chord = motion(from.displacement, &point.displacement);
+        let chord = motion(from.displacement, &point.here.displacement);
         let sense = onwards.unwrap_or(&chord);
         let end = match tangent(&mut equations, &point, metric, Sense::Along(sense)) {
             Ok(tangent) => tangent.direction,
@@ -276,10 +276,10 @@ impl Constraint<'_> {
     /// How far a point is from where the solve is to end, and what that is measured by.
     fn distance(&self, point: &Point, metric: &Metric) -> (f64, f64) {
         match self {
-            Constraint::Parameter(parameter) => (parameter - point.parameter, parameter.abs()),
+            Constraint::Parameter(parameter) => (parameter - point.here.parameter, parameter.abs()),
             Constraint::Nearest => (0.0, 0.0),
             Constraint::Plane { normal, from, distance } => {
-                (distance - metric.product(normal, &motion(from, &point.displacement)), distance.abs())
+                (distance - metric.product(normal, &motion(from, &point.here.displacement)), distance.abs())
             }
         }
     }
@@ -289,12 +289,13 @@ impl Constraint<'_> {
         match self {
             Constraint::Parameter(_) => off,
             Constraint::Nearest => {
-                let tangent = point.placement.velocity(rates, &point.given_rates);
-                -metric.product(&tangent, &point.placement.velocity(step, &[])) / metric.product(&tangent, &tangent)
+                let tangent = point.here.placement.velocity(rates, &point.given_rates);
+                -metric.product(&tangent, &point.here.placement.velocity(step, &[]))
+                    / metric.product(&tangent, &tangent)
             }
             Constraint::Plane { normal, .. } => {
-                let ahead = metric.product(normal, &point.placement.velocity(step, &[]));
-                (off - ahead) / metric.product(normal, &point.placement.velocity(rates, &point.given_rates))
+                let ahead = metric.product(normal, &point.here.placement.velocity(step, &[]));
+                (off - ahead) / metric.product(normal, &point.here.placement.velocity(rates, &point.given_rates))
             }
         }
     }
@@ -303,10 +304,10 @@ impl Constraint<'_> {
 /// The path's tangent at a point of equilibrium: q̇ = −K⁻¹ ∂R/∂λ λ̇, scaled to a motion of length 1.
 fn tangent(equations: &mut Equations, point: &Point, metric: &Metric, sense: Sense) -> Result<Tangent, SolveError> {
     let rates = equations.solve(point, &negative(&point.gradient_rate));
-    let motion = point.placement.velocity(&rates, &point.given_rates);
+    let motion = point.here.placement.velocity(&rates, &point.given_rates);
     let length = metric.length(&motion);
     if !(length.is_finite() && length > 0.0) {
-        return Err(SolveError::NothingMoves { parameter: point.parameter, effort: Effort::default() });
+        return Err(SolveError::NothingMoves { parameter: point.here.parameter, effort: Effort::default() });
     }
     let onwards = match sense {
         Sense::Parameter { grows } => grows,

@@ -32,6 +32,7 @@
 //! its snap 35 to 72 factorizations for 25 to 37, as the stiffness away from equilibrium was more often indefinite.
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
+use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::ledger::Before;
@@ -39,8 +40,8 @@ use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::solved::Ended;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::equilibrium::vector::product;
-use crate::equilibrium::workspace::{Standing, Workspace};
-use crate::model::{At, Discretization, Placement};
+use crate::equilibrium::workspace::Workspace;
+use crate::model::{At, Discretization};
 
 /// Share of the predicted decrease that a step must achieve (Nocedal & Wright, section 3.1).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
@@ -58,13 +59,10 @@ const MAX_DOUBLINGS: usize = 6;
 
 /// A descent under way: residual and stiffness are assembled at the point in hand.
 pub(super) struct Descent<'a> {
-    placement: Placement<'a>,
-    parameter: f64,
+    here: Configuration<'a>,
     discretization: &'a Discretization,
     assembled: &'a mut Assembled,
     tangent: &'a mut TangentStiffness,
-    unknowns: Vec<f64>,
-    displacement: Vec<[f64; 3]>,
     /// Strokes of the actions since the state that the solve started from, N·mm.
     strokes: Vec<f64>,
     /// The largest force met before, N.
@@ -78,7 +76,7 @@ pub(super) struct Descent<'a> {
 
 /// A point with a descent direction.
 struct Start {
-    unknowns: Vec<f64>,
+    free: Vec<f64>,
     displacement: Vec<[f64; 3]>,
     /// Strokes of the actions so far, and their work.
     strokes: Vec<f64>,
@@ -91,7 +89,7 @@ struct Start {
 
 impl Start {
     fn moved(&self, length: f64) -> Vec<f64> {
-        self.unknowns.iter().zip(&self.direction).map(|(q, d)| q + length * d).collect()
+        self.free.iter().zip(&self.direction).map(|(q, d)| q + length * d).collect()
     }
 
     /// Strain energy less work of the loads.
@@ -108,22 +106,18 @@ impl Start {
 
 impl<'a> Descent<'a> {
     /// At these unknowns, on the way from a state.
-    pub(super) fn new(workspace: &'a mut Workspace, from: Standing, parameter: f64, unknowns: Vec<f64>) -> Self {
+    pub(super) fn new(workspace: &'a mut Workspace, from: Standing, parameter: f64, free: Vec<f64>) -> Self {
         let Workspace { discretization, tangent, assembled, .. } = workspace;
         let discretization = &*discretization;
-        let placement = discretization.unknowns.place(&unknowns, parameter);
-        let displacement = placement.displacement();
-        assembled.assemble(discretization, &displacement, parameter, Want::Stiffness);
+        let here = Configuration::at(&discretization.unknowns, free, parameter);
+        assembled.assemble(discretization, &here.displacement, parameter, Want::Stiffness);
         Self {
-            placement,
-            parameter,
-            strokes: discretization.terms.strokes(&discretization.mesh, from.displacement, &displacement),
+            strokes: discretization.terms.strokes(&discretization.mesh, from.displacement, &here.displacement),
+            here,
             largest_force: from.largest_force,
             discretization,
             assembled,
             tangent,
-            unknowns,
-            displacement,
             gradient: Vec::new(),
             step_length: 0.0,
             watched: None,
@@ -132,32 +126,31 @@ impl<'a> Descent<'a> {
     }
 
     /// Starts anew from other unknowns, on the way from a state; what it took so far stays counted.
-    pub(super) fn start_at(&mut self, from: Standing, unknowns: Vec<f64>) {
-        self.go_to(unknowns);
+    pub(super) fn start_at(&mut self, from: Standing, free: Vec<f64>) {
+        self.go_to(free);
         let Discretization { mesh, terms, .. } = self.discretization;
-        self.strokes = terms.strokes(mesh, from.displacement, &self.displacement);
+        self.strokes = terms.strokes(mesh, from.displacement, &self.here.displacement);
     }
 
     /// Goes to other unknowns and assembles everything there.
-    fn go_to(&mut self, unknowns: Vec<f64>) {
-        self.placement = self.discretization.unknowns.place(&unknowns, self.parameter);
-        self.displacement = self.placement.displacement();
-        self.unknowns = unknowns;
-        self.assembled.assemble(self.discretization, &self.displacement, self.parameter, Want::Stiffness);
+    fn go_to(&mut self, free: Vec<f64>) {
+        self.here = Configuration::at(&self.discretization.unknowns, free, self.here.parameter);
+        let Configuration { displacement, parameter, .. } = &self.here;
+        self.assembled.assemble(self.discretization, displacement, *parameter, Want::Stiffness);
     }
 
     /// Factors the stiffness at the point in hand and says where the descent stands.
     pub(super) fn iterate(&mut self) -> Result<Iterate, SolveError> {
         let assembled = &*self.assembled;
         let forces = assembled.forces();
-        self.gradient = self.placement.restrict(&forces);
-        let scale = ForceScale::at(self.discretization, assembled, &self.displacement, self.largest_force);
+        self.gradient = self.here.placement.restrict(&forces);
+        let scale = ForceScale::at(self.discretization, assembled, &self.here.displacement, self.largest_force);
         let of_unknowns = &self.discretization.unknowns;
         let last = Iterate::at(of_unknowns, assembled.energy, scale, &self.gradient, self.effort);
         let mut last = SolveError::unless_finite(last, self.effort)?;
         last.step_length = self.step_length;
         self.effort.factorizations += 1;
-        let factored = self.tangent.factorize(self.discretization, &self.placement, assembled);
+        let factored = self.tangent.factorize(self.discretization, &self.here.placement, assembled);
         let negative = factored.map_err(|cause| SolveError::Factor { cause, effort: self.effort })?;
         last.negative_pivots = negative.count;
         last.shift = 2.0 * negative.largest;
@@ -166,7 +159,7 @@ impl<'a> Descent<'a> {
 
     /// Energy of the model that has left the balance so far, N·mm.
     pub(super) fn released_since(&self, before: &Before) -> f64 {
-        before.released(self.discretization, self.parameter, &self.strokes, self.assembled.energy)
+        before.released(self.discretization, self.here.parameter, &self.strokes, self.assembled.energy)
     }
 
     /// Moves on from the point of `last`.
@@ -178,10 +171,10 @@ impl<'a> Descent<'a> {
         let direction = self.direction(indefinite);
         let slope = product(&self.gradient, &direction);
         let here = Start {
-            unknowns: self.unknowns.clone(),
-            displacement: self.displacement.clone(),
+            free: self.here.free.clone(),
+            displacement: self.here.displacement.clone(),
             strokes: self.strokes.clone(),
-            work: self.discretization.terms.work(&self.strokes, self.parameter),
+            work: self.discretization.terms.work(&self.strokes, self.here.parameter),
             direction,
             slope,
             iterate: *last,
@@ -206,8 +199,8 @@ impl<'a> Descent<'a> {
     fn direction(&mut self, indefinite: bool) -> Vec<f64> {
         let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
         if self.assembled.has_skew() && !indefinite {
-            let Self { tangent, placement, assembled, discretization, .. } = self;
-            let solved = tangent.solve_whole(discretization, placement, assembled, &direction);
+            let Self { tangent, here, assembled, discretization, .. } = self;
+            let solved = tangent.solve_whole(discretization, &here.placement, assembled, &direction);
             if product(&self.gradient, &solved) < 0.0 {
                 return solved;
             }
@@ -234,9 +227,9 @@ impl<'a> Descent<'a> {
     pub(super) fn finish(self) -> Ended {
         let forces = self.assembled.forces();
         Ended {
-            reactions: self.placement.reactions(&forces),
-            turns: self.placement.turns(),
-            displacement: self.displacement,
+            reactions: self.here.placement.reactions(&forces),
+            turns: self.here.placement.turns(),
+            displacement: self.here.displacement,
             strokes: self.strokes,
             effort: self.effort,
         }
@@ -291,11 +284,12 @@ impl<'a> Descent<'a> {
 
     /// Strain energy less work of the loads.
     fn energy_at(&self, from: &Start, length: f64) -> f64 {
-        let displacement = self.discretization.unknowns.place(&from.moved(length), self.parameter).displacement();
-        let Discretization { mesh, tables, terms, free_strains, .. } = self.discretization;
-        let at = At { mesh, displacement: &displacement, parameter: self.parameter };
-        let energy = strain_energy(tables, &displacement, free_strains.at(self.parameter)) + terms.energy(at);
-        energy - terms.work(&self.strokes_to(from, &displacement), self.parameter)
+        let Discretization { mesh, tables, unknowns, terms, free_strains, .. } = self.discretization;
+        let parameter = self.here.parameter;
+        let displacement = &unknowns.place(&from.moved(length), parameter).displacement();
+        let energy = strain_energy(tables, displacement, free_strains.at(parameter))
+            + terms.energy(At { mesh, displacement, parameter });
+        energy - terms.work(&self.strokes_to(from, displacement), parameter)
     }
 
     /// Strokes on the way that leads straight on from where a step started.
@@ -309,7 +303,7 @@ impl<'a> Descent<'a> {
     fn settle(&mut self, from: &Start, length: f64) -> f64 {
         self.go_to(from.moved(length));
         self.step_length = length;
-        self.strokes = self.strokes_to(from, &self.displacement);
-        self.assembled.energy - self.discretization.terms.work(&self.strokes, self.parameter)
+        self.strokes = self.strokes_to(from, &self.here.displacement);
+        self.assembled.energy - self.discretization.terms.work(&self.strokes, self.here.parameter)
     }
 }

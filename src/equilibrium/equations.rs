@@ -1,13 +1,14 @@
 //! The equations R(q, λ) = 0 at a point: residual, its rate with the parameter, and the factor of the stiffness.
 
 use crate::equilibrium::assembly::{Assembled, Want};
+use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::solved::Ended;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
-use crate::equilibrium::workspace::{Standing, Workspace};
-use crate::model::{At, Discretization, Placement};
+use crate::equilibrium::workspace::Workspace;
+use crate::model::{At, Discretization};
 use crate::shell::add;
 
 /// The pieces of a workspace that the equations take.
@@ -23,10 +24,7 @@ pub(super) struct Equations<'w> {
 
 /// The equations at a point; the factor of their stiffness is in the workspace.
 pub(super) struct Point<'w> {
-    pub free: Vec<f64>,
-    pub parameter: f64,
-    pub placement: Placement<'w>,
-    pub displacement: Vec<[f64; 3]>,
+    pub here: Configuration<'w>,
     /// R: forces on the free unknowns, N.
     pub gradient: Vec<f64>,
     /// ∂R/∂λ.
@@ -57,30 +55,29 @@ impl<'w> Equations<'w> {
 
     /// At a state.
     pub fn at_standing(&mut self, at: Standing) -> Result<Point<'w>, SolveError> {
-        let free = self.discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
         // Not an effort of the solve that follows: it would depend on what ran before in the same process.
-        self.at(free, at.parameter, &mut Effort::default())
+        self.at(at.free(&self.discretization.unknowns), at.parameter, &mut Effort::default())
     }
 
     /// Assembles and factors at a point.
     pub fn at(&mut self, free: Vec<f64>, parameter: f64, effort: &mut Effort) -> Result<Point<'w>, SolveError> {
         let discretization = self.discretization;
-        let placement = discretization.unknowns.place(&free, parameter);
-        let displacement = placement.displacement();
+        let here = Configuration::at(&discretization.unknowns, free, parameter);
+        let Configuration { placement, displacement, .. } = &here;
         let ready = std::mem::take(&mut self.ready);
         if ready.is_none() {
-            self.assembled.assemble(discretization, &displacement, parameter, Want::Stiffness);
+            self.assembled.assemble(discretization, displacement, parameter, Want::Stiffness);
         }
         let forces = self.assembled.forces();
         let gradient = placement.restrict(&forces);
-        let scale = ForceScale::at(discretization, self.assembled, &displacement, self.largest_force);
+        let scale = ForceScale::at(discretization, self.assembled, displacement, self.largest_force);
         let iterate = Iterate::at(&discretization.unknowns, self.assembled.energy, scale, &gradient, *effort);
         let mut iterate = SolveError::unless_finite(iterate, *effort)?;
         if let Some(negative) = ready {
             iterate.negative_pivots = negative;
         } else {
             effort.factorizations += 1;
-            let factored = self.tangent.factorize(discretization, &placement, self.assembled);
+            let factored = self.tangent.factorize(discretization, placement, self.assembled);
             let negative = factored.map_err(|cause| SolveError::Factor { cause, effort: *effort })?;
             iterate.negative_pivots = negative.count;
             iterate.shift = 2.0 * negative.largest;
@@ -88,28 +85,28 @@ impl<'w> Equations<'w> {
         let given_rates = discretization.unknowns.given_rates_at(parameter);
         let motion = placement.velocity(&[], &given_rates);
         let mut force_rates = self.assembled.multiply(discretization, &motion);
-        let at = At { mesh: &discretization.mesh, displacement: &displacement, parameter };
+        let at = At { mesh: &discretization.mesh, displacement, parameter };
         let loads = discretization.terms.rates(at);
         let skew = self.assembled.multiply_skew(discretization, &motion);
         for (point, rate) in force_rates.iter_mut().enumerate() {
             (0..3).for_each(|c| rate[c] += skew[point][c] - loads[point][c]);
         }
         if let Some(natural) = discretization.free_strains.beyond(parameter) {
-            let freed = self.assembled.change_of_forces(discretization, &displacement, Some(natural));
+            let freed = self.assembled.change_of_forces(discretization, displacement, Some(natural));
             force_rates.iter_mut().zip(freed).for_each(|(sum, rate)| *sum = add(*sum, rate));
         }
         let mut gradient_rate = placement.restrict(&force_rates);
         for (sum, turned) in gradient_rate.iter_mut().zip(placement.restrict_rate(&forces, &given_rates)) {
             *sum += turned;
         }
-        Ok(Point { free, parameter, placement, displacement, gradient, gradient_rate, given_rates, iterate })
+        Ok(Point { here, gradient, gradient_rate, given_rates, iterate })
     }
 
     /// Solves ∂R/∂q x = b at a point.
     pub fn solve(&mut self, point: &Point, right_hand_side: &[f64]) -> Vec<f64> {
         let Self { discretization, tangent, assembled, .. } = self;
         match assembled.has_skew() {
-            true => tangent.solve_whole(discretization, &point.placement, assembled, right_hand_side),
+            true => tangent.solve_whole(discretization, &point.here.placement, assembled, right_hand_side),
             false => {
                 let mut solution = right_hand_side.to_vec();
                 tangent.solver.solve(&mut solution);
@@ -125,10 +122,10 @@ impl Point<'_> {
         let forces = equations.assembled.forces();
         let Discretization { mesh, terms, .. } = equations.discretization;
         Ended {
-            reactions: self.placement.reactions(&forces),
-            turns: self.placement.turns(),
-            strokes: terms.strokes(mesh, from.displacement, &self.displacement),
-            displacement: self.displacement,
+            reactions: self.here.placement.reactions(&forces),
+            turns: self.here.placement.turns(),
+            strokes: terms.strokes(mesh, from.displacement, &self.here.displacement),
+            displacement: self.here.displacement,
             effort,
         }
     }

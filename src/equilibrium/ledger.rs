@@ -1,8 +1,9 @@
 //! The balance of energy of a solve: what the model stored before, and what has been done on it since.
 
 use crate::equilibrium::assembly::strain_energy;
+use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::vector::product;
-use crate::equilibrium::workspace::{Standing, Workspace};
+use crate::equilibrium::workspace::Workspace;
 use crate::model::{Discretization, Placement};
 
 /// The start of a solve.
@@ -21,9 +22,7 @@ impl Before {
     /// At an equilibrium.
     pub fn at(work: &mut Workspace, from: Standing) -> Self {
         let forces = work.forces(from);
-        let Discretization { unknowns, .. } = &work.discretization;
-        let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        let placement = unknowns.place(&free, from.parameter);
+        let Configuration { placement, .. } = Configuration::of(&work.discretization.unknowns, from);
         Self::with(&work.discretization, &placement, &forces, from, work.assembled.energy)
     }
 

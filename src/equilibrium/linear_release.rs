@@ -1,8 +1,9 @@
 //! The energy that a state out of balance releases on its way to equilibrium, to first order.
 
+use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::vector::product;
-use crate::equilibrium::workspace::{Standing, Workspace};
+use crate::equilibrium::workspace::Workspace;
 use crate::shell::norm;
 
 /// What the way to equilibrium comes to, to first order, with the residual r on the free unknowns and the stiffness K.
@@ -27,16 +28,15 @@ impl Workspace {
         self.factorize_at(at)?;
         let forces = self.forces(at);
         let unknowns = &self.discretization.unknowns;
-        let free = unknowns.of_displacement(at.displacement, at.turns, at.parameter);
-        let placement = unknowns.place(&free, at.parameter);
+        let Configuration { free, placement, .. } = Configuration::of(unknowns, at);
         let residual = placement.restrict(&forces);
         let mut step = residual.clone();
         self.tangent.solver.solve(&mut step);
         let motion_mm = placement.velocity(&step, &[]).iter().map(|motion| norm(*motion)).fold(0.0, f64::max);
         let moved: Vec<f64> = free.iter().zip(&step).map(|(value, change)| value + change).collect();
-        let relaxed = unknowns.place(&moved, at.parameter);
-        let turns = if unknowns.turns_are_unknown() { relaxed.turns() } else { Vec::new() };
+        let relaxed = Configuration::at(unknowns, moved, at.parameter);
         let energy = 0.5 * product(&residual, &step);
-        Ok(LinearRelease { energy, motion_mm, displacement: relaxed.displacement(), turns })
+        let turns = relaxed.placement.turns();
+        Ok(LinearRelease { energy, motion_mm, displacement: relaxed.displacement, turns })
     }
 }

@@ -23,6 +23,7 @@
 
 mod assembly;
 mod condition;
+mod configuration;
 mod continuation;
 mod descent;
 mod equations;
@@ -47,6 +48,7 @@ mod workspace;
 
 pub use assembly::{Assembled, Part, Want, strain_energy};
 pub use condition::Condition;
+pub use configuration::{Configuration, Standing};
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};
 pub use force_scale::ForceScale;
 pub use iterate::{Effort, Iterate, Observer};
@@ -59,7 +61,7 @@ pub use sparse::FactorError;
 pub use stability::{LinearBuckling, SoftMode, soft_mode};
 pub use symmetry::SymmetryError;
 pub use timing::{KernelCost, KernelRun};
-pub use workspace::{Standing, Workspace};
+pub use workspace::Workspace;
 
 /// Build of the element kernel that this machine runs.
 pub fn kernel_name() -> &'static str {

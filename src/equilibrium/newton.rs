@@ -8,6 +8,7 @@
 //! Corrector: [`Descent`].
 
 use crate::equilibrium::assembly::subtract;
+use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::descent::Descent;
 use crate::equilibrium::iterate::Observer;
 use crate::equilibrium::ledger::Before;
@@ -15,7 +16,7 @@ use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::solved::Solved;
 use crate::equilibrium::stability::SoftMode;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
-use crate::equilibrium::workspace::{Standing, Workspace};
+use crate::equilibrium::workspace::Workspace;
 use crate::scene::Scene;
 use crate::shell::add;
 use crate::state::Previous;
@@ -60,8 +61,7 @@ impl<'a> Equilibrium<'a> {
     /// # Errors
     /// As for [`Self::advance`].
     pub fn relax(&mut self, from: Standing, observer: Observer) -> Result<Solved, SolveError> {
-        let discretization = &self.work.discretization;
-        let start = discretization.unknowns.of_displacement(from.displacement, from.turns, from.parameter);
+        let start = from.free(&self.work.discretization.unknowns);
         let before = Before::unbalanced(self.work, from);
         self.minimize(start, None, from, from.parameter, &before, observer)
     }
@@ -78,8 +78,7 @@ impl<'a> Equilibrium<'a> {
         amplitude: f64,
         observer: Observer,
     ) -> Result<Solved, SolveError> {
-        let unknowns = &self.work.discretization.unknowns;
-        let free = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
+        let free = from.free(&self.work.discretization.unknowns);
         let side = |share: f64| -> Vec<f64> { free.iter().zip(&mode.free).map(|(q, m)| q + share * m).collect() };
         let (one, other) = (side(amplitude), side(-amplitude));
         // Of two sides that are alike, one and the same on every machine: rounding does not decide.
@@ -95,8 +94,7 @@ impl<'a> Equilibrium<'a> {
         let negative = self.work.factorize_at(from).unwrap_or(usize::MAX);
         let Workspace { discretization, tangent: TangentStiffness { solver, .. }, assembled, .. } = &mut *self.work;
         let unknowns = &discretization.unknowns;
-        let old = unknowns.of_displacement(from.displacement, from.turns, from.parameter);
-        let placement = unknowns.place(&old, from.parameter);
+        let Configuration { free: old, placement, .. } = Configuration::of(unknowns, from);
         let forces = assembled.forces();
         let before = Before::with(discretization, &placement, &forces, from, assembled.energy);
         if negative > 0 {

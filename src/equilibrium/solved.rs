@@ -1,9 +1,10 @@
 //! What a solve leaves.
 
+use crate::equilibrium::configuration::Standing;
 use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::ledger::Before;
 use crate::equilibrium::vector::{length, product};
-use crate::equilibrium::workspace::{Factored, Standing, Workspace};
+use crate::equilibrium::workspace::{Factored, Workspace};
 use crate::scene::Scene;
 
 /// A point of equilibrium.

@@ -7,11 +7,13 @@
 //! iteration (Golub & Van Loan, *Matrix Computations*, 4th ed., section 8.2.2) from a shift below it (0 where the state is
 //! stable) then gives the mode. Of a part of a symmetric shell it is the lowest of the modes that share its symmetry.
 
+use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::metric::Metric;
 use crate::equilibrium::solve_error::SolveError;
+use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::equilibrium::vector::product;
-use crate::equilibrium::workspace::{Standing, Workspace};
-use crate::model::Blocks;
+use crate::equilibrium::workspace::{Formed, Workspace};
+use crate::model::{Blocks, Discretization, Placement};
 use crate::shell::dot;
 
 /// Inverse iterations at most. Near a critical point the lowest eigenvalue stands far from the next, and a handful
@@ -48,15 +50,15 @@ pub struct SoftMode {
 /// # Errors
 /// Where the stiffness has no factor.
 pub fn soft_mode(work: &mut Workspace, at: Standing) -> Result<SoftMode, SolveError> {
-    let stiffness = work.form_at(at).to_vec();
-    let free = work.discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
-    let mut slicing = Slicing { mass: mass(work, &free, at.parameter), stiffness, work, tried: 0 };
+    let Formed { discretization, tangent, configuration } = work.form_at(at);
+    let Configuration { free, placement, .. } = configuration;
+    let mass = mass(discretization, tangent, &placement);
+    let mut slicing = Slicing { mass, stiffness: tangent.matrix(), tangent, tried: 0 };
     // A start that no symmetry is orthogonal to, the same in every run.
     let start: Vec<f64> = (0..free.len()).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
     slicing.shift_below(&start)?;
     let (vector, eigenvalue, iterations) = slicing.iterate(start, SETTLED);
     let factorizations = slicing.tried;
-    let placement = work.discretization.unknowns.place(&free, at.parameter);
     let mut shape = placement.velocity(&vector, &[]);
     let lengths: Vec<f64> = shape.iter().map(|u| dot(*u, *u).sqrt()).collect();
     let largest_at = (0..lengths.len()).fold(0, |best, i| if lengths[i] > lengths[best] { i } else { best });
@@ -113,26 +115,25 @@ impl Workspace {
 
     /// vᵀKv of a direction in the free unknowns.
     fn stiffness_along(&mut self, direction: &[f64], at: Standing) -> f64 {
-        let stiffness = self.form_at(at).to_vec();
-        product(direction, &self.tangent.solver.multiply(&stiffness, direction))
+        let Formed { tangent, .. } = self.form_at(at);
+        let stiffness = tangent.matrix();
+        product(direction, &tangent.solver.multiply(&stiffness, direction))
     }
 }
 
 /// Tᵀ m T in the structure of the stiffness.
-fn mass(work: &Workspace, free: &[f64], parameter: f64) -> Vec<f64> {
-    let Workspace { discretization, tangent, .. } = work;
+fn mass(discretization: &Discretization, tangent: &TangentStiffness, placement: &Placement) -> Vec<f64> {
     let mut diagonal = Blocks::zeros(&discretization.blocks);
     for (point, weight) in Metric::new(&discretization.mesh).weights.iter().enumerate() {
         let own = diagonal.block_mut(discretization.blocks.start(point));
         (0..3).for_each(|c| own[4 * c] = *weight);
     }
-    let placement = discretization.unknowns.place(free, parameter);
-    tangent.project(discretization, &placement, &diagonal)
+    tangent.project(discretization, placement, &diagonal)
 }
 
 /// K − σ M for changing σ.
 struct Slicing<'w> {
-    work: &'w mut Workspace,
+    tangent: &'w mut TangentStiffness,
     stiffness: Vec<f64>,
     mass: Vec<f64>,
     tried: usize,
@@ -141,12 +142,12 @@ struct Slicing<'w> {
 impl Slicing<'_> {
     /// Factors K − σ M; returns the number of eigenvalues below σ.
     fn count_below(&mut self, shift: f64) -> Result<usize, SolveError> {
-        let solver = &mut self.work.tangent.solver;
+        let solver = &mut self.tangent.solver;
         for (value, (k, m)) in solver.matrix_mut().iter_mut().zip(self.stiffness.iter().zip(&self.mass)) {
             *value = k - shift * m;
         }
         self.tried += 1;
-        self.work.factorize_formed().map(|negative| negative.count)
+        self.tangent.factorize_formed().map(|negative| negative.count)
     }
 
     /// Puts the shift below the lowest eigenvalue and not far from it, and leaves its factor in the solver.
@@ -173,15 +174,15 @@ impl Slicing<'_> {
 
     /// vᵀ A v.
     fn form(&self, vector: &[f64], values: &[f64]) -> f64 {
-        product(vector, &self.work.tangent.solver.multiply(values, vector))
+        product(vector, &self.tangent.solver.multiply(values, vector))
     }
 
     /// Inverse iteration with the factor at hand: mode, eigenvalue and iterations.
     fn iterate(&mut self, mut vector: Vec<f64>, settled: f64) -> (Vec<f64>, f64, usize) {
         let mut last = f64::INFINITY;
         for iteration in 1..=MAX_ITERATIONS {
-            let mut next = self.work.tangent.solver.multiply(&self.mass, &vector);
-            self.work.tangent.solver.solve(&mut next);
+            let mut next = self.tangent.solver.multiply(&self.mass, &vector);
+            self.tangent.solver.solve(&mut next);
             let length = self.form(&next, &self.mass).sqrt();
             vector = next.into_iter().map(|value| value / length).collect();
             let eigenvalue = self.form(&vector, &self.stiffness);

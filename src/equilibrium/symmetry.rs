@@ -6,7 +6,8 @@
 //! the sum of the Hessians. Loads that turn with the shell have a tangent of their own and are left out.
 
 use crate::equilibrium::assembly::{Assembled, Want};
-use crate::equilibrium::workspace::{Standing, Workspace};
+use crate::equilibrium::configuration::Standing;
+use crate::equilibrium::workspace::Workspace;
 use crate::model::{Discretization, PointTable, Tables};
 use crate::shell::{Hessian, PointReference, dot};
 

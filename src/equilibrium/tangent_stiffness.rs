@@ -2,7 +2,9 @@
 
 use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::gmres::gmres;
+use crate::equilibrium::iterate::Effort;
 use crate::equilibrium::pattern::{Pattern, couplings};
+use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::sparse::{FactorError, NegativePivots, SparseSolver};
 use crate::model::{Blocks, Discretization, Placement};
 
@@ -32,16 +34,21 @@ impl TangentStiffness {
 
     /// The matrix at a point, Tᵀ K T and what the curvature of the supports adds: its symmetric part where loads turn with
     /// the shell, and a copy of that is kept. What factor there was is lost.
-    pub(super) fn form(
-        &mut self,
-        discretization: &Discretization,
-        placement: &Placement,
-        assembled: &Assembled,
-    ) -> &[f64] {
+    pub(super) fn form(&mut self, discretization: &Discretization, placement: &Placement, assembled: &Assembled) {
         self.pattern.fill(discretization, placement, &assembled.stiffness, self.solver.matrix_mut());
         self.solver.add(&placement.curvature(&assembled.forces()));
         self.symmetric = if assembled.has_skew() { self.solver.matrix_mut().to_vec() } else { Vec::new() };
-        self.solver.matrix_mut()
+    }
+
+    /// Factors the matrix that was formed or filled in; not counted in the effort of a solve.
+    pub(super) fn factorize_formed(&mut self) -> Result<NegativePivots, SolveError> {
+        let factored = self.solver.factorize();
+        factored.map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })
+    }
+
+    /// A copy of the matrix that was formed: its factor takes the place of it.
+    pub(super) fn matrix(&mut self) -> Vec<f64> {
+        self.solver.matrix_mut().to_vec()
     }
 
     /// Forms the matrix at a point and factors it.

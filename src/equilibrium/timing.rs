@@ -1,8 +1,9 @@
 //! The pieces of a Newton iteration one by one, for timing.
 
 use crate::equilibrium::assembly::Want;
+use crate::equilibrium::configuration::Standing;
 use crate::equilibrium::solve_error::SolveError;
-use crate::equilibrium::workspace::{Standing, Workspace};
+use crate::equilibrium::workspace::Workspace;
 use crate::model::PointTable;
 
 /// What the pieces have to do.
@@ -35,8 +36,7 @@ impl<'a> KernelRun<'a> {
     /// # Errors
     /// Where it has none.
     pub fn new(work: &'a mut Workspace, at: Standing<'a>) -> Result<Self, SolveError> {
-        let unknowns = &work.discretization.unknowns;
-        let free = unknowns.of_displacement(at.displacement, at.turns, at.parameter);
+        let free = at.free(&work.discretization.unknowns);
         let right_hand_side = (0..free.len()).map(|i| 1.0 + (i % 7) as f64).collect();
         let mut run = Self { work, at, free, right_hand_side };
         run.newton_iteration()?;
@@ -96,7 +96,7 @@ impl<'a> KernelRun<'a> {
     /// # Errors
     /// Where it has none.
     pub fn factor(&mut self) -> Result<(), SolveError> {
-        self.work.factorize_formed().map(|_| ())
+        self.work.tangent.factorize_formed().map(|_| ())
     }
 
     /// One right-hand side.

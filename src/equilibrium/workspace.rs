@@ -1,41 +1,15 @@
-//! Tables, matrix and factor for one mesh, and the state that they are asked about.
+//! Tables, matrix and factor for one mesh.
 
 use std::sync::Arc;
 
 use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
-use crate::equilibrium::iterate::Effort;
+use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
-use crate::equilibrium::sparse::NegativePivots;
+use crate::equilibrium::sparse::FactorError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::model::{At, Discretization, TermSource};
 use crate::scene::Scene;
 use crate::spline::Mesh;
-use crate::state::State;
-
-/// Where a solve starts from.
-#[derive(Clone, Copy, Debug)]
-pub struct Standing<'s> {
-    /// Displacement of the control points, mm.
-    pub displacement: &'s [[f64; 3]],
-    /// Rotation vectors of the rigid sections where one of them turns freely; empty otherwise.
-    pub turns: &'s [[f64; 3]],
-    /// The scene's parameter.
-    pub parameter: f64,
-    /// The largest force met so far, N; see [`super::ForceScale::met`].
-    pub largest_force: f64,
-}
-
-impl<'s> Standing<'s> {
-    /// A state.
-    pub fn of(state: &'s State) -> Self {
-        Self {
-            displacement: &state.displacement,
-            turns: &state.turns,
-            parameter: state.parameter,
-            largest_force: state.largest_force_n,
-        }
-    }
-}
 
 /// Buffers for one mesh. Holds nothing that decides a result: a new one gives the same bits.
 #[derive(Debug)]
@@ -45,6 +19,13 @@ pub struct Workspace {
     pub(super) assembled: Assembled,
     /// Where the stiffness in `assembled` and its factor were formed, and its negative pivots.
     pub(super) factored_at: Option<Factored>,
+}
+
+/// A workspace with the matrix of a configuration, not factored.
+pub(super) struct Formed<'w> {
+    pub discretization: &'w Discretization,
+    pub tangent: &'w mut TangentStiffness,
+    pub configuration: Configuration<'w>,
 }
 
 #[derive(Debug)]
@@ -69,7 +50,14 @@ impl Workspace {
     /// # Errors
     /// Where supports, loads or those terms do not fit the mesh, or the factor does not fit in memory.
     pub fn with_terms(scene: &Scene, mesh: &Arc<Mesh>, own: &[Arc<dyn TermSource>]) -> Result<Self, WorkspaceError> {
-        let discretization = Discretization::with_terms(scene, mesh, own)?;
+        Self::of(Discretization::with_terms(scene, mesh, own)?).map_err(WorkspaceError::from)
+    }
+
+    /// Structure and symbolic factor for a scene on a mesh.
+    ///
+    /// # Errors
+    /// Where the factor does not fit in memory.
+    pub fn of(discretization: Discretization) -> Result<Self, FactorError> {
         let tangent = TangentStiffness::new(&discretization)?;
         let assembled = Assembled::new(&discretization);
         Ok(Self { discretization, tangent, assembled, factored_at: None })
@@ -106,26 +94,19 @@ impl Workspace {
         if let Some(known) = self.factored_at.as_ref().filter(|known| exact && known.is_at(&at)) {
             return Ok(known.negative);
         }
-        self.form_at(at);
-        let negative = self.factorize_formed()?.count;
+        let negative = self.form_at(at).tangent.factorize_formed()?.count;
         self.factored_at = Some(Factored::new(at, negative));
         Ok(negative)
     }
 
-    /// Factors the matrix that was formed or filled in; not counted in the effort of a solve.
-    pub(super) fn factorize_formed(&mut self) -> Result<NegativePivots, SolveError> {
-        let factored = self.tangent.solver.factorize();
-        factored.map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })
-    }
-
     /// The matrix on the free unknowns at a state, not factored.
-    pub(super) fn form_at(&mut self, at: Standing) -> &[f64] {
+    pub(super) fn form_at(&mut self, at: Standing) -> Formed<'_> {
         self.factored_at = None;
         let Self { discretization, tangent, assembled, .. } = self;
         assembled.assemble(discretization, at.displacement, at.parameter, Want::Stiffness);
-        let free = discretization.unknowns.of_displacement(at.displacement, at.turns, at.parameter);
-        let placement = discretization.unknowns.place(&free, at.parameter);
-        tangent.form(discretization, &placement, assembled)
+        let configuration = Configuration::of(&discretization.unknowns, at);
+        tangent.form(discretization, &configuration.placement, assembled);
+        Formed { discretization, tangent, configuration }
     }
 }
 

@@ -3,7 +3,9 @@
 //! Structs are taken apart by name, so that a field that is forgotten here does not compile.
 
 use crate::spline::Mesh;
-use crate::state::{CriticalAhead, PathMemory, Previous, Refinement, Rejection, State, StepControl};
+use crate::state::{
+    Course, CriticalAhead, DriveMemory, PathMemory, Previous, Refinement, Rejection, State, StepControl,
+};
 
 /// Two values of a field that are not the same.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,13 +69,11 @@ impl Found<'_> {
             moment_n_mm,
             strain_energy_n_mm,
             negative_pivots,
-            control,
-            path,
-            previous,
+            drive: DriveMemory { control, course },
             largest_force_n,
             refinement,
         } = a;
-        if *stage == b.stage && control.rejection != b.control.rejection {
+        if *stage == b.stage && control.rejection != b.drive.control.rejection {
             return self.kinds.push(format!("{} against {}", outcome(a), outcome(b)));
         }
         if (*step, *stage) != (b.step, b.stage) {
@@ -102,19 +102,11 @@ impl Found<'_> {
         self.number("largest_force_n", *largest_force_n, b.largest_force_n);
         self.vectors("displacement", displacement, &b.displacement);
         self.list("turns", turns.as_flattened(), b.turns.as_flattened());
-        if let Some((Previous { displacement, parameter }, y)) =
-            self.both("memory of the equilibrium before", previous, &b.previous)
-        {
-            self.vectors("displacement before", displacement, &y.displacement);
-            self.number("rotation before", *parameter, y.parameter);
-        }
-        if let Some((x, y)) = self.both("a step by arc length", path, &b.path) {
-            self.paths(x, y, *parameter);
-        }
+        self.courses(course, &b.drive.course, *parameter);
         if let Some((x, y)) = self.both("memory of a refinement", refinement, &b.refinement) {
             self.refinements(x, y, *strain_energy_n_mm);
         }
-        self.controls(control, &b.control);
+        self.controls(control, &b.drive.control);
     }
 
     fn meshes(&mut self, [knots_name, points_name]: [&'static str; 2], a: &Mesh, b: &Mesh) {
@@ -126,6 +118,21 @@ impl Found<'_> {
         }
         knots.iter().zip(&b.knots).for_each(|(x, y)| self.list(knots_name, x, y));
         self.vectors(points_name, control_points, &b.control_points);
+    }
+
+    fn courses(&mut self, a: &Course, b: &Course, parameter: f64) {
+        match (a, b) {
+            (Course::Unknown, Course::Unknown) => {}
+            (Course::Load(Previous { displacement, parameter }), Course::Load(y)) => {
+                self.vectors("displacement before", displacement, &y.displacement);
+                self.number("rotation before", *parameter, y.parameter);
+            }
+            (Course::Path(x), Course::Path(y)) => self.paths(x, y, parameter),
+            (Course::Unknown | Course::Load(_) | Course::Path(_), _) => {
+                self.only("memory of the equilibrium before", [a, b].map(|course| matches!(course, Course::Load(_))));
+                self.only("a step by arc length", [a, b].map(|course| matches!(course, Course::Path(_))));
+            }
+        }
     }
 
     fn paths(&mut self, a: &PathMemory, b: &PathMemory, parameter: f64) {
@@ -178,11 +185,16 @@ impl Found<'_> {
 
     /// Both where both are there; where only one is, that is a difference of kind.
     fn both<'s, T>(&mut self, what: &str, a: &'s Option<T>, b: &'s Option<T>) -> Option<(&'s T, &'s T)> {
-        if a.is_some() != b.is_some() {
-            let which = if a.is_some() { "first" } else { "second" };
+        self.only(what, [a.is_some(), b.is_some()]);
+        a.as_ref().zip(b.as_ref())
+    }
+
+    /// What only one of them has is a difference of kind.
+    fn only(&mut self, what: &str, [first, second]: [bool; 2]) {
+        if first != second {
+            let which = if first { "first" } else { "second" };
             self.kinds.push(format!("{what} in the {which} only"));
         }
-        a.as_ref().zip(b.as_ref())
     }
 
     /// A number that is held against its own magnitude.
@@ -224,7 +236,7 @@ impl Found<'_> {
 
 /// What a stage came to, in words.
 fn outcome(state: &State) -> String {
-    match state.control.rejection {
+    match state.drive.control.rejection {
         None => format!("a solve that reached {}", state.parameter),
         Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
         Some(Rejection::Jump) => "a solve that was turned down as unstable on the way".to_string(),
@@ -278,17 +290,18 @@ mod tests {
             moment_n_mm: 100.0,
             strain_energy_n_mm: 50.0,
             negative_pivots: 0,
-            control: StepControl { halvings: 1, jump_seen_at_deg: Some(9.0), rejection: None },
-            path: Some(PathMemory {
-                heading: vec![[0.5, 0.25, 0.125]; 16],
-                parameter_rate: 0.5,
-                first_mm: 1.0,
-                next_mm: 2.0,
-                travelled_mm: 16.0,
-                critical_ahead: Some(CriticalAhead { within_mm: 0.5, rate_beyond: -0.25 }),
-                at_bifurcation: false,
-            }),
-            previous: Some(Previous { displacement: vec![[0.5, 1.0, 1.5]; 16], parameter: 7.0 }),
+            drive: DriveMemory {
+                control: StepControl { halvings: 1, jump_seen_at_deg: Some(9.0), rejection: None },
+                course: Course::Path(PathMemory {
+                    heading: vec![[0.5, 0.25, 0.125]; 16],
+                    parameter_rate: 0.5,
+                    first_mm: 1.0,
+                    next_mm: 2.0,
+                    travelled_mm: 16.0,
+                    critical_ahead: Some(CriticalAhead { within_mm: 0.5, rate_beyond: -0.25 }),
+                    at_bifurcation: false,
+                }),
+            },
             largest_force_n: 5.0,
             refinement: Some(Refinement {
                 changed_n_mm: 0.5,
@@ -298,6 +311,23 @@ mod tests {
             }),
             mesh,
         }
+    }
+
+    /// The same where a load step led.
+    fn after_load_step() -> State {
+        let mut state = state();
+        state.drive.course = Course::Load(Previous { displacement: vec![[0.5, 1.0, 1.5]; 16], parameter: 7.0 });
+        state
+    }
+
+    fn path(state: &mut State) -> &mut PathMemory {
+        let Course::Path(path) = &mut state.drive.course else { panic!("no path") };
+        path
+    }
+
+    fn previous(state: &mut State) -> &mut Previous {
+        let Course::Load(previous) = &mut state.drive.course else { panic!("no load step") };
+        previous
     }
 
     /// The last bit of every number of a state, each alone, is a difference of that field, and one of rounding.
@@ -318,27 +348,23 @@ mod tests {
             ("moment_n_mm", |s, f| f(&mut s.moment_n_mm)),
             ("strain_energy_n_mm", |s, f| f(&mut s.strain_energy_n_mm)),
             ("largest_force_n", |s, f| f(&mut s.largest_force_n)),
-            ("jump seen at", |s, f| f(s.control.jump_seen_at_deg.as_mut().unwrap())),
-            ("direction of the path", |s, f| f(&mut s.path.as_mut().unwrap().heading[2][0])),
-            ("rate of the parameter", |s, f| f(&mut s.path.as_mut().unwrap().parameter_rate)),
-            ("length of the first step", |s, f| f(&mut s.path.as_mut().unwrap().first_mm)),
-            ("length of the next step", |s, f| f(&mut s.path.as_mut().unwrap().next_mm)),
-            ("length of the path", |s, f| f(&mut s.path.as_mut().unwrap().travelled_mm)),
-            ("length to the critical point", |s, f| {
-                f(&mut s.path.as_mut().unwrap().critical_ahead.as_mut().unwrap().within_mm)
-            }),
-            ("rate beyond the critical point", |s, f| {
-                f(&mut s.path.as_mut().unwrap().critical_ahead.as_mut().unwrap().rate_beyond)
-            }),
-            ("displacement before", |s, f| f(&mut s.previous.as_mut().unwrap().displacement[9][1])),
-            ("rotation before", |s, f| f(&mut s.previous.as_mut().unwrap().parameter)),
+            ("jump seen at", |s, f| f(s.drive.control.jump_seen_at_deg.as_mut().unwrap())),
+            ("direction of the path", |s, f| f(&mut path(s).heading[2][0])),
+            ("rate of the parameter", |s, f| f(&mut path(s).parameter_rate)),
+            ("length of the first step", |s, f| f(&mut path(s).first_mm)),
+            ("length of the next step", |s, f| f(&mut path(s).next_mm)),
+            ("length of the path", |s, f| f(&mut path(s).travelled_mm)),
+            ("length to the critical point", |s, f| f(&mut path(s).critical_ahead.as_mut().unwrap().within_mm)),
+            ("rate beyond the critical point", |s, f| f(&mut path(s).critical_ahead.as_mut().unwrap().rate_beyond)),
+            ("displacement before", |s, f| f(&mut previous(s).displacement[9][1])),
+            ("rotation before", |s, f| f(&mut previous(s).parameter)),
             ("energy that refining was to change", |s, f| {
                 f(s.refinement.as_mut().unwrap().expected_n_mm.as_mut().unwrap())
             }),
         ];
-        let a = state();
-        assert_eq!(compare(&a, &a), Comparison::Identical);
         for (field, change) in changes {
+            let a = if field.ends_with("before") { after_load_step() } else { state() };
+            assert_eq!(compare(&a, &a), Comparison::Identical);
             let mut b = a.clone();
             change(&mut b, |value| *value = value.next_up());
             assert_ne!(a.hash(), b.hash(), "{field}");
@@ -354,19 +380,24 @@ mod tests {
     #[test]
     fn what_is_of_another_kind_is_told_in_words() {
         type Change = fn(&mut State);
-        let changes: [(&str, Change); 11] = [
+        let changes: [(&str, Change); 12] = [
             ("[1, 0] knot spans marked against [1, 1]", |s| s.marked[1].push(0.75)),
             ("a finer mesh waiting in the first only", |s| s.refined = None),
             ("step 3 solve against step 4 solve", |s| s.step = 4),
             ("0 negative pivots against 1", |s| s.negative_pivots = 1),
-            ("an increment halved 1 times for the next step against the scene's increment", |s| s.control.halvings = 0),
-            ("a jump seen ahead in the first only", |s| s.control.jump_seen_at_deg = None),
-            ("a solve that reached 8 against a solve that found no equilibrium", |s| {
-                s.control.rejection = Some(Rejection::NoEquilibrium)
+            ("an increment halved 1 times for the next step against the scene's increment", |s| {
+                s.drive.control.halvings = 0
             }),
-            ("a step by arc length in the first only", |s| s.path = None),
-            ("a critical point ahead in the first only", |s| s.path.as_mut().unwrap().critical_ahead = None),
-            ("only one of them has just passed a bifurcation", |s| s.path.as_mut().unwrap().at_bifurcation = true),
+            ("a jump seen ahead in the first only", |s| s.drive.control.jump_seen_at_deg = None),
+            ("a solve that reached 8 against a solve that found no equilibrium", |s| {
+                s.drive.control.rejection = Some(Rejection::NoEquilibrium)
+            }),
+            ("a step by arc length in the first only", |s| s.drive.course = Course::Unknown),
+            ("memory of the equilibrium before in the second only; a step by arc length in the first only", |s| {
+                *s = after_load_step()
+            }),
+            ("a critical point ahead in the first only", |s| path(s).critical_ahead = None),
+            ("only one of them has just passed a bifurcation", |s| path(s).at_bifurcation = true),
             ("memory of a refinement in the first only", |s| s.refinement = None),
         ];
         let a = state();

@@ -23,7 +23,7 @@ fn with_lost_stages(log: &Log) -> Option<(Log, usize)> {
     let (stages, state) = match log.commits().checked_sub(1) {
         Some(last) => (Stages::new(logged_scene(log, last, &[]).ok()?), States::of(log).at(last).ok()?),
         None => {
-            let stages = Stages::new(log.manifests().last()?.scene(&[]).ok()?);
+            let mut stages = Stages::new(log.manifests().last()?.scene(&[]).ok()?);
             let start = stages.start().ok()?;
             (stages, start)
         }

@@ -3,7 +3,7 @@
 use crate::journal::{Log, StateError};
 use crate::model::ModelError;
 use crate::pipeline::{Commit, Outcome, Stages, next_attempt, next_stage};
-use crate::scene::{Difference, Reach, Scene, Stage};
+use crate::scene::{Difference, Drive, Reach, Scene, Stage};
 use crate::state::State;
 
 /// The key of the rotation at which a run stops.
@@ -39,7 +39,7 @@ pub enum BasisError {
 ///
 /// # Errors
 /// Where the state cannot be read, or, for `keep` = 0, the scene cannot be made discrete.
-pub fn basis(log: &Log, keep: usize, stages: &Stages) -> Result<Basis, BasisError> {
+pub fn basis(log: &Log, keep: usize, stages: &mut Stages) -> Result<Basis, BasisError> {
     match keep.checked_sub(1) {
         None => Ok(Basis { state: stages.start()?, commit: None }),
         Some(last) => Ok(Basis { state: log.state(last)?, commit: log.entry(last).map(|entry| entry.record.commit) }),
@@ -134,7 +134,7 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
             }
             let parent = log.state(index - 1)?;
             // A step along the path is as long as its memory says, but where it ends on the target.
-            if parent.path.is_some() || next_attempt(old, &parent) != next_attempt(new, &parent) {
+            if parent.drive.path().is_some() || next_attempt(old, &parent) != next_attempt(new, &parent) {
                 return Ok(index);
             }
         }
@@ -142,10 +142,9 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
     Ok(log.entries().len())
 }
 
-/// Whether a parameter is at a target or beyond: along a path on either side of 0.
+/// Whether a parameter is at a target or beyond.
 fn is_beyond(scene: &Scene, parameter: f64, target: f64) -> bool {
-    let here = if scene.continuation.is_some() { parameter.abs() } else { parameter };
-    here >= target * (1.0 - TARGET_ROUNDING)
+    Drive::of(scene).way_of(parameter) >= target * (1.0 - TARGET_ROUNDING)
 }
 
 /// Number of stages, of the first `keep`, up to the last one that ends a load step.
@@ -156,7 +155,7 @@ fn complete_steps(log: &Log, keep: usize, scene: &Scene) -> Result<usize, StateE
         }
         let state = log.state(index)?;
         let ends_step =
-            state.control.rejection.is_none() && matches!(next_stage(scene, &state), None | Some(Stage::Solve));
+            state.drive.control.rejection.is_none() && matches!(next_stage(scene, &state), None | Some(Stage::Solve));
         if ends_step {
             return Ok(index + 1);
         }

@@ -111,7 +111,7 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
 
     let mut stable = start;
     let mut beyond = reached.max(stable.parameter);
-    let along_path = stable.path.is_some();
+    let along_path = stable.drive.path().is_some();
     loop {
         let gently = if beyond > stable.parameter { tries.gently(&stable, beyond)? } else { Some(stable.clone()) };
         match gently {

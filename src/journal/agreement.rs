@@ -35,7 +35,7 @@ pub(super) fn disagreement(report: &Report, state: &State) -> Option<Disagreemen
         .or_else(|| differ("negative_pivots", &report.negative_pivots, &state.negative_pivots))
         .or_else(|| differ("elements", &report.elements, &counted.element_counts()))
         .or_else(|| differ("marked", &report.marked, &marked))
-        .or_else(|| match (report.path_length_mm, &state.path) {
+        .or_else(|| match (report.path_length_mm, state.drive.path()) {
             (Some(said), Some(path)) => differs("path_length_mm", said, path.travelled_mm),
             (Some(said), None) => {
                 Some(Disagreement { field: "path_length_mm", said: said.to_string(), held: "no path".to_owned() })

@@ -14,7 +14,9 @@ use super::format::CHUNK_BYTES_LIMIT;
 use super::soundness::{Flaw, check_mesh, check_on_mesh, check_state};
 use crate::digest::extend_with_numbers;
 use crate::scene::Stage;
-use crate::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State, StepControl};
+use crate::state::{
+    Course, CriticalAhead, DriveMemory, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State, StepControl,
+};
 
 /// The newest version that is written, in front of every state and mesh. A state is written in the oldest version that
 /// holds it.
@@ -201,14 +203,16 @@ struct PathV3<'a> {
 
 impl<'a> PathV3<'a> {
     fn of(path: &'a PathMemory) -> Self {
+        let PathMemory { heading, parameter_rate, first_mm, next_mm, travelled_mm, critical_ahead, at_bifurcation } =
+            path;
         Self {
-            heading: Cow::from(&path.heading),
-            parameter_rate: path.parameter_rate,
-            first_mm: path.first_mm,
-            next_mm: path.next_mm,
-            travelled_mm: path.travelled_mm,
-            critical_ahead: path.critical_ahead.map(|ahead| [ahead.within_mm, ahead.rate_beyond]),
-            at_bifurcation: path.at_bifurcation,
+            heading: Cow::from(heading),
+            parameter_rate: *parameter_rate,
+            first_mm: *first_mm,
+            next_mm: *next_mm,
+            travelled_mm: *travelled_mm,
+            critical_ahead: critical_ahead.map(|CriticalAhead { within_mm, rate_beyond }| [within_mm, rate_beyond]),
+            at_bifurcation: *at_bifurcation,
         }
     }
 
@@ -332,16 +336,38 @@ pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
 /// The same where the hash of its mesh is known, and the mesh is sound.
 pub(super) fn encode_state_on(state: &State, mesh: Hash) -> Result<EncodedState, CodecError> {
     check_on_mesh(state)?;
-    let before = state.previous.as_ref().map_or(&[][..], |previous| &previous.displacement);
-    let displacement = encode_displacements([&state.displacement, before]);
+    let State {
+        mesh: _,
+        displacement,
+        marked,
+        refined,
+        step,
+        stage,
+        parameter,
+        turns,
+        moment_n_mm,
+        strain_energy_n_mm,
+        negative_pivots,
+        drive: DriveMemory { control: StepControl { halvings, jump_seen_at_deg, rejection }, course },
+        largest_force_n,
+        refinement,
+    } = state;
+    let (path, previous) = match course {
+        Course::Unknown => (None, None),
+        Course::Load(previous) => (None, Some(previous)),
+        Course::Path(path) => (Some(path), None),
+    };
+    let (previous_displacement, previous_parameter) =
+        previous.map(|Previous { displacement, parameter }| (&displacement[..], *parameter)).unzip();
+    let displacement = encode_displacements([displacement, previous_displacement.unwrap_or(&[])]);
     let displacement_hash = blake3::hash(&displacement);
     let base = StateV1 {
         mesh: *mesh.as_bytes(),
         displacement: *displacement_hash.as_bytes(),
-        marked: [0, 1].map(|way| Cow::from(&state.marked[way])),
-        refined: state.refined.as_deref().map(MeshV1::of),
-        step: state.step,
-        stage: state.stage.map(|stage| match stage {
+        marked: marked.each_ref().map(Cow::from),
+        refined: refined.as_deref().map(MeshV1::of),
+        step: *step,
+        stage: stage.map(|stage| match stage {
             Stage::Solve => StageV1::Solve,
             Stage::EvaluateIndicators => StageV1::EvaluateIndicators,
             Stage::RefineKnots => StageV1::RefineKnots,
@@ -349,33 +375,33 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash) -> Result<EncodedState,
             Stage::ReEquilibrate => StageV1::ReEquilibrate,
             Stage::SwitchBranch => StageV1::SwitchBranch,
         }),
-        parameter: state.parameter,
-        moment_n_mm: state.moment_n_mm,
-        strain_energy_n_mm: state.strain_energy_n_mm,
-        negative_pivots: state.negative_pivots,
-        halvings: state.control.halvings.max(0).unsigned_abs(),
-        jump_seen_at_deg: state.control.jump_seen_at_deg,
-        rejection: state.control.rejection.map(|rejection| match rejection {
+        parameter: *parameter,
+        moment_n_mm: *moment_n_mm,
+        strain_energy_n_mm: *strain_energy_n_mm,
+        negative_pivots: *negative_pivots,
+        halvings: halvings.max(&0).unsigned_abs(),
+        jump_seen_at_deg: *jump_seen_at_deg,
+        rejection: rejection.map(|rejection| match rejection {
             Rejection::NoEquilibrium => RejectionV1::NoEquilibrium,
             Rejection::Jump => RejectionV1::Jump,
             Rejection::CriticalPoint => RejectionV1::CriticalPoint,
             Rejection::SharpTurn => RejectionV1::SharpTurn,
         }),
     };
-    let after = StateV3 { base, turns: Cow::from(&state.turns), path: state.path.as_ref().map(PathV3::of) };
-    let previous_parameter = state.previous.as_ref().map(|previous| previous.parameter);
-    let doublings = state.control.halvings.min(0).unsigned_abs();
-    let state = if state.largest_force_n != 0.0 || state.refinement.is_some() {
-        let refinement = state.refinement.map(RefinementV6::of);
+    let has_path = path.is_some();
+    let after = StateV3 { base, turns: Cow::from(turns), path: path.map(PathV3::of) };
+    let doublings = halvings.min(&0).unsigned_abs();
+    let state = if *largest_force_n != 0.0 || refinement.is_some() {
+        let refinement = refinement.map(RefinementV6::of);
         let after = StateV5 { after, previous_parameter, doublings };
-        encode(6, &StateV6 { after, largest_force_n: state.largest_force_n, refinement })?
+        encode(6, &StateV6 { after, largest_force_n: *largest_force_n, refinement })?
     } else if doublings > 0 {
         encode(5, &StateV5 { after, previous_parameter, doublings })?
     } else if let Some(previous_parameter) = previous_parameter {
         encode(4, &StateV4 { after, previous_parameter })?
-    } else if state.path.is_some() || state.stage == Some(Stage::SwitchBranch) {
+    } else if has_path || *stage == Some(Stage::SwitchBranch) {
         encode(3, &after)?
-    } else if !state.turns.is_empty() {
+    } else if !turns.is_empty() {
         encode(2, &StateV2 { base: after.base, turns: after.turns })?
     } else {
         encode(1, &after.base)?
@@ -424,6 +450,23 @@ pub fn decode_state<'a>(
         let own = displacement.len() / 2;
         Previous { displacement: displacement.split_off(own), parameter }
     });
+    let course = match (path, previous) {
+        (None, None) => Course::Unknown,
+        (None, Some(previous)) => Course::Load(previous),
+        (Some(path), None) => Course::Path(path.into_memory()),
+        (Some(_), Some(_)) => return Err(Flaw::TwoCourses.into()),
+    };
+    let control = StepControl {
+        // One of the two is 0; where a changed byte makes it another number, the hash sees it.
+        halvings: stored.halvings.wrapping_sub(doublings).cast_signed(),
+        jump_seen_at_deg: stored.jump_seen_at_deg,
+        rejection: stored.rejection.map(|rejection| match rejection {
+            RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,
+            RejectionV1::Jump => Rejection::Jump,
+            RejectionV1::CriticalPoint => Rejection::CriticalPoint,
+            RejectionV1::SharpTurn => Rejection::SharpTurn,
+        }),
+    };
     let state = State {
         mesh,
         displacement,
@@ -443,19 +486,7 @@ pub fn decode_state<'a>(
         moment_n_mm: stored.moment_n_mm,
         strain_energy_n_mm: stored.strain_energy_n_mm,
         negative_pivots: stored.negative_pivots,
-        control: StepControl {
-            // One of the two is 0; where a changed byte makes it another number, the hash sees it.
-            halvings: stored.halvings.wrapping_sub(doublings).cast_signed(),
-            jump_seen_at_deg: stored.jump_seen_at_deg,
-            rejection: stored.rejection.map(|rejection| match rejection {
-                RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,
-                RejectionV1::Jump => Rejection::Jump,
-                RejectionV1::CriticalPoint => Rejection::CriticalPoint,
-                RejectionV1::SharpTurn => Rejection::SharpTurn,
-            }),
-        },
-        path: path.map(PathV3::into_memory),
-        previous,
+        drive: DriveMemory { control, course },
         largest_force_n,
         refinement: refinement.map(RefinementV6::into_memory),
     };
@@ -468,16 +499,4 @@ pub fn decode_state<'a>(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn displacements_are_what_bincode_makes_of_them() {
-        let displacement: Vec<[f64; 3]> = (0..7).map(|i| [f64::from(i), -0.0, 1.0 / f64::from(i)]).collect();
-        for before in 0..displacement.len() {
-            let both = [&displacement[..], &displacement[..before]];
-            let slow = encode(1, &DisplacementV1(Cow::from(both.concat()))).unwrap();
-            assert_eq!(encode_displacements(both), slow);
-        }
-    }
-}
+mod tests;

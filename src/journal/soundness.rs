@@ -1,8 +1,8 @@
 //! What a mesh and a state must hold so that no later code can stumble over them, whoever wrote them.
 
-use crate::scene::{Scene, Stage};
+use crate::scene::{Drive, Scene, Stage};
 use crate::spline::{DEGREES, KnotFlaw, check_knots};
-use crate::state::{CriticalAhead, Mesh, PathMemory, Refinement, State, StepControl};
+use crate::state::{Course, CriticalAhead, DriveMemory, Mesh, PathMemory, Previous, Refinement, State, StepControl};
 
 /// What is wrong with a mesh or a state.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -91,6 +91,9 @@ pub enum Flaw {
         /// What it is.
         what: &'static str,
     },
+    /// Steps of two drives at once behind the same state.
+    #[error("it is reached both by a load step and along a path, and no run makes that")]
+    TwoCourses,
     /// A number that no run makes.
     #[error("{what} is {value}, and no run makes that")]
     Absurd {
@@ -157,57 +160,80 @@ pub fn check_state(state: &State) -> Result<(), Flaw> {
 
 /// The same of a state whose mesh is sound.
 pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
-    if let Some(refined) = &state.refined {
+    let State {
+        mesh,
+        displacement,
+        marked,
+        refined,
+        step: _,
+        stage: _,
+        parameter,
+        turns,
+        moment_n_mm,
+        strain_energy_n_mm,
+        negative_pivots: _,
+        drive: DriveMemory { control: StepControl { halvings: _, jump_seen_at_deg, rejection: _ }, course },
+        largest_force_n,
+        refinement,
+    } = state;
+    if let Some(refined) = refined {
         check_mesh(refined)?;
         for way in 0..2 {
-            if refined.degree[way] != state.mesh.degree[way] {
+            if refined.degree[way] != mesh.degree[way] {
                 return Err(Flaw::Degree { way, degree: refined.degree[way] });
             }
             // The refined mesh has every knot of the mesh, and more.
             let mut finer = refined.knots[way].iter();
-            if let Some(&value) = state.mesh.knots[way].iter().find(|&knot| !finer.any(|other| other == knot)) {
+            if let Some(&value) = mesh.knots[way].iter().find(|&knot| !finer.any(|other| other == knot)) {
                 return Err(Flaw::ForeignKnot { what: "the mesh's", way, value });
             }
         }
     }
     for way in 0..2 {
-        let knots = &state.mesh.knots[way];
-        for &value in &state.marked[way] {
+        let knots = &mesh.knots[way];
+        for &value in &marked[way] {
             if !(value > knots[0] && value < knots[knots.len() - 1]) {
                 return Err(Flaw::ForeignKnot { what: "marked", way, value });
             }
         }
     }
-    let expected = state.mesh.control_points.len();
-    if state.displacement.len() != expected {
-        return Err(Flaw::Length { what: "displacements", expected, found: state.displacement.len() });
+    let expected = mesh.control_points.len();
+    let fits = |what, found| if found == expected { Ok(()) } else { Err(Flaw::Length { what, expected, found }) };
+    fits("displacements", displacement.len())?;
+    finite("displacement component", displacement.as_flattened().iter().copied())?;
+    finite("rotation", [*parameter])?;
+    finite("moment", [*moment_n_mm])?;
+    finite("turn", turns.iter().flatten().copied())?;
+    finite("strain energy", [*strain_energy_n_mm])?;
+    finite("largest force", [*largest_force_n])?;
+    if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = refinement {
+        finite("change on refining", [*changed_n_mm, *growth, *ripple_n_mm].into_iter().chain(*expected_n_mm))?;
     }
-    finite("displacement component", state.displacement.as_flattened().iter().copied())?;
-    finite("rotation", [state.parameter])?;
-    finite("moment", [state.moment_n_mm])?;
-    finite("turn", state.turns.iter().flatten().copied())?;
-    finite("strain energy", [state.strain_energy_n_mm])?;
-    finite("largest force", [state.largest_force_n])?;
-    if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = state.refinement {
-        finite("change on refining", [changed_n_mm, growth, ripple_n_mm].into_iter().chain(expected_n_mm))?;
-    }
-    if let Some(previous) = &state.previous {
-        if previous.displacement.len() != expected {
-            return Err(Flaw::Length { what: "displacements before", expected, found: previous.displacement.len() });
+    match course {
+        Course::Unknown => {}
+        Course::Load(Previous { displacement, parameter }) => {
+            fits("displacements before", displacement.len())?;
+            finite("displacement component before", displacement.as_flattened().iter().copied())?;
+            finite("rotation before", [*parameter])?;
         }
-        finite("displacement component before", previous.displacement.as_flattened().iter().copied())?;
-        finite("rotation before", [previous.parameter])?;
-    }
-    if let Some(path) = &state.path {
-        if path.heading.len() != expected {
-            return Err(Flaw::Length { what: "rates along the path", expected, found: path.heading.len() });
+        Course::Path(PathMemory {
+            heading,
+            parameter_rate,
+            first_mm,
+            next_mm,
+            travelled_mm,
+            critical_ahead,
+            at_bifurcation: _,
+        }) => {
+            fits("rates along the path", heading.len())?;
+            finite("rate along the path", heading.as_flattened().iter().copied())?;
+            let ahead =
+                critical_ahead.map_or([0.0; 2], |CriticalAhead { within_mm, rate_beyond }| [within_mm, rate_beyond]);
+            let lengths = [*parameter_rate, *first_mm, *next_mm, *travelled_mm];
+            finite("length or rate of the path", lengths.into_iter().chain(ahead))?;
         }
-        finite("rate along the path", path.heading.iter().flatten().copied())?;
-        let ahead = path.critical_ahead.map_or([0.0; 2], |ahead| [ahead.within_mm, ahead.rate_beyond]);
-        let lengths = [path.parameter_rate, path.first_mm, path.next_mm, path.travelled_mm];
-        finite("length or rate of the path", lengths.into_iter().chain(ahead))?;
     }
-    finite("rotation of a known jump", state.control.jump_seen_at_deg)
+    finite("rotation of a known jump", *jump_seen_at_deg)
 }
 
 /// Checks that a state may have been made by a run of these scenes: those of its log up to its own, which is the last. What one
@@ -229,10 +255,7 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
         moment_n_mm: _,
         strain_energy_n_mm: _,
         negative_pivots,
-        control,
-        path,
-        // Its size and numbers are all that can be asked of it.
-        previous: _,
+        drive: DriveMemory { control, course },
         largest_force_n,
         refinement,
     } = state;
@@ -242,7 +265,7 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
             return Err(Flaw::Degree { way, degree: mesh.degree[way] });
         }
     }
-    let follows_a_path = scenes.iter().any(|scene| scene.continuation.is_some());
+    let follows_a_path = scenes.iter().any(|scene| Drive::of(scene).follows_path());
     let refines = scenes.iter().any(|scene| scene.adapt.is_some());
     let is_stage = |stage: &Stage| match stage {
         Stage::SwitchBranch => follows_a_path,
@@ -253,7 +276,7 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
         _ if !refines && marked.iter().any(|knots| !knots.is_empty()) => return foreign("marked knot spans"),
         _ if !refines && refined.is_some() => return foreign("a refined mesh"),
         _ if !refines && refinement.is_some() => return foreign("a memory of refining"),
-        _ if !follows_a_path && path.is_some() => return foreign("a path"),
+        _ if !follows_a_path && matches!(course, Course::Path(_)) => return foreign("a path"),
         _ if turns.len() > scene.supports.len() + ENDS => return foreign("more rigid sections that turn"),
         _ if *negative_pivots > 3 * displacement.len() as u64 + MOTIONS * (scene.supports.len() + ENDS) as u64 => {
             return foreign("more negative pivots than unknowns");
@@ -267,21 +290,24 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
     if halvings.unsigned_abs() > HALVINGS {
         return Err(Flaw::Absurd { what: "the number of halvings", value: f64::from(*halvings) });
     }
-    if let Some(PathMemory {
-        heading: _,
-        parameter_rate: _,
-        first_mm,
-        next_mm,
-        travelled_mm,
-        critical_ahead,
-        at_bifurcation: _,
-    }) = path
-    {
-        at_least("the first step along the path", *first_mm, f64::MIN_POSITIVE)?;
-        at_least("the next step along the path", *next_mm, f64::MIN_POSITIVE)?;
-        at_least("the length of the path", *travelled_mm, 0.0)?;
-        if let Some(CriticalAhead { within_mm, rate_beyond: _ }) = critical_ahead {
-            at_least("the way to a critical point", *within_mm, 0.0)?;
+    match course {
+        // Its size and numbers are all that can be asked of an equilibrium before.
+        Course::Unknown | Course::Load(_) => {}
+        Course::Path(PathMemory {
+            heading: _,
+            parameter_rate: _,
+            first_mm,
+            next_mm,
+            travelled_mm,
+            critical_ahead,
+            at_bifurcation: _,
+        }) => {
+            at_least("the first step along the path", *first_mm, f64::MIN_POSITIVE)?;
+            at_least("the next step along the path", *next_mm, f64::MIN_POSITIVE)?;
+            at_least("the length of the path", *travelled_mm, 0.0)?;
+            if let Some(CriticalAhead { within_mm, rate_beyond: _ }) = critical_ahead {
+                at_least("the way to a critical point", *within_mm, 0.0)?;
+            }
         }
     }
     if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = refinement {

@@ -37,7 +37,19 @@ impl Discretization {
     /// # Errors
     /// Where supports, loads or those terms do not fit the mesh.
     pub fn with_terms(scene: &Scene, mesh: &Arc<Mesh>, own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
-        let unknowns = Unknowns::new(scene, mesh)?;
+        Self::with_unknowns(scene, mesh, Unknowns::new(scene, mesh)?, own)
+    }
+
+    /// The same where the unknowns of scene and mesh are known.
+    ///
+    /// # Errors
+    /// Where loads or terms do not fit the mesh.
+    pub fn with_unknowns(
+        scene: &Scene,
+        mesh: &Arc<Mesh>,
+        unknowns: Unknowns,
+        own: &[Arc<dyn TermSource>],
+    ) -> Result<Self, ModelError> {
         let tables = Tables::new(scene, mesh);
         let terms = Terms::new(scene, mesh, &tables, own)?;
         Ok(Self {

@@ -1,12 +1,15 @@
 //! When a stage doubts its numbers: what is looked at, and from where on it is said.
 
+use std::sync::Arc;
+
 use crate::adapt::{Halved, evaluate_indicators, largest_strain};
-use crate::equilibrium::{LinearBuckling, Standing};
+use crate::equilibrium::{LinearBuckling, Standing, Workspace};
+use crate::model::TermSource;
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step_control::next_stage;
 use crate::pipeline::warning::LARGE;
-use crate::pipeline::{Reading, Report, Stages, Warning};
-use crate::scene::Stage;
+use crate::pipeline::{Reading, Report, Warning};
+use crate::scene::{Scene, Stage};
 use crate::state::{Refinement, State};
 
 /// The same of the last refinement, taken for the whole mesh, up to which a run whose indicators ask for no more has seen that
@@ -25,7 +28,7 @@ const LARGE_STRAIN: f64 = 0.05;
 
 /// Where numbers are most likely read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Looked {
+pub(super) enum Looked {
     /// At the last equilibrium before a jump.
     BeforeJump,
     /// At a critical point that was passed.
@@ -34,39 +37,53 @@ enum Looked {
     AtEnd,
 }
 
-impl Stages {
-    /// Adds what is to be said of the state that a stage made, or of the one before it.
-    pub(super) fn warn(&mut self, before: &State, after: &State, report: &mut Report) {
-        let refined = matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
-        report.warnings.extend(refined.then(|| Warning::of_refining(before, after, report.elements)).flatten());
-        let solved = report.stage == Stage::Solve;
-        if report.jumped && solved {
-            report.warnings.extend(self.doubts(before, Looked::BeforeJump));
-        }
-        if report.critical_point.is_some() && solved {
-            report.warnings.extend(self.doubts(after, Looked::AtCriticalPoint));
-        } else if next_stage(&self.scene, after).is_none() {
-            report.warnings.extend(self.doubts(after, Looked::AtEnd));
-        }
+/// The states around a stage whose numbers are looked at again.
+pub(super) fn doubtful<'s>(
+    scene: &Scene,
+    before: &'s State,
+    after: &'s State,
+    report: &Report,
+) -> impl Iterator<Item = (&'s State, Looked)> + use<'s> {
+    let solved = report.stage == Stage::Solve;
+    let jumped = (report.jumped && solved).then_some((before, Looked::BeforeJump));
+    let ended = if report.critical_point.is_some() && solved {
+        Some((after, Looked::AtCriticalPoint))
+    } else {
+        next_stage(scene, after).is_none().then_some((after, Looked::AtEnd))
+    };
+    jumped.into_iter().chain(ended)
+}
+
+/// An equilibrium whose numbers are looked at again.
+pub(super) struct Doubts<'a> {
+    pub scene: &'a Scene,
+    /// Terms of the caller's own.
+    pub own: &'a [Arc<dyn TermSource>],
+    /// Of the state's mesh.
+    pub work: &'a mut Workspace,
+    pub state: &'a State,
+}
+
+impl Doubts<'_> {
+    /// What is to be said of it.
+    pub fn all(mut self, looked: Looked) -> Vec<Warning> {
+        let large_strains = self.large_strains();
+        large_strains.into_iter().chain(self.coarse(looked)).collect()
     }
 
-    fn doubts(&mut self, state: &State, looked: Looked) -> Vec<Warning> {
-        let large_strains = self.large_strains(state);
-        large_strains.into_iter().chain(self.coarse(state, looked)).collect()
-    }
-
-    fn large_strains(&mut self, state: &State) -> Option<Warning> {
-        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::Solve).ok()?;
+    fn large_strains(&self) -> Option<Warning> {
+        let Self { scene, work, state, .. } = self;
         let (strain, at) = largest_strain(work.discretization(), &state.displacement, scene.material.thickness_mm());
         (strain > LARGE_STRAIN).then_some(Warning::LargeStrains { parameter: state.parameter, strain, at })
     }
 
     /// What halving every element would change: the energy, else the load at which it buckles, else a probe.
-    fn coarse(&mut self, state: &State, looked: Looked) -> Option<Warning> {
-        if self.refining_has_shown(state) {
+    fn coarse(&mut self, looked: Looked) -> Option<Warning> {
+        if self.refining_has_shown() {
             return None;
         }
-        let mut halved = Halved::of(&self.scene, &self.own, state)?;
+        let state = self.state;
+        let mut halved = Halved::of(self.scene, self.own, state)?;
         let halving = halved.halving();
         let (parameter, elements) = (state.parameter, state.mesh.element_counts());
         let energy_share = halving.energy_share();
@@ -85,15 +102,15 @@ impl Stages {
         }
         // Near a critical point one step of Newton's method leads anywhere.
         let is_vague = looked != Looked::AtEnd || halving.is_still();
-        if is_vague { None } else { self.probe_off(state, &mut halved) }
+        if is_vague { None } else { self.probe_off(&mut halved) }
     }
 
-    fn probe_off(&mut self, state: &State, halved: &mut Halved) -> Option<Warning> {
-        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::Solve).ok()?;
+    fn probe_off(&mut self, halved: &mut Halved) -> Option<Warning> {
+        let Self { scene, work, state, .. } = self;
         let here = read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm);
         let [largest, side] = halved.halving().sizes_mm;
         let (work, at) = halved.relaxed();
-        let there = read_probes(&self.scene, work, at, state.strain_energy_n_mm);
+        let there = read_probes(scene, work, at, state.strain_energy_n_mm);
         let smallest = |reading: &Reading| match reading.unit.as_str() {
             "mm" => SMALL_READING * largest,
             "N" => SMALL_READING * state.largest_force_n,
@@ -122,15 +139,13 @@ impl Stages {
     }
 
     /// Whether refining has shown that elements are fine enough: the last time changed little, and the indicators are content.
-    fn refining_has_shown(&mut self, state: &State) -> bool {
+    fn refining_has_shown(&self) -> bool {
+        let Self { scene, work, state, .. } = self;
         let is_small = |last: Refinement| last.of_all_n_mm() <= SMALL * state.strain_energy_n_mm;
-        let Some(adapt) = self.scene.adapt.clone().filter(|_| state.refinement.is_some_and(is_small)) else {
+        let Some(adapt) = scene.adapt.as_ref().filter(|_| state.refinement.is_some_and(is_small)) else {
             return false;
         };
-        let Ok((scene, work)) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators) else {
-            return false;
-        };
-        let indicators = evaluate_indicators(scene, &adapt, work.discretization(), &state.displacement);
+        let indicators = evaluate_indicators(scene, adapt, work.discretization(), &state.displacement);
         indicators.marked.iter().all(Vec::is_empty) && indicators.blocked.is_none()
     }
 }
@@ -138,15 +153,18 @@ impl Stages {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::{MemorySink, Run};
-    use crate::scene::{LengthLimit, Scene, parse};
+    use crate::pipeline::{MemorySink, Run, Stages};
+    use crate::scene::{LengthLimit, parse};
 
     /// Whether refining has shown enough at the end of a run.
     fn has_shown(scene: Scene) -> bool {
-        let start = Stages::new(scene.clone()).start().unwrap();
+        let mut stages = Stages::new(scene.clone());
+        let start = stages.start().unwrap();
         let mut sink = MemorySink::default();
-        Run::new(Stages::new(scene.clone()), start, None).to_end(None, &|| false, &mut sink).unwrap();
-        Stages::new(scene).refining_has_shown(&sink.stages.pop().unwrap().0)
+        Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();
+        let (state, _) = sink.stages.pop().unwrap();
+        let mut work = Workspace::new(&scene, &state.mesh).unwrap();
+        Doubts { scene: &scene, own: &[], work: &mut work, state: &state }.refining_has_shown()
     }
 
     /// The baseline, refined behind its snap, halves no elements to see what refining has shown; a cylinder that the length

@@ -13,11 +13,13 @@
 //! | `stage_error` | why a stage did not end |
 //! | `revision` | the revision of the numerics |
 
+mod branch_switch;
 mod doubts;
 mod fields;
-mod load_solve;
+mod load_drive;
+mod mesh_in_hand;
 mod path_control;
-mod path_solve;
+mod path_drive;
 mod probes;
 mod record;
 mod report;
@@ -27,13 +29,15 @@ mod run;
 mod sink;
 mod stage_error;
 mod stages;
+mod step;
 mod step_control;
 mod warning;
 
+pub use crate::scene::Parameter;
 pub use fields::{as_number, fields_of};
 pub use path_control::CriticalPoint;
 pub use record::{Commit, Record};
-pub use report::{Outcome, Parameter, Reading, Report, WrittenReport, released_in_words};
+pub use report::{Outcome, Reading, Report, WrittenReport, released_in_words};
 pub use revision::NUMERICS_REVISION;
 pub use run::{Ending, Run, RunError};
 pub use sink::{MemorySink, Sink, SinkError};

@@ -1,7 +1,7 @@
 //! The scene's probes at an equilibrium.
 
 use crate::adapt::element_strains;
-use crate::equilibrium::{Standing, Workspace};
+use crate::equilibrium::{Configuration, Standing, Workspace};
 use crate::model::{
     At, Discretization, Exerted, Placement, Site, Terms, control_expressions, direction_at, line_place, parameters_of,
 };
@@ -17,9 +17,7 @@ pub fn read_probes(scene: &Scene, work: &mut Workspace, at: Standing, energy: f6
     }
     let forces = work.forces(at);
     let discretization = work.discretization();
-    let unknowns = &discretization.unknowns;
-    let free = unknowns.of_displacement(at.displacement, at.turns, at.parameter);
-    let placement = unknowns.place(&free, at.parameter);
+    let Configuration { placement, .. } = Configuration::of(&discretization.unknowns, at);
     let of_supports =
         |probe: &Probe| matches!(probe.kind, ProbeKind::Reaction { .. } | ProbeKind::SectionMoment { .. });
     let exerted = scene.probes.iter().any(of_supports).then(|| placement.exerted(&forces));

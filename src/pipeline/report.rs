@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::pipeline::{CriticalPoint, Warning};
-use crate::scene::{Scene, Stage};
-use crate::units::rounded;
+use crate::scene::{Parameter, Scene, Stage};
+use crate::state::State;
 
 /// What a stage reports beside the state that it made. Pure: holds no clock and no host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,44 +66,45 @@ pub struct Report {
     pub warnings: Vec<Warning>,
 }
 
+impl Report {
+    /// Of a state as it stands, on a mesh with so many free unknowns; the stage fills in what it did.
+    pub(super) fn of(scene: &Scene, state: &State, unknowns: usize) -> Self {
+        Self {
+            step: state.step,
+            stage: state.stage.unwrap_or(Stage::Solve),
+            outcome: Outcome::Done,
+            driven_by: Parameter::of(scene),
+            parameter: state.parameter,
+            attempted_parameter: state.parameter,
+            moment_n_mm: state.moment_n_mm,
+            strain_energy_n_mm: state.strain_energy_n_mm,
+            work_n_mm: 0.0,
+            put_in_n_mm: 0.0,
+            elements: state.mesh.element_counts(),
+            unknowns,
+            iterations: 0,
+            factorizations: 0,
+            negative_pivots: state.negative_pivots,
+            residual: 0.0,
+            energy_released_n_mm: Some(0.0),
+            jumped: false,
+            rippled: false,
+            marked: [0, 0],
+            largest_indicator: [0.0; 2],
+            probes: Vec::new(),
+            path_length_mm: state.drive.path().map(|path| path.travelled_mm),
+            critical_point: None,
+            warnings: Vec::new(),
+        }
+    }
+}
+
 /// Energy that a jump released, in words, with so many decimals; it may not be known for two reasons.
 pub fn released_in_words(energy_n_mm: Option<f64>, loads_follow: bool, decimals: usize) -> String {
     match energy_n_mm {
         Some(energy) => format!("released {energy:.decimals$} N·mm"),
         None if loads_follow => "energy released not known: the loads have no potential".into(),
         None => "energy released not known: less than the rule of work resolves".into(),
-    }
-}
-
-/// What drives a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// Rotation of each end, degrees.
-    Rotation,
-    /// Load factor.
-    LoadFactor,
-}
-
-impl Parameter {
-    /// Of a scene.
-    pub fn of(scene: &Scene) -> Self {
-        if scene.end_rotation().is_some() { Parameter::Rotation } else { Parameter::LoadFactor }
-    }
-
-    /// A value with its unit.
-    pub fn shown(self, value: f64) -> String {
-        match self {
-            Parameter::Rotation => format!("{value}°"),
-            Parameter::LoadFactor => format!("load factor {value}"),
-        }
-    }
-
-    /// The same with no more decimals than say something.
-    pub fn shown_short(self, value: f64) -> String {
-        match self {
-            Parameter::Rotation => format!("{}°", rounded(value)),
-            Parameter::LoadFactor => format!("load factor {}", rounded(value)),
-        }
     }
 }
 

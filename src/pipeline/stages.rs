@@ -4,23 +4,29 @@ use std::sync::Arc;
 
 use crate::adapt::{evaluate_indicators, project_displacements};
 use crate::digest::{Feed, Hash};
-use crate::equilibrium::{Effort, Iterate, SolveError, Solved, Standing, Workspace, WorkspaceError, strain_energy};
+use crate::equilibrium::{Iterate, Standing, Workspace, WorkspaceError, strain_energy};
 use crate::model::{
-    At, FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, TermSource, Unknowns, check_balance, free_motion,
-    remarks, starting_mesh,
+    At, FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, TermSource, check_balance, free_motion, remarks,
+    starting_mesh,
 };
+use crate::pipeline::branch_switch::switch_branch;
+use crate::pipeline::doubts::{Doubts, doubtful};
+use crate::pipeline::load_drive::LoadDrive;
+use crate::pipeline::mesh_in_hand::MeshInHand;
+use crate::pipeline::path_drive::PathDrive;
 use crate::pipeline::probes::read_probes;
-use crate::pipeline::{Outcome, Parameter, Reading, Report, StageError, Warning};
-use crate::scene::{Scene, Stage};
+use crate::pipeline::step::{Drives, Step, out_of_order};
+use crate::pipeline::{Reading, Report, StageError, Warning};
+use crate::scene::{Drive, Scene, Stage};
 use crate::spline::Mesh;
-use crate::state::{PathMemory, Previous, Refinement, State, StepControl};
+use crate::state::{DriveMemory, Refinement, State};
 
 /// Runs the stages of one scene; keeps buffers of the mesh in hand, which a new one would fill with the same bits.
 #[derive(Debug)]
 pub struct Stages {
-    pub(super) scene: Scene,
-    pub(super) own: Vec<Arc<dyn TermSource>>,
-    pub(super) work: Option<Workspace>,
+    scene: Scene,
+    own: Vec<Arc<dyn TermSource>>,
+    in_hand: MeshInHand,
 }
 
 impl Stages {
@@ -31,7 +37,7 @@ impl Stages {
 
     /// Stages of a scene with energies or loads of the caller's own.
     pub fn with_terms(scene: Scene, own: Vec<Arc<dyn TermSource>>) -> Self {
-        Self { scene, own, work: None }
+        Self { scene, own, in_hand: MeshInHand::default() }
     }
 
     /// Energies and loads of the caller's own.
@@ -64,26 +70,29 @@ impl Stages {
     /// # Errors
     /// Where the scene cannot be made discrete, its supports leave a rigid motion free, or its loads push one that is
     /// only held so.
-    pub fn start(&self) -> Result<State, ModelError> {
-        let mesh = starting_mesh(&self.scene)?;
-        let unknowns = Unknowns::new(&self.scene, &mesh)?;
-        if let Some(motion) = free_motion(&unknowns) {
+    pub fn start(&mut self) -> Result<State, ModelError> {
+        let mut state = State::undeformed(starting_mesh(&self.scene)?);
+        let mesh = &state.mesh;
+        let unknowns = self.in_hand.unknowns(&self.scene, mesh)?;
+        if let Some(motion) = free_motion(unknowns) {
             return Err(ModelError::FreeMotion { motion });
         }
-        check_balance(&self.scene, &mesh, &unknowns)?;
+        check_balance(&self.scene, mesh, unknowns)?;
         if unknowns.count() == 0 {
             return Err(ModelError::NothingFree { elements: mesh.element_counts() });
         }
-        let turns = if unknowns.turns_are_unknown() { vec![[0.0; 3]; unknowns.sections().len()] } else { vec![] };
-        Ok(State { turns, ..State::undeformed(mesh) })
+        if unknowns.turns_are_unknown() {
+            state.turns = vec![[0.0; 3]; unknowns.sections().len()];
+        }
+        Ok(state)
     }
 
     /// What supports and actions of the scene come to where its words leave it open: a sentence each.
     ///
     /// # Errors
     /// Where supports or loads do not fit the mesh of the state.
-    pub fn remarks(&self, state: &State) -> Result<Vec<String>, ModelError> {
-        remarks(&self.scene, &state.mesh, &Unknowns::new(&self.scene, &state.mesh)?)
+    pub fn remarks(&mut self, state: &State) -> Result<Vec<String>, ModelError> {
+        remarks(&self.scene, &state.mesh, self.in_hand.unknowns(&self.scene, &state.mesh)?)
     }
 
     /// Runs a stage. `observer` sees every Newton iterate.
@@ -96,61 +105,64 @@ impl Stages {
         state: &State,
         observer: &mut dyn FnMut(&Iterate),
     ) -> Result<(State, Report), StageError> {
-        let result = match stage {
-            Stage::Solve => match self.scene.continuation.clone() {
-                Some(limits) => self.step_along_path(&limits, state, observer),
-                None => self.move_load(state, observer),
-            },
-            Stage::SwitchBranch => self.switch_branch(state, observer),
-            Stage::EvaluateIndicators => self.evaluate(state),
-            Stage::RefineKnots => self.refine(state),
-            Stage::ProjectDisplacements => self.project(state),
-            Stage::ReEquilibrate => match &state.path {
-                Some(path) if self.scene.continuation.is_some() => self.correct_path(state, path, observer),
-                _ => self.relax(state, observer),
-            },
+        let (mut next, mut report) = match stage {
+            Stage::Solve => self.drive(stage, state, observer)?.solve()?,
+            Stage::SwitchBranch => switch_branch(self.step(stage, state, observer)?)?,
+            Stage::EvaluateIndicators => self.evaluate(state)?,
+            Stage::RefineKnots => self.refine(state)?,
+            Stage::ProjectDisplacements => self.project(state)?,
+            Stage::ReEquilibrate => self.drive(stage, state, observer)?.re_equilibrate()?,
         };
-        result.map(|(mut next, mut report)| {
-            next.stage = Some(stage);
-            report.stage = stage;
-            self.warn(state, &next, &mut report);
-            (next, report)
+        next.stage = Some(stage);
+        report.stage = stage;
+        self.warn(state, &next, &mut report)?;
+        Ok((next, report))
+    }
+
+    /// What drives the scene, at a state.
+    fn drive<'a>(
+        &'a mut self,
+        stage: Stage,
+        state: &'a State,
+        observer: &'a mut dyn FnMut(&Iterate),
+    ) -> Result<Box<dyn Drives + 'a>, StageError> {
+        let step = self.step(stage, state, observer)?;
+        Ok(match Drive::of(step.scene) {
+            Drive::Load(_) => Box::new(LoadDrive { step }),
+            Drive::Path(_, limits) => Box::new(PathDrive { step, limits }),
         })
     }
 
-    pub(super) fn workspace(
-        &mut self,
-        mesh: &Arc<Mesh>,
-        step: u64,
+    fn step<'a>(
+        &'a mut self,
         stage: Stage,
-    ) -> Result<(&Scene, &mut Workspace), StageError> {
-        let kept = self.work.take().filter(|work| {
-            let known = &work.discretization().mesh;
-            Arc::ptr_eq(known, mesh) || known == mesh
-        });
-        let work = match kept {
-            Some(work) => work,
-            None => Workspace::with_terms(&self.scene, mesh, &self.own).map_err(|cause| match cause {
-                WorkspaceError::Factor(cause) => {
-                    StageError::TooLarge { step, stage, elements: mesh.element_counts(), cause }
-                }
-                WorkspaceError::Model(cause) => StageError::Model { step, stage, cause },
-            })?,
-        };
-        Ok((&self.scene, self.work.insert(work)))
+        state: &'a State,
+        observer: &'a mut dyn FnMut(&Iterate),
+    ) -> Result<Step<'a>, StageError> {
+        let step = if stage == Stage::Solve { state.step + 1 } else { state.step };
+        let (scene, work) = self.workspace(&state.mesh, step, stage)?;
+        Ok(Step { scene, work, state, observer })
+    }
+
+    fn workspace(&mut self, mesh: &Arc<Mesh>, step: u64, stage: Stage) -> Result<(&Scene, &mut Workspace), StageError> {
+        let work = self.in_hand.workspace(&self.scene, &self.own, mesh);
+        Ok((&self.scene, work.map_err(|cause| no_workspace(cause, mesh, step, stage))?))
     }
 
     fn evaluate(&mut self, state: &State) -> Result<(State, Report), StageError> {
-        let mut report = self.report(state, state.step);
-        let Some(adapt) = self.scene.adapt.clone() else {
+        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators)?;
+        let Some(adapt) = &scene.adapt else {
             return Err(out_of_order(state, Stage::EvaluateIndicators, "the scene has no [adapt]"));
         };
-        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators)?;
-        let indicators = evaluate_indicators(scene, &adapt, work.discretization(), &state.displacement);
-        report.marked = [indicators.marked[0].len(), indicators.marked[1].len()];
-        report.largest_indicator = indicators.largest;
-        let blocked = indicators.blocked.filter(|_| report.marked == [0, 0]);
-        report.warnings.extend(blocked.map(|blocked| Warning::of_blocked(state, blocked)));
+        let indicators = evaluate_indicators(scene, adapt, work.discretization(), &state.displacement);
+        let marked = indicators.marked.each_ref().map(Vec::len);
+        let blocked = indicators.blocked.filter(|_| marked == [0, 0]);
+        let report = Report {
+            marked,
+            largest_indicator: indicators.largest,
+            warnings: blocked.map(|blocked| Warning::of_blocked(state, blocked)).into_iter().collect(),
+            ..Report::of(scene, state, work.discretization().unknowns.count())
+        };
         Ok((State { marked: indicators.marked, ..state.clone() }, report))
     }
 
@@ -158,7 +170,7 @@ impl Stages {
         if state.marked.iter().all(Vec::is_empty) {
             return Err(out_of_order(state, Stage::RefineKnots, "no knot span is marked"));
         }
-        let finer = state.mesh.with_knots(&state.marked);
+        let finer = Arc::new(state.mesh.with_knots(&state.marked));
         if finer.control_points.len() > MOST_CONTROL_POINTS {
             let (step, elements, count) = (state.step, finer.element_counts(), finer.control_points.len());
             return Err(StageError::RefinedTooFar { step, elements, count });
@@ -169,23 +181,26 @@ impl Stages {
         let natural = FreeStrains::new(&self.scene, &state.mesh).at(state.parameter);
         let parts = self.scene.symmetry.copies() as f64;
         let energy = parts * (strain_energy(&tables, &state.displacement, natural) + self.stored_by_terms(state)?);
-        let mut report = self.report(state, state.step);
-        report.marked = [state.marked[0].len(), state.marked[1].len()];
-        report.elements = finer.element_counts();
-        let fits = Unknowns::new(&self.scene, &finer);
-        report.unknowns =
-            fits.map_err(|cause| StageError::Model { step: state.step, stage: Stage::RefineKnots, cause })?.count();
-        report.strain_energy_n_mm = energy;
-        let [before, after] = [&*state.mesh, &finer].map(|mesh| mesh.element_counts().iter().product::<usize>() as f64);
+        let unknowns = match self.in_hand.unknowns(&self.scene, &finer) {
+            Ok(unknowns) => unknowns.count(),
+            Err(cause) => return Err(StageError::Model { step: state.step, stage: Stage::RefineKnots, cause }),
+        };
+        let report = Report {
+            marked: state.marked.each_ref().map(Vec::len),
+            elements: finer.element_counts(),
+            strain_energy_n_mm: energy,
+            ..Report::of(&self.scene, state, unknowns)
+        };
+        let [before, after] = [&state.mesh, &finer].map(|mesh| mesh.element_counts().iter().product::<usize>() as f64);
         // Along a path every critical point is located: nothing asks what refining changed.
-        let refinement = self.scene.continuation.is_none().then(|| Refinement {
+        let refinement = (!Drive::of(&self.scene).follows_path()).then(|| Refinement {
             changed_n_mm: (energy - state.strain_energy_n_mm).abs(),
             growth: after / before - 1.0,
             expected_n_mm: state.refinement.map(|last| last.of_all_n_mm()),
             ripple_n_mm: state.refinement.map_or(0.0, |last| last.ripple_n_mm),
         });
         let next = State {
-            refined: Some(Arc::new(finer)),
+            refined: Some(finer),
             marked: Default::default(),
             strain_energy_n_mm: energy,
             refinement,
@@ -208,23 +223,55 @@ impl Stages {
         let Some(finer) = &state.refined else {
             return Err(out_of_order(state, Stage::ProjectDisplacements, "there is no refined mesh"));
         };
-        let displacement = project_displacements(&state.mesh, finer, &state.displacement);
-        let parts = self.scene.symmetry.copies() as f64;
-        let (_, work) = self.workspace(finer, state.step, Stage::ProjectDisplacements)?;
-        let strain_energy_n_mm = parts * work.energy(&displacement, state.parameter);
-        let carried = |path: &PathMemory| PathMemory {
-            heading: project_displacements(&state.mesh, finer, &path.heading),
-            ..path.clone()
+        let State {
+            mesh,
+            displacement,
+            marked,
+            refined: _,
+            step,
+            stage,
+            parameter,
+            turns,
+            moment_n_mm,
+            strain_energy_n_mm: _,
+            negative_pivots,
+            drive: DriveMemory { control, course },
+            largest_force_n,
+            refinement,
+        } = state;
+        let project = |vectors: &[[f64; 3]]| project_displacements(mesh, finer, vectors);
+        let displacement = project(displacement);
+        let (scene, work) = self.workspace(finer, *step, Stage::ProjectDisplacements)?;
+        let next = State {
+            mesh: finer.clone(),
+            marked: marked.clone(),
+            refined: None,
+            step: *step,
+            stage: *stage,
+            parameter: *parameter,
+            turns: turns.clone(),
+            moment_n_mm: *moment_n_mm,
+            strain_energy_n_mm: scene.symmetry.copies() as f64 * work.energy(&displacement, *parameter),
+            displacement,
+            negative_pivots: *negative_pivots,
+            drive: DriveMemory { control: *control, course: course.projected(project) },
+            largest_force_n: *largest_force_n,
+            refinement: *refinement,
         };
-        let path = state.path.as_ref().map(carried);
-        let previous = state.previous.as_ref().map(|previous| Previous {
-            displacement: project_displacements(&state.mesh, finer, &previous.displacement),
-            ..*previous
-        });
-        let mesh = finer.clone();
-        let next = State { mesh, refined: None, displacement, strain_energy_n_mm, path, previous, ..state.clone() };
-        let report = self.report(&next, next.step);
+        let report = Report::of(scene, &next, work.discretization().unknowns.count());
         Ok((next, report))
+    }
+
+    /// Adds what is to be said of the state that a stage made, or of the one before it.
+    fn warn(&mut self, before: &State, after: &State, report: &mut Report) -> Result<(), StageError> {
+        let refined = matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
+        report.warnings.extend(refined.then(|| Warning::of_refining(before, after, report.elements)).flatten());
+        for (state, looked) in doubtful(&self.scene, before, after, report) {
+            let work = self.in_hand.workspace(&self.scene, &self.own, &state.mesh);
+            let work = work.map_err(|cause| no_workspace(cause, &state.mesh, report.step, report.stage))?;
+            report.warnings.extend(Doubts { scene: &self.scene, own: &self.own, work, state }.all(looked));
+        }
+        Ok(())
     }
 
     /// Reads every probe of the scene at an equilibrium.
@@ -232,90 +279,16 @@ impl Stages {
     /// # Errors
     /// Where the scene cannot be made discrete on the state's mesh.
     pub fn read_probes(&mut self, state: &State) -> Result<Vec<Reading>, StageError> {
-        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::Solve)?;
+        let made_by = state.stage.unwrap_or(Stage::Solve);
+        let (scene, work) = self.workspace(&state.mesh, state.step, made_by)?;
         Ok(read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm))
     }
-
-    /// A report of the state as it stands; the stage fills in what it did. `stage` is set by [`Self::run`].
-    pub(super) fn report(&mut self, state: &State, step: u64) -> Report {
-        let unknowns = match &self.work {
-            Some(work) if work.discretization().mesh == state.mesh => work.discretization().unknowns.count(),
-            _ => Unknowns::new(&self.scene, &state.mesh).map_or(0, |unknowns| unknowns.count()),
-        };
-        Report {
-            step,
-            stage: Stage::Solve,
-            outcome: Outcome::Done,
-            driven_by: Parameter::of(&self.scene),
-            work_n_mm: 0.0,
-            put_in_n_mm: 0.0,
-            probes: Vec::new(),
-            parameter: state.parameter,
-            attempted_parameter: state.parameter,
-            moment_n_mm: state.moment_n_mm,
-            strain_energy_n_mm: state.strain_energy_n_mm,
-            elements: state.mesh.element_counts(),
-            unknowns,
-            iterations: 0,
-            factorizations: 0,
-            negative_pivots: state.negative_pivots,
-            residual: 0.0,
-            energy_released_n_mm: Some(0.0),
-            jumped: false,
-            rippled: false,
-            marked: [0, 0],
-            largest_indicator: [0.0; 2],
-            path_length_mm: state.path.as_ref().map(|path| path.travelled_mm),
-            critical_point: None,
-            warnings: Vec::new(),
-        }
-    }
 }
 
-impl Report {
-    pub(super) fn record_failure(&mut self, cause: &SolveError) {
-        self.record_effort(cause.effort());
-        self.residual = cause.last().map_or(f64::NAN, |last| last.relative_residual());
+/// The error of a stage whose mesh the scene does not fit, or that does not fit in memory.
+fn no_workspace(cause: WorkspaceError, mesh: &Mesh, step: u64, stage: Stage) -> StageError {
+    match cause {
+        WorkspaceError::Factor(cause) => StageError::TooLarge { step, stage, elements: mesh.element_counts(), cause },
+        WorkspaceError::Model(cause) => StageError::Model { step, stage, cause },
     }
-
-    pub(super) fn record_effort(&mut self, effort: Effort) {
-        self.iterations = effort.iterations;
-        self.factorizations = effort.factorizations;
-    }
-
-    pub(super) fn record(&mut self, state: &State, solved: &Solved) {
-        self.record_effort(solved.effort);
-        self.parameter = state.parameter;
-        self.moment_n_mm = state.moment_n_mm;
-        self.strain_energy_n_mm = state.strain_energy_n_mm;
-        self.negative_pivots = state.negative_pivots;
-        self.residual = solved.residual;
-        self.work_n_mm = solved.work;
-        self.put_in_n_mm = solved.put_in;
-        self.path_length_mm = state.path.as_ref().map(|path| path.travelled_mm);
-    }
-}
-
-/// The state at a new equilibrium.
-pub(super) fn settle(state: &State, solved: &Solved) -> State {
-    State {
-        displacement: solved.displacement.clone(),
-        turns: solved.turns.clone(),
-        marked: Default::default(),
-        moment_n_mm: solved.moment,
-        strain_energy_n_mm: solved.energy,
-        largest_force_n: solved.largest_force,
-        negative_pivots: solved.negative_pivots as u64,
-        ..state.clone()
-    }
-}
-
-/// The state where it was, with another attempt to make.
-pub(super) fn reject(state: &State, mut report: Report, outcome: Outcome, control: StepControl) -> (State, Report) {
-    report.outcome = outcome;
-    (State { control, marked: Default::default(), ..state.clone() }, report)
-}
-
-pub(super) fn out_of_order(state: &State, stage: Stage, missing: &'static str) -> StageError {
-    StageError::OutOfOrder { step: state.step, stage, after: state.stage.map_or("the start", Stage::name), missing }
 }

@@ -18,7 +18,7 @@
 //! iterations.
 
 use crate::equilibrium::Solved;
-use crate::scene::{Scene, Stage};
+use crate::scene::{Drive, Scene, Stage};
 use crate::state::{Rejection, State, StepControl};
 
 /// Energy that leaves the balance of a step, relative to the strain energy, above which the step jumped. The baseline's
@@ -56,17 +56,17 @@ pub struct Attempt {
 pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
     let here = state.parameter;
     let tolerance = scene.snap_tolerance();
-    if let Some(beyond) = state.control.jump_seen_at_deg {
+    if let Some(beyond) = state.drive.control.jump_seen_at_deg {
         let middle = 0.5 * (here + beyond);
         let located = beyond - here <= tolerance || middle <= here || middle >= beyond;
         return Attempt { target_deg: if located { beyond } else { middle }, may_jump: located };
     }
-    let increment = increment_of(scene, state.control.halvings);
+    let increment = increment_of(scene, state.drive.control.halvings);
     let multiple = ((here / increment + SAME).floor() + 1.0) * increment;
     let last = scene.load.target();
     let mut target_deg = if multiple > last - SAME * increment { last } else { multiple };
     // An increment that has grown does not pass over what a history asks for.
-    if state.control.halvings < 0 {
+    if state.drive.control.halvings < 0 {
         let point = scene.next_history_point(here + SAME * scene.load.increment());
         target_deg = point.map_or(target_deg, |point| point.min(target_deg));
     }
@@ -80,9 +80,7 @@ fn increment_of(scene: &Scene, halvings: i32) -> f64 {
 
 /// Whether a rotation is reached, to the rounding of its steps.
 pub fn has_reached(scene: &Scene, state: &State, parameter: f64) -> bool {
-    // Along a path the parameter may also go beyond the target on the other side.
-    let here = if scene.continuation.is_some() { state.parameter.abs() } else { state.parameter };
-    here >= parameter - SAME * scene.load.increment()
+    Drive::of(scene).way_of(state.parameter) >= parameter - SAME * scene.load.increment()
 }
 
 /// The stage that follows a state; `None` where the run has reached its target.
@@ -90,7 +88,7 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
     let has = |stage| scene.pipeline.contains(&stage);
     let evaluated = match state.stage {
         None => return Some(Stage::Solve),
-        Some(Stage::Solve) if state.control.rejection.is_some() => return Some(Stage::Solve),
+        Some(Stage::Solve) if state.drive.control.rejection.is_some() => return Some(Stage::Solve),
         Some(Stage::RefineKnots) => return Some(Stage::ProjectDisplacements),
         Some(Stage::ProjectDisplacements) => return Some(Stage::ReEquilibrate),
         Some(Stage::Solve | Stage::ReEquilibrate) if has(Stage::SwitchBranch) && is_to_be_left(scene, state) => {
@@ -111,8 +109,8 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
 /// Whether an unstable equilibrium is one that a run does not stay on. Along a path only those on a branch that has just
 /// become unstable are: behind a limit point the path itself is what is asked for.
 fn is_to_be_left(scene: &Scene, state: &State) -> bool {
-    let along_path = scene.continuation.is_some();
-    let bifurcated = state.path.as_ref().is_some_and(|path| path.at_bifurcation);
+    let along_path = Drive::of(scene).follows_path();
+    let bifurcated = state.drive.path().is_some_and(|path| path.at_bifurcation);
     state.negative_pivots > 0 && (!along_path || bifurcated)
 }
 
@@ -146,11 +144,11 @@ impl Attempt {
     /// Step control after the attempt found no equilibrium; `None` where an increment below the scene's least one
     /// would be needed, or where a located jump could not be followed.
     pub fn control_after_failure(&self, scene: &Scene, state: &State) -> Option<StepControl> {
-        if state.control.jump_seen_at_deg.is_some() && self.may_jump {
+        if state.drive.control.jump_seen_at_deg.is_some() && self.may_jump {
             return None;
         }
         let half = 0.5 * self.increment_deg(state);
-        let mut halvings = state.control.halvings;
+        let mut halvings = state.drive.control.halvings;
         while increment_of(scene, halvings) > half * (1.0 + SAME) {
             halvings += 1;
         }
@@ -190,6 +188,7 @@ mod tests {
     use super::*;
     use crate::scene::{EndRotation, Load, parse};
     use crate::spline::Mesh;
+    use crate::state::{Course, DriveMemory};
 
     fn scene(increment_deg: f64, rotation_deg: f64) -> Scene {
         let mut scene = parse(include_str!("../../pipelines/baseline-uniform.toml"), "baseline-uniform.toml").unwrap();
@@ -202,7 +201,8 @@ mod tests {
 
     fn at(parameter: f64, control: StepControl) -> State {
         let mesh = Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] };
-        State { step: 1, stage: Some(Stage::Solve), parameter, control, ..State::undeformed(mesh) }
+        let drive = DriveMemory { control, course: Course::Unknown };
+        State { step: 1, stage: Some(Stage::Solve), parameter, drive, ..State::undeformed(mesh) }
     }
 
     /// Rotations of a run in which every attempt succeeds.
@@ -211,7 +211,7 @@ mod tests {
         let mut rotations = Vec::new();
         while next_stage(scene, &state).is_some() {
             let attempt = next_attempt(scene, &state);
-            state = at(attempt.target_deg, attempt.control_after_success(scene, &state.control, 4));
+            state = at(attempt.target_deg, attempt.control_after_success(scene, &state.drive.control, 4));
             rotations.push(state.parameter);
         }
         rotations
@@ -243,9 +243,9 @@ mod tests {
                 return ([state.parameter, attempt.target_deg], attempts);
             }
             state = if jumps {
-                at(state.parameter, attempt.control_after_jump(&state.control))
+                at(state.parameter, attempt.control_after_jump(&state.drive.control))
             } else {
-                at(attempt.target_deg, attempt.control_after_success(scene, &state.control, 4))
+                at(attempt.target_deg, attempt.control_after_success(scene, &state.drive.control, 4))
             };
         }
         panic!("never located");
@@ -295,7 +295,7 @@ mod tests {
         for _ in 0..5 {
             let attempt = next_attempt(&scene, &state);
             sizes.push((attempt.increment_deg(&state) * 1e6).round() / 1e6);
-            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.control, 4));
+            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.drive.control, 4));
         }
         assert_eq!(sizes, [0.05, 0.05, 0.1, 0.2, 0.4]);
     }
@@ -311,15 +311,15 @@ mod tests {
             let attempt = next_attempt(&scene, &state);
             let multiple = attempt.target_deg / 0.2;
             assert!((multiple - multiple.round()).abs() < 1e-9, "steps are multiples of the increment in hand");
-            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.control, iterations));
-            sizes.push(0.4 / 2.0_f64.powi(state.control.halvings));
+            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.drive.control, iterations));
+            sizes.push(0.4 / 2.0_f64.powi(state.drive.control.halvings));
         }
         // Up to 1.6 (3.2 would be more than 2), steady between, and back to the scene's own, not below it.
         assert_eq!(sizes, [0.4, 0.8, 1.6, 1.6, 1.6, 1.6, 1.6, 0.8, 0.4, 0.4, 0.4]);
         // A turn that looked like a jump ends the growth.
         let seen = StepControl { halvings: -2, jump_seen_at_deg: Some(9.6), rejection: None };
         let bracketed = at(8.0, seen);
-        let after = next_attempt(&scene, &bracketed).control_after_success(&scene, &bracketed.control, 3);
+        let after = next_attempt(&scene, &bracketed).control_after_success(&scene, &bracketed.drive.control, 3);
         assert_eq!((after.halvings, after.jump_seen_at_deg), (0, None));
         // A failure cuts what had grown.
         let grown = at(8.0, StepControl { halvings: -2, ..StepControl::default() });
@@ -340,7 +340,7 @@ mod tests {
         let mut parameters = Vec::new();
         while next_stage(&scene, &state).is_some() {
             let attempt = next_attempt(&scene, &state);
-            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.control, 2));
+            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.drive.control, 2));
             parameters.push(state.parameter);
         }
         assert_eq!(parameters, [0.25, 0.5, 1.0, 1.1, 1.3, 2.0, 4.0]);

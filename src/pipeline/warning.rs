@@ -95,7 +95,7 @@ impl Warning {
         let energy_change = after.strain_energy_n_mm / before.strain_energy_n_mm - 1.0;
         let is_large = energy_change.is_finite() && energy_change.abs() > LARGE;
         // Behind a jump there is no equilibrium before: the fold only forms, and refining is to change it.
-        let is_said = is_large && before.previous.is_some();
+        let is_said = is_large && before.drive.previous().is_some();
         is_said.then_some(Self::EnergyChangedByRefining { parameter: before.parameter, elements, energy_change })
     }
 

@@ -6,6 +6,7 @@
 //! | file | lives there |
 //! |---|---|
 //! | `data` | what a scene holds |
+//! | `drive` | what drives a run: load or path, and what its parameter is |
 //! | `keys`, `key_table` | every key of a scene file, described once, as data |
 //! | `kinds` | kinds of tables whose keys that table does not hold, and arrays of tables |
 //! | `document`, `entry`, `value` | TOML text and `--set` settings as one list of entries that know their place |
@@ -28,6 +29,7 @@ mod actions;
 mod check;
 mod data;
 mod document;
+mod drive;
 mod entry;
 mod error;
 mod explain;
@@ -67,6 +69,7 @@ pub use data::{
     Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe, ProbeKind,
     Quadrature, Reaction, Scene, Seam, Sense, Solver, Stage, Support, SurfaceDirection, Symmetry, SyncPolicy,
 };
+pub use drive::{Drive, Parameter};
 pub use error::SceneError;
 pub use help::help_text;
 pub use identity::{Difference, shown_values};

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::model::ModelError;
 use crate::pipeline::{Parameter, RunError};
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 use crate::study::path::{PathPoint, equilibrium_path, snaps};
 use crate::study::timed_run::timed_run;
 
@@ -138,7 +138,7 @@ pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
         Parameter::Rotation => "rotation",
         Parameter::LoadFactor => "load factor",
     };
-    if scene.continuation.is_some() {
+    if Drive::of(scene).follows_path() {
         return Err(AccuracyError::AlongPath { what });
     }
     if Parameter::of(scene) == Parameter::LoadFactor && scene.probes.is_empty() {

@@ -150,7 +150,7 @@ mod tests {
     fn records() -> Vec<Record> {
         let mut scene = parse(include_str!("../../pipelines/baseline-quarter.toml"), "baseline-quarter.toml").unwrap();
         scene.load.set_target(0.8);
-        let stages = Stages::new(scene);
+        let mut stages = Stages::new(scene);
         let start = stages.start().unwrap();
         let mut sink = MemorySink::default();
         Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();

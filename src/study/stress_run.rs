@@ -86,7 +86,7 @@ impl Done {
     /// Runs a scene; after `limit` it is out of time at its next stage.
     pub fn of(scene: &Scene, limit: Duration) -> Self {
         let begin = Instant::now();
-        let stages = Stages::new(scene.clone());
+        let mut stages = Stages::new(scene.clone());
         let start = match stages.start() {
             Ok(start) => start,
             Err(error) => {

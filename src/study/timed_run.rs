@@ -23,7 +23,7 @@ impl Sink for Records {
 /// # Errors
 /// Where the scene cannot be made discrete, or the run stops before.
 pub(super) fn timed_run<E: From<ModelError> + From<Box<RunError>>>(scene: &Scene) -> Result<(Vec<Record>, f64), E> {
-    let stages = Stages::new(scene.clone());
+    let mut stages = Stages::new(scene.clone());
     let start = stages.start()?;
     let mut records = Records::default();
     let begin = Instant::now();

@@ -8,7 +8,7 @@ use foldline::scene::{
     Adapt, EndRotation, Geometry, LengthLimit, Load, Material, MeshSpec, Output, Quadrature, Scene, Sense, Solver,
     Stage, Symmetry, SyncPolicy,
 };
-use foldline::state::{Hash, Mesh, State, StepControl};
+use foldline::state::{DriveMemory, Hash, Mesh, State};
 
 /// (rotation in degrees, moment in N·mm, strain energy in N·mm).
 pub const CURVE: [(f64, f64, f64); 14] = [
@@ -255,9 +255,7 @@ pub fn state(record: &Record) -> State {
         moment_n_mm: record.report.moment_n_mm,
         strain_energy_n_mm: record.report.strain_energy_n_mm,
         negative_pivots: record.report.negative_pivots,
-        control: StepControl::default(),
-        path: None,
-        previous: None,
+        drive: DriveMemory::default(),
         largest_force_n: 0.0,
         refinement: None,
     }

@@ -9,7 +9,7 @@ use foldline::journal::message::ReportMessage;
 use foldline::journal::{Log, encode_mesh, encode_state};
 use foldline::pipeline::Report;
 use foldline::scene::Stage;
-use foldline::state::{PathMemory, Refinement, State};
+use foldline::state::{Course, PathMemory, Refinement, State};
 use serde_json::{Value, json};
 
 use crate::crafted::{self, CHANNEL, METADATA, SCHEMA, Said, channel, record, text};
@@ -326,12 +326,12 @@ fn states_that_no_scene_makes() {
         critical_ahead: None,
         at_bifurcation: false,
     };
-    refused(ordinary.with_state(|state| state.path = Some(path(1.0))), "a path");
-    refused(ordinary.with_state(|state| state.path = Some(path(-1.0))), "a path");
+    refused(ordinary.with_state(|state| state.drive.course = Course::Path(path(1.0))), "a path");
+    refused(ordinary.with_state(|state| state.drive.course = Course::Path(path(-1.0))), "a path");
     refused(ordinary.with_state(|state| state.turns = vec![[0.0; 3]; 1000]), "more rigid sections that turn");
     refused(ordinary.with_state(|state| state.stage = Some(Stage::SwitchBranch)), "a stage of another pipeline");
     refused(ordinary.with_state(|state| state.negative_pivots = u64::MAX), "negative pivots");
-    refused(ordinary.with_state(|state| state.control.halvings = i32::MIN), "the number of halvings");
+    refused(ordinary.with_state(|state| state.drive.control.halvings = i32::MIN), "the number of halvings");
     refused(ordinary.with_state(|state| state.largest_force_n = -1.0), "the largest force");
     let refinement = |growth| Refinement { changed_n_mm: 0.0, growth, expected_n_mm: None, ripple_n_mm: 0.0 };
     refused(ordinary.with_state(|state| state.refinement = Some(refinement(-1.0))), "the growth of the mesh");
@@ -348,7 +348,12 @@ fn paths_that_lead_nowhere() {
         reports: vec![serde_json::to_value(ReportMessage::new(&log.entries()[0].record)).unwrap()],
         stages: vec![log.entries()[0].record.report.stage],
     };
-    let path = |change: fn(&mut PathMemory)| whole.with_state(|state| change(state.path.as_mut().expect("a path")));
+    let path = |change: fn(&mut PathMemory)| {
+        whole.with_state(|state| match &mut state.drive.course {
+            Course::Path(path) => change(path),
+            other => panic!("no path: {other:?}"),
+        })
+    };
     let report: Report = log.entries()[0].record.report.clone();
     assert!(report.path_length_mm.is_some());
     refused(path(|path| path.first_mm *= -1.0), "the first step along the path");

@@ -104,7 +104,7 @@ fn a_log_keeps_the_default_of_its_time() {
         let place = Place::new();
         let manifest = Manifest { scene_text: text, ..manifest.clone() };
         let mut writer = JournalWriter::create(&place.file("log.mcap"), &manifest, SyncPolicy::AtEnd).unwrap();
-        let stages = Stages::new(then.clone());
+        let mut stages = Stages::new(then.clone());
         let start = stages.start().unwrap();
         Run::new(stages, start, None).to_end(Some(1.0), &|| false, &mut writer).unwrap();
         writer.close().unwrap();
@@ -123,15 +123,15 @@ fn every_encoding_of_states_is_among_them() {
         let log = Log::read(&folder().join(format!("v1-0.1.0-{what}.mcap"))).unwrap();
         (0..log.entries().len()).map(|index| log.state(index).unwrap()).collect()
     };
-    assert!(states("finished").iter().all(|state| state.turns.is_empty() && state.path.is_none()));
+    assert!(states("finished").iter().all(|state| state.turns.is_empty() && state.drive.path().is_none()));
     let turning = states("turning");
-    assert!(turning.iter().all(|state| state.turns.len() == 1 && state.path.is_none()));
+    assert!(turning.iter().all(|state| state.turns.len() == 1 && state.drive.path().is_none()));
     let [_, turn, _] = turning.last().unwrap().turns[0];
     assert!(turn < 0.0, "lifted, the section turns towards -y: {turn}");
-    let growing: Vec<i32> = states("growing").iter().map(|state| state.control.halvings).collect();
+    let growing: Vec<i32> = states("growing").iter().map(|state| state.drive.control.halvings).collect();
     assert_eq!(growing, [-1, -2, -2, -2], "doubled twice, up to the longest increment");
     let predicted = states("predicted");
-    let previous = |state: &State| state.previous.as_ref().map(|previous| previous.displacement.len());
+    let previous = |state: &State| state.drive.previous().map(|previous| previous.displacement.len());
     let points = predicted.iter().map(|state| state.mesh.control_points.len());
     assert!(predicted.iter().zip(points).skip(1).all(|(state, points)| previous(state) == Some(points)));
     let meshes: std::collections::BTreeSet<usize> = predicted.iter().filter_map(previous).collect();
@@ -140,10 +140,10 @@ fn every_encoding_of_states_is_among_them() {
     assert!(balanced.iter().all(|state| state.largest_force_n > 0.0), "every equilibrium has met forces");
     assert!(balanced.last().unwrap().refinement.is_some(), "and a mesh that was refined what that changed");
     let path = states("path");
-    let memory = |state: &State| state.path.clone().expect("a path");
+    let memory = |state: &State| state.drive.path().cloned().expect("a path");
     let located = |state: &State| memory(state).critical_ahead.is_some();
     assert!(path.iter().filter(|state| located(state)).count() >= 2, "in the middle of a bisection");
-    assert!(path.iter().any(|state| state.control.rejection == Some(Rejection::CriticalPoint)));
+    assert!(path.iter().any(|state| state.drive.control.rejection == Some(Rejection::CriticalPoint)));
     assert!(path.iter().any(|state| memory(state).at_bifurcation));
     let last = path.last().unwrap();
     assert_eq!((last.stage, last.negative_pivots), (Some(Stage::SwitchBranch), 0));
@@ -192,7 +192,7 @@ fn write_golden_logs_of_later_states() {
         }
         let (scene, manifest) = read_scene(&format!("{what}.toml"));
         let mut writer = JournalWriter::create(&path_of(what), &manifest, SyncPolicy::AtEnd).unwrap();
-        let stages = Stages::new(scene);
+        let mut stages = Stages::new(scene);
         let start = stages.start().unwrap();
         let mut run = Run::new(stages, start, None);
         while let Some(record) = run.advance(&mut writer).unwrap() {
@@ -218,7 +218,7 @@ fn write_golden_log_of_two_stretches() {
     let (_, manifest) = read_scene("scene.toml");
     let near = Manifest { scene_text: manifest.scene_text.replace("= 4.0", "= 2.0"), ..manifest.clone() };
     let mut writer = JournalWriter::create(&path, &near, SyncPolicy::AtEnd).unwrap();
-    let stages = Stages::new(scene(&near.scene_text));
+    let mut stages = Stages::new(scene(&near.scene_text));
     let start = stages.start().unwrap();
     Run::new(stages, start, None).to_end(None, &|| false, &mut writer).unwrap();
     writer.finish().unwrap();
@@ -238,7 +238,7 @@ fn write_golden_logs() {
     let path = path_of;
     for (what, until_deg) in [("finished", None), ("unfinished", Some(2.0))] {
         let mut writer = JournalWriter::create(&path(what), &manifest, SyncPolicy::AtEnd).unwrap();
-        let stages = Stages::new(scene.clone());
+        let mut stages = Stages::new(scene.clone());
         let start = stages.start().unwrap();
         match Run::new(stages, start, None).to_end(until_deg, &|| false, &mut writer).unwrap() {
             Ending::Finished => writer.finish().unwrap(),

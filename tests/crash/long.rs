@@ -57,7 +57,7 @@ const LARGE_N_MM: f64 = 1.0e6;
 /// from there. Three quarters on stands a large moment.
 pub fn write_long(path: &Path, commits: u64) {
     let scene = scene(SCENE);
-    let stages = Stages::new(scene.clone());
+    let mut stages = Stages::new(scene.clone());
     let start = stages.start().unwrap();
     let mut sink = MemorySink::default();
     Run::new(stages, start.clone(), None).to_end(Some(0.03), &|| false, &mut sink).unwrap();

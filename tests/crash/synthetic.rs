@@ -57,7 +57,7 @@ pub fn next(state: &State) -> (State, Report) {
             new.strain_energy_n_mm = 50.0 * new.parameter * new.parameter;
             let rejection = (step % 4 == 3).then_some(Rejection::Jump);
             let jump_seen_at_deg = rejection.map(|_| new.parameter + 0.3);
-            new.control = StepControl { halvings: (step % 3) as i32, jump_seen_at_deg, rejection };
+            new.drive.control = StepControl { halvings: (step % 3) as i32, jump_seen_at_deg, rejection };
         }
         Stage::EvaluateIndicators if step % 3 == 0 && state.mesh.knots[0].len() < 60 => {
             let spans = state.mesh.knots[0].windows(2).filter(|pair| pair[0] < pair[1]);
@@ -80,7 +80,7 @@ pub fn next(state: &State) -> (State, Report) {
     let report = Report {
         step,
         stage,
-        outcome: if new.control.rejection.is_some() { Outcome::RejectedJump } else { Outcome::Done },
+        outcome: if new.drive.control.rejection.is_some() { Outcome::RejectedJump } else { Outcome::Done },
         driven_by: Parameter::Rotation,
         work_n_mm: 0.0,
         put_in_n_mm: 0.0,

@@ -8,7 +8,9 @@ use foldline::journal::{
     JournalWriter, Log, check_state, decode_mesh, decode_state, encode_mesh, encode_state, message, verify_log,
 };
 use foldline::scene::{Stage, SyncPolicy};
-use foldline::state::{CriticalAhead, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State, StepControl};
+use foldline::state::{
+    Course, CriticalAhead, DriveMemory, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State, StepControl,
+};
 use proptest::prelude::*;
 
 use crate::synthetic;
@@ -80,21 +82,26 @@ fn state() -> impl Strategy<Value = State> {
                     moment_n_mm: moment,
                     strain_energy_n_mm: energy,
                     negative_pivots: pivots,
-                    control,
-                    path: (pivots % 2 == 0).then(|| PathMemory {
-                        heading: vec![[energy, moment, 0.25]; mesh.control_points.len()],
-                        parameter_rate: energy,
-                        first_mm: moment,
-                        next_mm: rotation,
-                        travelled_mm: 3.5,
-                        critical_ahead: (pivots % 4 == 0)
-                            .then_some(CriticalAhead { within_mm: moment, rate_beyond: rotation }),
-                        at_bifurcation: step % 3 == 0,
-                    }),
-                    previous: (pivots % 3 == 0).then(|| Previous {
-                        displacement: vec![[moment, rotation, -1.5]; mesh.control_points.len()],
-                        parameter: energy,
-                    }),
+                    drive: DriveMemory {
+                        control,
+                        course: match pivots % 3 {
+                            0 => Course::Path(PathMemory {
+                                heading: vec![[energy, moment, 0.25]; mesh.control_points.len()],
+                                parameter_rate: energy,
+                                first_mm: moment,
+                                next_mm: rotation,
+                                travelled_mm: 3.5,
+                                critical_ahead: (pivots % 2 == 0)
+                                    .then_some(CriticalAhead { within_mm: moment, rate_beyond: rotation }),
+                                at_bifurcation: step % 3 == 0,
+                            }),
+                            1 => Course::Load(Previous {
+                                displacement: vec![[moment, rotation, -1.5]; mesh.control_points.len()],
+                                parameter: energy,
+                            }),
+                            _ => Course::Unknown,
+                        },
+                    },
                     largest_force_n: if step % 5 == 0 { 0.0 } else { moment.abs() },
                     refinement: (pivots % 5 == 0).then_some(Refinement {
                         changed_n_mm: energy,

@@ -197,7 +197,7 @@ fn target_and_tolerance_at_once() {
     let log = place.log("run.mcap");
     let keep = log.manifests()[1].first_ordinal as usize;
     let last = near.state(keep - 1).unwrap();
-    assert!(last.control.rejection.is_none() && log.entries()[keep].record.report.stage == Stage::Solve);
+    assert!(last.drive.control.rejection.is_none() && log.entries()[keep].record.report.stage == Stage::Solve);
     assert!(log.entries()[keep - 1].record.report.step < log.entries()[keep].record.report.step);
     place.foldline("replay run.mcap --from-scratch").ends(0);
 }

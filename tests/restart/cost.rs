@@ -23,7 +23,7 @@ const POLICIES: [(&str, SyncPolicy); 3] =
 #[ignore = "runs the baseline, some ten seconds"]
 fn the_journal_beside_the_run() {
     let scene = crate::support::scene("baseline.toml");
-    let stages = Stages::new(scene.clone());
+    let mut stages = Stages::new(scene.clone());
     let start = stages.start().unwrap();
     let mut sink = MemorySink::default();
     let began = Instant::now();

@@ -20,7 +20,7 @@ const SCENES: [(&str, &str); 4] = [
 ];
 
 fn chain_of(text: &str) -> String {
-    let stages = Stages::new(scene(text));
+    let mut stages = Stages::new(scene(text));
     let start = stages.start().unwrap();
     let mut sink = MemorySink::default();
     Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();

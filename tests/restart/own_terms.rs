@@ -44,7 +44,7 @@ fn a_log_with_a_term_that_is_not_there_is_not_gone_on_with() {
     let place = Place::new();
     let path = place.file("own.mcap");
     let scene = foldline::scene::parse(SMALL, "small.toml").unwrap();
-    let stages = Stages::with_terms(scene.clone(), vec![Arc::new(Pull(1e-3))]);
+    let mut stages = Stages::with_terms(scene.clone(), vec![Arc::new(Pull(1e-3))]);
     let manifest = Manifest::here("small.toml".as_ref(), &scene.to_toml(), 1).with_terms(stages.own_terms());
     let start = stages.start().unwrap();
     let mut writer = JournalWriter::create(&path, &manifest, SyncPolicy::AtEnd).unwrap();

@@ -6,6 +6,7 @@ use foldline::history::{States, Verdict, compare, replay_stage, verdict};
 use foldline::journal::Log;
 use foldline::pipeline::{Outcome, Stages};
 use foldline::scene::Stage;
+use foldline::state::Course;
 
 use crate::program::{Place, Straight, assert_resumes_from_every_cut, scene};
 
@@ -50,7 +51,7 @@ fn the_runs_are_eventful() {
     let bisected = stages_that(&log, |index| report(index).outcome == Outcome::RejectedCriticalPoint);
     assert!(bisected.iter().filter(|index| **index < first).count() >= 2, "{bisected:?}");
     // Both kinds of states in a bisection: turned down, and taken with the rest still ahead.
-    let ahead = |index: usize| log.state(index).unwrap().path.is_some_and(|path| path.critical_ahead.is_some());
+    let ahead = |index: usize| log.state(index).unwrap().drive.path().is_some_and(|path| path.critical_ahead.is_some());
     let done = |index: usize| report(index).outcome == Outcome::Done && report(index).stage == Stage::Solve;
     assert!(!stages_that(&log, |index| ahead(index) && done(index)).is_empty());
     assert!(stages_that(&log, ahead).len() > bisected.len());
@@ -118,7 +119,7 @@ fn rounding_on_a_path_is_called_rounding() {
         for index in 1..log.entries().len() {
             let mut before = log.state(index - 1).unwrap();
             before.displacement.as_flattened_mut().iter_mut().enumerate().for_each(jolt);
-            if let Some(path) = &mut before.path {
+            if let Course::Path(path) = &mut before.drive.course {
                 path.heading.as_flattened_mut().iter_mut().enumerate().for_each(jolt);
             }
             let report = &log.entries()[index].record.report;
@@ -155,7 +156,7 @@ fn another_longest_step() {
         let keep = mixed.manifests()[1].first_ordinal as usize;
         assert!(keep <= stages && keep > 0, "{keep} of {stages} stages stand");
         let last = mixed.state(keep - 1).unwrap();
-        assert!(last.control.rejection.is_none(), "what stands ends with a complete step");
+        assert!(last.drive.control.rejection.is_none(), "what stands ends with a complete step");
         let steps = |index: usize| log.entries()[index].record.report.step;
         assert!(steps(keep) > steps(keep - 1) && steps(keep) + 1 >= steps(stages), "no complete step is dropped");
         for (index, entry) in mixed.entries().iter().enumerate() {

@@ -169,7 +169,7 @@ impl Straight {
         assert!(reports().filter(|report| report.stage == Stage::RefineKnots).count() >= 2);
         let turned_down = log.entries().iter().enumerate().filter(|(index, _)| {
             let state = log.state(*index).unwrap();
-            state.control.rejection.is_some()
+            state.drive.control.rejection.is_some()
         });
         assert!(turned_down.count() >= 2);
         let jump = reports().position(|report| report.jumped).expect("a jump");

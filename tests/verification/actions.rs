@@ -9,7 +9,7 @@ use crate::support::scene;
 
 /// The report of a run's last equilibrium.
 fn solve(scene: Scene) -> Report {
-    let stages = Stages::new(scene);
+    let mut stages = Stages::new(scene);
     let start = stages.start().unwrap_or_else(|error| panic!("{error}"));
     let mut sink = MemorySink::default();
     Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap_or_else(|error| panic!("{error}"));
@@ -463,8 +463,9 @@ fn rigid_motions_need_points_that_no_moving_section_carries() {
 #[test]
 fn what_the_words_of_a_scene_come_to_is_said() {
     let said = |geometry: &str, tables: &str| {
-        let stages = Stages::new(shell(geometry, 0.5, [4, 6], tables));
-        stages.remarks(&stages.start().unwrap()).unwrap().join("; ")
+        let mut stages = Stages::new(shell(geometry, 0.5, [4, 6], tables));
+        let start = stages.start().unwrap();
+        stages.remarks(&start).unwrap().join("; ")
     };
     let pressure = "[[action]]\nname = \"p\"\nkind = \"pressure\"\npressure_mpa = -1e-4\nfollower = false\n";
     let tube = said(TUBE, &format!("{FREE}{pressure}"));
@@ -528,8 +529,9 @@ fn that_nothing_acts_is_said() {
     let said = |action: &str| {
         let root = "[[support]]\nname = \"root\"\non = \"u-start\"\nkind = \"clamped\"\n";
         let plate = "kind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 20.0";
-        let stages = Stages::new(shell(plate, 1.0, [6, 2], &format!("{root}[[action]]\n{action}\n")));
-        stages.remarks(&stages.start().unwrap()).unwrap().join("; ")
+        let mut stages = Stages::new(shell(plate, 1.0, [6, 2], &format!("{root}[[action]]\n{action}\n")));
+        let start = stages.start().unwrap();
+        stages.remarks(&start).unwrap().join("; ")
     };
     let line = |on: &str, z: f64| format!("on = \"{on}\"\nkind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, {z:?}]");
     let none = [

@@ -178,7 +178,7 @@ fn quarter_model_solves_a_quarter() {
     let unknowns = |scene: &Scene| {
         let fine =
             Scene { mesh: foldline::scene::MeshSpec { elements: [128, 16], ..scene.mesh.clone() }, ..scene.clone() };
-        let stages = Stages::new(fine.clone());
+        let mut stages = Stages::new(fine.clone());
         let start = stages.start().unwrap();
         foldline::model::Unknowns::new(&fine, &start.mesh).unwrap().count()
     };

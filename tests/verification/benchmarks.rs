@@ -17,7 +17,7 @@ fn read(name: &str) -> Scene {
 fn run_to(scene: &Scene, from: Option<State>, factor: f64) -> (State, Report) {
     let mut scene = scene.clone();
     scene.load.set_target(factor);
-    let stages = Stages::new(scene);
+    let mut stages = Stages::new(scene);
     let start = from.unwrap_or_else(|| stages.start().unwrap_or_else(|error| panic!("{error}")));
     let mut sink = MemorySink::default();
     Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap_or_else(|error| panic!("{error}"));

@@ -99,7 +99,7 @@ fn greatest_moment() -> f64 {
 #[test]
 fn a_load_that_nothing_carries_stops_the_run_at_its_limit() {
     let scene = scene("extreme/no-equilibrium.toml");
-    let stages = Stages::new(scene);
+    let mut stages = Stages::new(scene);
     let start = stages.start().unwrap();
     let mut sink = MemorySink::default();
     let mut run = Run::new(stages, start, None);

@@ -108,7 +108,7 @@ fn strip(length: f64, elements: usize, rest: &str) -> Scene {
 }
 
 fn run_on(foundation: f64, scene: Scene) -> Vec<Record> {
-    let stages = Stages::with_terms(scene, vec![Arc::new(Foundation(foundation))]);
+    let mut stages = Stages::with_terms(scene, vec![Arc::new(Foundation(foundation))]);
     let start = stages.start().unwrap();
     let mut sink = MemorySink::default();
     Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();

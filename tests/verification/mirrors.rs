@@ -200,8 +200,9 @@ fn what_the_image_of_a_pull_does_is_said() {
     let said = |force: &str| {
         let action =
             format!("[[action]]\nname = \"pull\"\non = \"v=0.5\"\nkind = \"line-force\"\nforce_n_per_mm = {force}\n");
-        let stages = Stages::new(quarter(PLATE, ISOTROPIC, &format!("{HELD}{action}")));
-        stages.remarks(&stages.start().unwrap()).unwrap().join("; ")
+        let mut stages = Stages::new(quarter(PLATE, ISOTROPIC, &format!("{HELD}{action}")));
+        let start = stages.start().unwrap();
+        stages.remarks(&start).unwrap().join("; ")
     };
     assert_eq!(
         said("[0.0, -0.5, 0.1]"),

@@ -85,7 +85,7 @@ impl Found {
 }
 
 fn solve(scene: Scene) -> Found {
-    let stages = Stages::new(scene);
+    let mut stages = Stages::new(scene);
     let start = stages.start().unwrap_or_else(|error| panic!("{error}"));
     let mut sink = MemorySink::default();
     Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap_or_else(|error| panic!("{error}"));

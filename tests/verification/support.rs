@@ -15,7 +15,7 @@ pub fn scene(name: &str) -> Scene {
 
 /// A whole run of a scene; every stage is kept.
 pub fn run(scene: Scene) -> Vec<(State, Record)> {
-    let stages = Stages::new(scene);
+    let mut stages = Stages::new(scene);
     let start = stages.start().unwrap();
     let mut sink = MemorySink::default();
     let ending = Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();
@@ -28,7 +28,7 @@ pub fn steps(stages: &[(State, Record)]) -> Vec<&(State, Record)> {
     let settled = |index: &usize| {
         let here = stages[*index].1.report.step;
         stages.get(index + 1).is_none_or(|next| next.1.report.step > here)
-            && stages[*index].0.control.rejection.is_none()
+            && stages[*index].0.drive.control.rejection.is_none()
     };
     (0..stages.len()).filter(settled).map(|index| &stages[index]).collect()
 }

@@ -328,8 +328,9 @@ const QUARTER: &str = "[[support]]\non = \"u-start\"\nkind = \"symmetric\"\n\
      [[probe]]\nname = \"grows\"\nkind = \"displacement\"\non = [0.0, 0.5]\ncomponent = \"radial\"\n";
 
 fn remarks(scene: Scene) -> Result<String, ModelError> {
-    let stages = Stages::new(scene);
-    Ok(stages.remarks(&stages.start()?)?.join("; "))
+    let mut stages = Stages::new(scene);
+    let start = stages.start()?;
+    Ok(stages.remarks(&start)?.join("; "))
 }
 
 const SHORT_TUBE: &str =

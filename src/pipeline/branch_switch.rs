@@ -1,0 +1,71 @@
+//! Switch-branch: the way from an unstable equilibrium to a stable one at the same load.
+
+use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
+use crate::pipeline::path_drive::path_on_branch;
+use crate::pipeline::step::{Step, out_of_order, settle};
+use crate::pipeline::step_control::{is_jump, known_release};
+use crate::pipeline::{Report, StageError};
+use crate::scene::Stage;
+use crate::state::{Course, State};
+
+/// Largest motion off an unstable equilibrium along its soft mode, in thicknesses: beyond rounding by far, and far less
+/// than what bending makes of it.
+const SWITCHING_AMPLITUDE: f64 = 0.1;
+/// Modes that are left one after the other. Each descent ends in a minimum of the energy but where a symmetry holds it on a
+/// ridge; the tape spring in equal-sense bending has two such modes at once.
+const MOST_MODES: usize = 8;
+
+/// Leaves an unstable equilibrium along its soft modes, one after the other. A path goes on along the branch.
+pub(super) fn switch_branch(mut step: Step) -> Result<(State, Report), StageError> {
+    let state = step.state;
+    if state.negative_pivots == 0 {
+        return Err(out_of_order(state, Stage::SwitchBranch, "the equilibrium is stable"));
+    }
+    let reached = step.shown(state.parameter);
+    let failed = |cause: SolveError| StageError::NotSwitched {
+        step: state.step,
+        reached: reached.clone(),
+        cause: Box::new(cause),
+    };
+    let mut next = state.clone();
+    let mut effort = Effort::default();
+    let mut work_done = 0.0;
+    for _ in 0..MOST_MODES {
+        let left = leave(&mut step, &next, &mut effort).map_err(failed)?;
+        work_done += left.work;
+        next = settle(&next, &left);
+        next.drive.course = Course::Unknown;
+        if next.negative_pivots == 0 {
+            if let Course::Path(path) = &state.drive.course {
+                next.drive.course = Course::Path(path_on_branch(&mut step, state, &next, path).map_err(failed)?);
+            }
+            let mut report = step.arrived(&next, &Solved { effort, work: work_done, ..left });
+            let released = state.strain_energy_n_mm + work_done - next.strain_energy_n_mm;
+            report.jumped = is_jump(released, state.strain_energy_n_mm, next.strain_energy_n_mm);
+            report.energy_released_n_mm = known_release(released);
+            return Ok((next, report));
+        }
+    }
+    Err(StageError::StillUnstable {
+        step: state.step,
+        reached,
+        modes: MOST_MODES,
+        negative_pivots: next.negative_pivots,
+    })
+}
+
+/// Off along the softest mode at a state, and down; adds to what it took so far.
+fn leave(step: &mut Step, from: &State, effort: &mut Effort) -> Result<Solved, SolveError> {
+    let Step { scene, work, observer, .. } = step;
+    let mut watch = |iterate: &Iterate| {
+        observer(iterate);
+        false
+    };
+    let from = Standing::of(from);
+    let mode = soft_mode(work, from)?;
+    let amplitude = SWITCHING_AMPLITUDE * scene.material.thickness_mm();
+    let left = Equilibrium::new(scene, work).leave(from, &mode, amplitude, &mut watch)?;
+    effort.iterations += left.effort.iterations;
+    effort.factorizations += mode.factorizations + left.effort.factorizations;
+    Ok(left)
+}

@@ -1,0 +1,151 @@
+//! The load as drive: increments of the parameter, cut where they fail or jump.
+
+use crate::equilibrium::{Continuation, Equilibrium, Observer, SolveError, Solved, Standing, Workspace};
+use crate::pipeline::ripple::{Watch, is_ripple};
+use crate::pipeline::step::{Drives, Step, settle};
+use crate::pipeline::step_control::{Attempt, energy_released, is_jump, known_release, next_attempt};
+use crate::pipeline::{CriticalPoint, Outcome, Report, StageError};
+use crate::scene::Scene;
+use crate::shell::{norm, sub};
+use crate::state::{Course, DriveMemory, Previous, State};
+
+/// A motion this many times as far as the path's before it is no step along that path. Near a limit point the rate grows
+/// without bound, but a step that ends stable has not come to it; next to bifurcations of tape springs the ratio was 7 and
+/// more.
+const LEFT: f64 = 4.0;
+
+/// Moves the load on by increments.
+pub(super) struct LoadDrive<'a> {
+    pub step: Step<'a>,
+}
+
+impl Drives for LoadDrive<'_> {
+    /// Moves the load on by one increment. Where that fails or jumps too coarsely, the state stays and only its step
+    /// control changes.
+    fn solve(&mut self) -> Result<(State, Report), StageError> {
+        let Step { scene, work, state, observer } = &mut self.step;
+        let attempt = next_attempt(scene, state);
+        let mut watch = Watch::new(state, scene.symmetry.copies() as f64);
+        let solved = reach(scene, work, state, attempt.target_deg, &mut |iterate| {
+            observer(iterate);
+            watch.sees_jump(iterate) && !attempt.may_jump
+        });
+        let solved = match solved {
+            Ok(solved) => solved,
+            Err(cause @ SolveError::Stopped { .. }) => {
+                let report = self.step.failed(Outcome::RejectedJump, attempt.target_deg, &cause);
+                return Ok((self.before_jump(attempt), report));
+            }
+            Err(cause) => return self.step.cut(attempt, cause),
+        };
+        let way = Way::of(self.step.state, &attempt, &watch, &solved);
+        let is_to_be_located = match way {
+            Way::Along => watch.unstable,
+            Way::OverRipple => false,
+            Way::OffPath => true,
+        };
+        if is_to_be_located && !attempt.may_jump {
+            let report = self.step.rejected(Outcome::RejectedJump, attempt.target_deg, solved.effort);
+            return Ok((self.before_jump(attempt), report));
+        }
+        Ok(self.take(attempt, way, &solved))
+    }
+
+    fn re_equilibrate(&mut self) -> Result<(State, Report), StageError> {
+        self.step.relax()
+    }
+}
+
+impl LoadDrive<'_> {
+    /// The state where it was, with a jump ahead to be located.
+    fn before_jump(&self, attempt: Attempt) -> State {
+        let DriveMemory { control, course } = &self.step.state.drive;
+        self.step.stay(attempt.control_after_jump(control), course.clone())
+    }
+
+    /// The state at the load that was tried.
+    fn take(&mut self, attempt: Attempt, way: Way, solved: &Solved) -> (State, Report) {
+        let Step { scene, state, .. } = self.step;
+        let released = energy_released(state, solved);
+        let mut next = settle(state, solved);
+        next.step = state.step + 1;
+        next.parameter = attempt.target_deg;
+        // The path bends on from an equilibrium before only where it is one path, and where displacements say all.
+        let onwards = way == Way::Along && state.negative_pivots == 0 && next.turns.is_empty();
+        next.drive = DriveMemory {
+            control: attempt.control_after_success(scene, &state.drive.control, solved.effort.iterations),
+            course: match onwards {
+                true => Course::Load(Previous { displacement: state.displacement.clone(), parameter: state.parameter }),
+                false => Course::Unknown,
+            },
+        };
+        if let Some(refinement) = next.refinement.as_mut().filter(|_| way != Way::Along) {
+            refinement.ripple_n_mm = if way == Way::OverRipple { released.max(0.0) } else { 0.0 };
+        }
+        let mut report = self.step.arrived(&next, solved);
+        report.jumped = way == Way::OffPath;
+        report.rippled = way == Way::OverRipple;
+        report.critical_point = CriticalPoint::passed_by_load(state, &next).filter(|_| way == Way::Along);
+        report.energy_released_n_mm = if way == Way::Along { Some(0.0) } else { known_release(released) };
+        (next, report)
+    }
+}
+
+/// Whether the shell moved much farther than it did before for as much load: it has left its path for another one, though
+/// next to a bifurcation that takes little energy. Known by the equilibrium before.
+fn leaves_path(state: &State, to: f64, solved: &Solved) -> bool {
+    let Some(previous) = state.drive.previous() else { return false };
+    let length = |from: &[[f64; 3]], to: &[[f64; 3]]| {
+        from.iter().zip(to).map(|(u, v)| norm(sub(*v, *u)).powi(2)).sum::<f64>().sqrt()
+    };
+    let rate = length(&previous.displacement, &state.displacement) / (state.parameter - previous.parameter);
+    length(&state.displacement, &solved.displacement) > LEFT * rate * (to - state.parameter)
+}
+
+/// How a solve came to its equilibrium.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// Along the path.
+    Along,
+    /// Over a ripple of the mesh.
+    OverRipple,
+    /// By a jump, or onto another path.
+    OffPath,
+}
+
+impl Way {
+    /// Of a solve that moved the load on from a state.
+    fn of(state: &State, attempt: &Attempt, watch: &Watch, solved: &Solved) -> Self {
+        let released = energy_released(state, solved);
+        let ripples = watch.unstable && solved.negative_pivots == 0 && is_ripple(state, released);
+        let bracketed = watch.unstable && state.drive.control.jump_seen_at_deg.is_some();
+        let left = (ripples || bracketed) && leaves_path(state, attempt.target_deg, solved);
+        if left || is_jump(released, state.strain_energy_n_mm.max(solved.put_in), solved.energy) {
+            Way::OffPath
+        } else if ripples {
+            Way::OverRipple
+        } else {
+            Way::Along
+        }
+    }
+}
+
+/// Equilibrium at another load. A descent leaves an unstable branch; a run that stands on one follows it by Newton's method, as
+/// far as that goes.
+fn reach(
+    scene: &Scene,
+    work: &mut Workspace,
+    state: &State,
+    target: f64,
+    observer: Observer,
+) -> Result<Solved, SolveError> {
+    let from = Standing::of(state);
+    if state.negative_pivots > 0 {
+        match Continuation::new(scene, work).begin(from, target, observer) {
+            Ok(point) => return Ok(point.solved),
+            Err(stopped @ SolveError::Stopped { .. }) => return Err(stopped),
+            Err(_) => {}
+        }
+    }
+    Equilibrium::new(scene, work).after(state.drive.previous()).advance(from, target, observer)
+}

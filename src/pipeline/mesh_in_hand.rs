@@ -1,0 +1,57 @@
+//! What stages keep of the meshes that they meet.
+
+use std::sync::Arc;
+
+use crate::equilibrium::{Workspace, WorkspaceError};
+use crate::model::{Discretization, ModelError, TermSource, Unknowns};
+use crate::scene::Scene;
+use crate::spline::Mesh;
+
+/// The workspace of the mesh in hand, and the unknowns of a mesh that has no workspace yet. Both are made once a mesh.
+#[derive(Debug, Default)]
+pub(super) struct MeshInHand {
+    work: Option<Workspace>,
+    ahead: Option<(Arc<Mesh>, Unknowns)>,
+}
+
+impl MeshInHand {
+    /// The unknowns of a mesh.
+    pub fn unknowns(&mut self, scene: &Scene, mesh: &Arc<Mesh>) -> Result<&Unknowns, ModelError> {
+        match &self.work {
+            Some(work) if is_same(&work.discretization().mesh, mesh) => Ok(&work.discretization().unknowns),
+            _ => {
+                let unknowns = taken(&mut self.ahead, scene, mesh)?;
+                Ok(&self.ahead.insert((mesh.clone(), unknowns)).1)
+            }
+        }
+    }
+
+    /// The workspace of a mesh.
+    pub fn workspace(
+        &mut self,
+        scene: &Scene,
+        own: &[Arc<dyn TermSource>],
+        mesh: &Arc<Mesh>,
+    ) -> Result<&mut Workspace, WorkspaceError> {
+        let work = match self.work.take().filter(|work| is_same(&work.discretization().mesh, mesh)) {
+            Some(work) => work,
+            None => {
+                let unknowns = taken(&mut self.ahead, scene, mesh)?;
+                Workspace::of(Discretization::with_unknowns(scene, mesh, unknowns, own)?)?
+            }
+        };
+        Ok(self.work.insert(work))
+    }
+}
+
+/// The unknowns that are kept, where they are of this mesh, or new ones.
+fn taken(kept: &mut Option<(Arc<Mesh>, Unknowns)>, scene: &Scene, mesh: &Arc<Mesh>) -> Result<Unknowns, ModelError> {
+    match kept.take() {
+        Some((known, unknowns)) if is_same(&known, mesh) => Ok(unknowns),
+        _ => Unknowns::new(scene, mesh),
+    }
+}
+
+fn is_same(one: &Arc<Mesh>, other: &Arc<Mesh>) -> bool {
+    Arc::ptr_eq(one, other) || one == other
+}

@@ -1,0 +1,253 @@
+//! The path of equilibria as drive, followed by arc length.
+
+use crate::equilibrium::{Continuation, ContinuedPoint, Direction, Iterate, Sense, SolveError, Standing};
+use crate::pipeline::path_control::{CriticalPoint, Judgement, PathAttempt, next_path_attempt, path_begun};
+use crate::pipeline::step::{Drives, Step, settle};
+use crate::pipeline::step_control::{has_reached, next_attempt};
+use crate::pipeline::{Outcome, Report, StageError};
+use crate::scene::{ArcLength, History, Scene};
+use crate::state::{Course, DriveMemory, PathMemory, Rejection, State, StepControl};
+
+/// A parameter this close to the target, relatively, is there.
+const AT_TARGET: f64 = 1e-9;
+
+/// Follows the path of equilibria.
+pub(super) struct PathDrive<'a> {
+    pub step: Step<'a>,
+    pub limits: &'a ArcLength,
+}
+
+impl Drives for PathDrive<'_> {
+    /// One step along the path. Where it fails, goes too far or passes a critical point that is not located yet, the state
+    /// stays and only its memory changes.
+    fn solve(&mut self) -> Result<(State, Report), StageError> {
+        let state = self.step.state;
+        if state.step >= self.limits.most_steps as u64 {
+            return Err(self.too_long());
+        }
+        match state.drive.path() {
+            None => self.begin(),
+            Some(path) => self.go_on(path),
+        }
+    }
+
+    /// On a refined mesh the path is another.
+    fn re_equilibrate(&mut self) -> Result<(State, Report), StageError> {
+        match self.step.state.drive.path() {
+            None => self.step.relax(),
+            Some(path) => self.correct(path),
+        }
+    }
+}
+
+impl PathDrive<'_> {
+    /// The first step: an increment of the parameter.
+    fn begin(&mut self) -> Result<(State, Report), StageError> {
+        let Step { scene, work, state, observer } = &mut self.step;
+        let attempt = next_attempt(scene, state);
+        let found = Continuation::new(scene, work).begin(Standing::of(state), attempt.target_deg, &mut |iterate| {
+            observer(iterate);
+            false
+        });
+        let point = match found {
+            Ok(point) => point,
+            Err(cause) => return self.step.cut(attempt, cause),
+        };
+        let pivots = point.solved.negative_pivots as u64;
+        let passed = CriticalPoint::between((1.0, state.negative_pivots), (1.0, pivots));
+        if let (Some(_), Some(control)) = (passed, attempt.control_after_failure(scene, state)) {
+            let course = state.drive.course.clone();
+            let report = self.step.rejected(Outcome::RejectedCriticalPoint, attempt.target_deg, point.solved.effort);
+            return Ok((self.step.stay(control, course), report));
+        }
+        Ok(self.take(&point, path_begun(self.limits, &point), passed))
+    }
+
+    /// A step from a point of the path.
+    fn go_on(&mut self, path: &PathMemory) -> Result<(State, Report), StageError> {
+        let attempt = next_path_attempt(self.step.scene, self.limits, path);
+        let (found, aimed_at) = self.find(path, attempt);
+        let point = match found {
+            Ok(point) => point,
+            Err(cause) => {
+                let report = self.step.failed(Outcome::RejectedNoEquilibrium, aimed_at, &cause);
+                return self.shorten(path, attempt, report, &cause.to_string());
+            }
+        };
+        let rejected = |outcome| self.step.rejected(outcome, point.parameter, point.solved.effort);
+        match attempt.judge(self.step.state, path, &point) {
+            Judgement::Taken(passed) => Ok(self.take(&point, attempt.after(self.limits, path, &point, passed), passed)),
+            Judgement::Past(ahead) => {
+                let memory = PathMemory { critical_ahead: Some(ahead), ..path.clone() };
+                let report = rejected(Outcome::RejectedCriticalPoint);
+                Ok((self.turned_down(Rejection::CriticalPoint, memory), report))
+            }
+            Judgement::TooFar => {
+                let turned = point.turn.clamp(-1.0, 1.0).acos().to_degrees();
+                let why = format!("it ended {:.3e} mm away with the path turned by {turned:.0}°", point.distance);
+                self.shorten(path, attempt, rejected(Outcome::RejectedSharpTurn), &why)
+            }
+        }
+    }
+
+    /// The point that a step finds: at the next corner of a history where there is one on the way, and at the target where the
+    /// path leads beyond it. Beside it the parameter that was aimed at.
+    fn find(&mut self, path: &PathMemory, attempt: PathAttempt) -> (Result<ContinuedPoint, SolveError>, f64) {
+        let Step { scene, work, state, observer } = &mut self.step;
+        let mut watch = |iterate: &Iterate| {
+            observer(iterate);
+            false
+        };
+        let target = scene.load.target();
+        let (from, mut continuation) = (Standing::of(state), Continuation::new(scene, work));
+        let ahead = state.parameter + attempt.length_mm * path.parameter_rate;
+        let found = match corner_between(scene, state.parameter, ahead) {
+            Some(corner) => continuation.step_to_corner(from, corner, &mut watch),
+            None => continuation.step(from, &path.heading, attempt.length_mm, &mut watch),
+        };
+        match found {
+            Ok(beyond)
+                if beyond.parameter.abs() > target * (1.0 + AT_TARGET)
+                    && !matches!(attempt.judge(state, path, &beyond), Judgement::TooFar) =>
+            {
+                let end = target.copysign(beyond.parameter);
+                let spent = beyond.solved.effort;
+                let found = continuation.step_to(from, &beyond, end, &mut watch).map(|mut point| {
+                    point.solved.effort.iterations += spent.iterations;
+                    point.solved.effort.factorizations += spent.factorizations;
+                    point
+                });
+                (found, end)
+            }
+            found => (found, state.parameter),
+        }
+    }
+
+    /// The state where it was, with half the step to try.
+    fn shorten(
+        &self,
+        path: &PathMemory,
+        attempt: PathAttempt,
+        report: Report,
+        why: &str,
+    ) -> Result<(State, Report), StageError> {
+        let rejection = match report.outcome {
+            Outcome::RejectedSharpTurn => Rejection::SharpTurn,
+            _ => Rejection::NoEquilibrium,
+        };
+        match attempt.shortened(self.limits, path) {
+            Some(memory) => Ok((self.turned_down(rejection, memory), report)),
+            None => Err(StageError::PathLost {
+                step: self.step.state.step + 1,
+                reached: self.step.shown(self.step.state.parameter),
+                shortest: self.limits.shortest_step,
+                first_mm: path.first_mm,
+                attempted_mm: attempt.length_mm,
+                why: why.to_string(),
+            }),
+        }
+    }
+
+    /// The state where it was, with another attempt to make.
+    fn turned_down(&self, rejection: Rejection, path: PathMemory) -> State {
+        let control = StepControl { rejection: Some(rejection), ..self.step.state.drive.control };
+        self.step.stay(control, Course::Path(path))
+    }
+
+    fn too_long(&self) -> StageError {
+        StageError::PathTooLong {
+            step: self.step.state.step,
+            target: self.step.shown(self.step.scene.load.target()),
+            reached: self.step.shown(self.step.state.parameter),
+            most: self.limits.most_steps,
+        }
+    }
+
+    /// The state at a new point of the path.
+    fn take(&mut self, point: &ContinuedPoint, path: PathMemory, passed: Option<CriticalPoint>) -> (State, Report) {
+        let mut next = settle(self.step.state, &point.solved);
+        next.step = self.step.state.step + 1;
+        next.parameter = point.parameter;
+        next.drive = DriveMemory { control: StepControl::default(), course: Course::Path(path) };
+        let mut report = self.step.arrived(&next, &point.solved);
+        report.critical_point = passed;
+        (next, report)
+    }
+
+    /// The point of the refined mesh's path that is nearest to where the shell is, or, at the end of the run, the one with that
+    /// parameter.
+    fn correct(&mut self, path: &PathMemory) -> Result<(State, Report), StageError> {
+        let heading = Direction { motion: path.heading.clone(), parameter: path.parameter_rate };
+        let Step { scene, work, state, observer } = &mut self.step;
+        let mut watch = |iterate: &Iterate| {
+            observer(iterate);
+            false
+        };
+        let at_end = has_reached(scene, state, scene.load.target());
+        let found = Continuation::new(scene, work).correct(Standing::of(state), &heading, at_end, &mut watch);
+        let point = match found {
+            Ok(point) => point,
+            Err(_) if state.negative_pivots == 0 => return self.let_down(path),
+            Err(cause) => return Err(self.step.not_re_equilibrated(cause)),
+        };
+        let before = (path.parameter_rate, state.negative_pivots);
+        let mut next = settle(state, &point.solved);
+        next.parameter = point.parameter;
+        let after = (point.heading.parameter, next.negative_pivots);
+        next.drive.course = Course::Path(PathMemory {
+            heading: point.heading.motion,
+            parameter_rate: point.heading.parameter,
+            critical_ahead: None,
+            ..path.clone()
+        });
+        let mut report = self.step.arrived(&next, &point.solved);
+        // A finer mesh has its critical points elsewhere: the shell may now stand beyond one that lay ahead of it.
+        report.critical_point = CriticalPoint::between(before, after);
+        Ok((next, report))
+    }
+
+    /// Where the shell is stable it can be let down to the finer mesh's equilibrium at the same load.
+    fn let_down(&mut self, path: &PathMemory) -> Result<(State, Report), StageError> {
+        let (mut relaxed, report) = self.step.relax()?;
+        let memory = path_on_branch(&mut self.step, &relaxed, &relaxed, path);
+        relaxed.drive.course = Course::Path(memory.map_err(|cause| self.step.not_re_equilibrated(cause))?);
+        Ok((relaxed, report))
+    }
+}
+
+/// Memory on the branch that was switched to from `before`: onwards with the parameter as before. What was a long step
+/// before may be nothing here (a column that bends moves much farther than one that is compressed), so that the way from
+/// one branch to the other becomes the unit where it is longer.
+pub(super) fn path_on_branch(
+    step: &mut Step,
+    before: &State,
+    state: &State,
+    path: &PathMemory,
+) -> Result<PathMemory, SolveError> {
+    let sense = Sense::Parameter { grows: path.parameter_rate > 0.0 };
+    let mut continuation = Continuation::new(step.scene, step.work);
+    let heading = continuation.heading_at(Standing::of(state), sense)?;
+    let moved = continuation.distance(&before.displacement, &state.displacement);
+    Ok(PathMemory {
+        first_mm: path.first_mm.max(moved),
+        next_mm: path.next_mm.max(moved),
+        heading: heading.motion,
+        parameter_rate: heading.parameter,
+        critical_ahead: None,
+        at_bifurcation: false,
+        ..path.clone()
+    })
+}
+
+/// The first load factor on the way at which a history has a corner, up to where the run ends.
+fn corner_between(scene: &Scene, from: f64, to: f64) -> Option<f64> {
+    let histories =
+        scene.actions.iter().map(|action| &action.history).chain(scene.supports.iter().map(|support| &support.history));
+    let end = scene.load.target() * (1.0 + AT_TARGET);
+    let way = (to - from).signum();
+    let distance = |corner: &f64| way * (corner - from);
+    histories
+        .flat_map(History::kinks)
+        .filter(|corner| corner.abs() < end && distance(corner) > AT_TARGET * end && distance(corner) <= distance(&to))
+        .min_by(|one, other| distance(one).total_cmp(&distance(other)))
+}

@@ -1,0 +1,157 @@
+//! A step of a drive under way, and what every drive does alike.
+
+use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, Workspace};
+use crate::pipeline::probes::read_probes;
+use crate::pipeline::step_control::{Attempt, energy_released, is_jump_on_refinement, known_release};
+use crate::pipeline::{Outcome, Report, StageError};
+use crate::scene::{Parameter, Scene, Stage};
+use crate::state::{Course, DriveMemory, State, StepControl};
+
+/// A drive at a state: how it moves the structure on, and how it meets its course again on a finer mesh.
+pub(super) trait Drives {
+    /// One step on. Where that fails or leads too far, the state stays and only the memory of the drive changes.
+    fn solve(&mut self) -> Result<(State, Report), StageError>;
+
+    /// Equilibrium on the refined mesh of the state.
+    fn re_equilibrate(&mut self) -> Result<(State, Report), StageError>;
+}
+
+/// What a stage that looks for an equilibrium works with.
+pub(super) struct Step<'a> {
+    pub scene: &'a Scene,
+    /// Of the state's mesh.
+    pub work: &'a mut Workspace,
+    /// Where the stage starts.
+    pub state: &'a State,
+    /// Sees every Newton iterate.
+    pub observer: &'a mut dyn FnMut(&Iterate),
+}
+
+impl Step<'_> {
+    /// The state's parameter, or another, with its unit.
+    pub fn shown(&self, parameter: f64) -> String {
+        Parameter::of(self.scene).shown(parameter)
+    }
+
+    /// The state where it was, with another attempt to make.
+    pub fn stay(&self, control: StepControl, course: Course) -> State {
+        State { drive: DriveMemory { control, course }, marked: Default::default(), ..self.state.clone() }
+    }
+
+    /// Of a solve that was turned down.
+    pub fn rejected(&self, outcome: Outcome, attempted_parameter: f64, effort: Effort) -> Report {
+        Report {
+            step: self.state.step + 1,
+            outcome,
+            attempted_parameter,
+            iterations: effort.iterations,
+            factorizations: effort.factorizations,
+            ..Report::of(self.scene, self.state, self.work.discretization().unknowns.count())
+        }
+    }
+
+    /// Of a solve that found nothing.
+    pub fn failed(&self, outcome: Outcome, attempted_parameter: f64, cause: &SolveError) -> Report {
+        let residual = cause.last().map_or(f64::NAN, Iterate::relative_residual);
+        Report { residual, ..self.rejected(outcome, attempted_parameter, cause.effort()) }
+    }
+
+    /// Of the state at a new equilibrium, with its probes.
+    pub fn arrived(&mut self, next: &State, solved: &Solved) -> Report {
+        let Self { scene, work, .. } = self;
+        Report {
+            iterations: solved.effort.iterations,
+            factorizations: solved.effort.factorizations,
+            residual: solved.residual,
+            work_n_mm: solved.work,
+            put_in_n_mm: solved.put_in,
+            probes: read_probes(scene, work, Standing::of(next), next.strain_energy_n_mm),
+            ..Report::of(scene, next, work.discretization().unknowns.count())
+        }
+    }
+
+    /// After an increment of the parameter that found no equilibrium: a smaller one comes next, if there may be one.
+    pub fn cut(&self, attempt: Attempt, cause: SolveError) -> Result<(State, Report), StageError> {
+        match attempt.control_after_failure(self.scene, self.state) {
+            Some(control) => {
+                let report = self.failed(Outcome::RejectedNoEquilibrium, attempt.target_deg, &cause);
+                Ok((self.stay(control, self.state.drive.course.clone()), report))
+            }
+            None => Err(self.stopped(attempt, cause)),
+        }
+    }
+
+    /// The error of a solve that cannot be tried with a smaller increment.
+    fn stopped(&self, attempt: Attempt, cause: SolveError) -> StageError {
+        let state = self.state;
+        let (reached, attempted) = (self.shown(state.parameter), self.shown(attempt.target_deg));
+        let (step, cause) = (state.step + 1, Box::new(cause));
+        match state.drive.control.jump_seen_at_deg {
+            Some(_) if state.step == 0 => StageError::NoStart { step, attempted, cause },
+            Some(_) => StageError::JumpNotFollowed { step, reached, attempted, cause },
+            None => {
+                let least = self.scene.least_increment();
+                let least_key = match Parameter::of(self.scene) {
+                    Parameter::Rotation => "solver.least_increment_deg",
+                    Parameter::LoadFactor => "load.least_increment",
+                };
+                StageError::NoEquilibrium { step, reached, attempted, least_key, least, cause }
+            }
+        }
+    }
+
+    /// Equilibrium on a refined mesh at the same load.
+    pub fn relax(&mut self) -> Result<(State, Report), StageError> {
+        let Self { scene, work, state, observer } = self;
+        let mut unstable_on_the_way = false;
+        let mut watch = |iterate: &Iterate| {
+            observer(iterate);
+            unstable_on_the_way |= iterate.negative_pivots > 0;
+            false
+        };
+        let solved = Equilibrium::new(scene, work).relax(Standing::of(state), &mut watch);
+        let solved = solved.map_err(|cause| self.not_re_equilibrated(cause))?;
+        let released = energy_released(self.state, &solved);
+        let mut next = settle(self.state, &solved);
+        let mut report = self.arrived(&next, &solved);
+        // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
+        report.jumped = unstable_on_the_way && is_jump_on_refinement(self.state, released);
+        if report.jumped {
+            report.energy_released_n_mm = known_release(released);
+            next.drive.course = Course::Unknown;
+            next.refinement = None;
+        } else if let Some(refinement) = &mut next.refinement {
+            refinement.changed_n_mm += released.abs();
+        }
+        Ok((next, report))
+    }
+
+    /// The error of a refined mesh on which no equilibrium was found.
+    pub fn not_re_equilibrated(&self, cause: SolveError) -> StageError {
+        StageError::NotReEquilibrated {
+            step: self.state.step,
+            reached: self.shown(self.state.parameter),
+            elements: self.state.mesh.element_counts(),
+            cause: Box::new(cause),
+        }
+    }
+}
+
+/// The state at a new equilibrium.
+pub(super) fn settle(state: &State, solved: &Solved) -> State {
+    State {
+        displacement: solved.displacement.clone(),
+        turns: solved.turns.clone(),
+        marked: Default::default(),
+        moment_n_mm: solved.moment,
+        strain_energy_n_mm: solved.energy,
+        largest_force_n: solved.largest_force,
+        negative_pivots: solved.negative_pivots as u64,
+        ..state.clone()
+    }
+}
+
+/// The error of a stage that came before what it takes.
+pub(super) fn out_of_order(state: &State, stage: Stage, missing: &'static str) -> StageError {
+    StageError::OutOfOrder { step: state.step, stage, after: state.stage.map_or("the start", Stage::name), missing }
+}
