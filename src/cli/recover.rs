@@ -43,6 +43,8 @@ impl Arguments {
         };
         let outcome = recover_mended(&log, &output, mend)
             .map_err(|source| Failure::WrongLog { log: log.clone(), source: Box::new(source) })?;
+        // Where the mended log does not read as it should, the good part of the log itself is what is kept.
+        let made = if matches!(outcome, RecoverOutcome::Lossless { .. }) || !remake { made } else { 0 };
         if made > 0 {
             say(&format!(
                 "{} made again that were lost: the stages behind follow on what they came to; but how long they took is not known any more",

@@ -9,7 +9,8 @@
 //! | `sparse` | factor and solution |
 //! | `tangent_stiffness` | the matrix with its factor |
 //! | `vector`, `metric`, `gmres` | sums over vectors; lengths of motions; iterative solution |
-//! | `workspace` | tables, matrix and factor for one mesh, and the state in hand |
+//! | `configuration` | where a solve starts from, and a point with its unknowns and placement |
+//! | `workspace` | tables, matrix and factor for one mesh |
 //! | `iterate` | what is known of a solve under way |
 //! | `force_scale` | what a residual is compared with |
 //! | `ledger` | the balance of energy of a solve |

@@ -5,18 +5,21 @@
 //! hash of their bytes. Nothing decoded leaves this file before its content
 //! hash is what the commit says and [`soundness`](super::soundness) has passed it.
 
+mod versions;
+
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
+use self::versions::{
+    DisplacementV1, MeshV1, PathV3, RefinementV6, RejectionV1, StageV1, StateV1, StateV2, StateV3, StateV4, StateV5,
+    StateV6,
+};
 use super::format::CHUNK_BYTES_LIMIT;
 use super::soundness::{Flaw, check_mesh, check_on_mesh, check_state};
 use crate::digest::extend_with_numbers;
 use crate::scene::Stage;
-use crate::state::{
-    Course, CriticalAhead, DriveMemory, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State, StepControl,
-};
+use crate::state::{Course, DriveMemory, Hash, Mesh, Previous, Rejection, State, StepControl};
+use serde::{Deserialize, Serialize};
 
 /// The newest version that is written, in front of every state and mesh. A state is written in the oldest version that
 /// holds it.
@@ -83,173 +86,6 @@ pub enum CodecError {
     /// The content that was committed, but nothing that a run could go on from.
     #[error("the content is unusable")]
     Unsound(#[from] Flaw),
-}
-
-#[derive(Serialize, Deserialize)]
-struct MeshV1<'a> {
-    degree: [u64; 2],
-    knots: [Cow<'a, [f64]>; 2],
-    control_points: Cow<'a, [[f64; 4]]>,
-}
-
-impl<'a> MeshV1<'a> {
-    fn of(mesh: &'a Mesh) -> Self {
-        Self {
-            degree: mesh.degree.map(|degree| degree as u64),
-            knots: [0, 1].map(|way| Cow::from(&mesh.knots[way])),
-            control_points: Cow::from(&mesh.control_points),
-        }
-    }
-
-    fn into_mesh(self) -> Mesh {
-        Mesh {
-            degree: self.degree.map(|degree| usize::try_from(degree).unwrap_or(usize::MAX)),
-            knots: self.knots.map(Cow::into_owned),
-            control_points: self.control_points.into_owned(),
-        }
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-struct DisplacementV1<'a>(Cow<'a, [[f64; 3]]>);
-
-#[derive(Serialize, Deserialize)]
-struct StateV1<'a> {
-    mesh: [u8; 32],
-    displacement: [u8; 32],
-    marked: [Cow<'a, [f64]>; 2],
-    refined: Option<MeshV1<'a>>,
-    step: u64,
-    stage: Option<StageV1>,
-    parameter: f64,
-    moment_n_mm: f64,
-    strain_energy_n_mm: f64,
-    negative_pivots: u64,
-    /// 0 where the increment has grown instead.
-    halvings: u32,
-    jump_seen_at_deg: Option<f64>,
-    rejection: Option<RejectionV1>,
-}
-
-/// Version 2: rigid sections that turn freely. Written only where there are any.
-#[derive(Serialize, Deserialize)]
-struct StateV2<'a> {
-    base: StateV1<'a>,
-    turns: Cow<'a, [[f64; 3]]>,
-}
-
-/// Version 3: continuation by arc length, and what came with it. Written only where there is any of that.
-#[derive(Serialize, Deserialize)]
-struct StateV3<'a> {
-    base: StateV1<'a>,
-    turns: Cow<'a, [[f64; 3]]>,
-    path: Option<PathV3<'a>>,
-}
-
-/// Version 4: the equilibrium before. Its displacements stand behind the state's own, so that stages that change neither
-/// write neither again.
-#[derive(Serialize, Deserialize)]
-struct StateV4<'a> {
-    after: StateV3<'a>,
-    previous_parameter: f64,
-}
-
-/// Version 5: an increment that has grown. Written only where it has.
-#[derive(Serialize, Deserialize)]
-struct StateV5<'a> {
-    after: StateV3<'a>,
-    previous_parameter: Option<f64>,
-    doublings: u32,
-}
-
-/// Version 6: the largest force met, and what the last refinement changed. Every state of an equilibrium has the first.
-#[derive(Serialize, Deserialize)]
-struct StateV6<'a> {
-    after: StateV5<'a>,
-    largest_force_n: f64,
-    refinement: Option<RefinementV6>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct RefinementV6 {
-    changed_n_mm: f64,
-    growth: f64,
-    expected_n_mm: Option<f64>,
-    ripple_n_mm: f64,
-}
-
-impl RefinementV6 {
-    fn of(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }: Refinement) -> Self {
-        Self { changed_n_mm, growth, expected_n_mm, ripple_n_mm }
-    }
-
-    fn into_memory(self) -> Refinement {
-        let Self { changed_n_mm, growth, expected_n_mm, ripple_n_mm } = self;
-        Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-struct PathV3<'a> {
-    heading: Cow<'a, [[f64; 3]]>,
-    parameter_rate: f64,
-    first_mm: f64,
-    next_mm: f64,
-    travelled_mm: f64,
-    /// Length and rate.
-    critical_ahead: Option<[f64; 2]>,
-    at_bifurcation: bool,
-}
-
-impl<'a> PathV3<'a> {
-    fn of(path: &'a PathMemory) -> Self {
-        let PathMemory { heading, parameter_rate, first_mm, next_mm, travelled_mm, critical_ahead, at_bifurcation } =
-            path;
-        Self {
-            heading: Cow::from(heading),
-            parameter_rate: *parameter_rate,
-            first_mm: *first_mm,
-            next_mm: *next_mm,
-            travelled_mm: *travelled_mm,
-            critical_ahead: critical_ahead.map(|CriticalAhead { within_mm, rate_beyond }| [within_mm, rate_beyond]),
-            at_bifurcation: *at_bifurcation,
-        }
-    }
-
-    fn into_memory(self) -> PathMemory {
-        PathMemory {
-            heading: self.heading.into_owned(),
-            parameter_rate: self.parameter_rate,
-            first_mm: self.first_mm,
-            next_mm: self.next_mm,
-            travelled_mm: self.travelled_mm,
-            critical_ahead: self
-                .critical_ahead
-                .map(|[within_mm, rate_beyond]| CriticalAhead { within_mm, rate_beyond }),
-            at_bifurcation: self.at_bifurcation,
-        }
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-enum StageV1 {
-    Solve,
-    EvaluateIndicators,
-    RefineKnots,
-    ProjectDisplacements,
-    ReEquilibrate,
-    /// From version 3 on.
-    SwitchBranch,
-}
-
-#[derive(Serialize, Deserialize)]
-enum RejectionV1 {
-    NoEquilibrium,
-    Jump,
-    /// From version 3 on.
-    CriticalPoint,
-    /// From version 3 on.
-    SharpTurn,
 }
 
 fn config() -> impl bincode::config::Config {

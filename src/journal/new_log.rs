@@ -1,6 +1,7 @@
 //! A log that is made of another: whole or not there.
 
 use std::io::{self, Write};
+use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 
 use mcap::records::Metadata;
@@ -9,6 +10,7 @@ use super::encode_error::EncodeError;
 use super::encoder::Encoder;
 use super::frame;
 use super::log::{Log, Part};
+use super::reader::ReadError;
 use crate::whole_file::WholeFile;
 
 /// Bytes that are collected before they go to the new file.
@@ -78,19 +80,48 @@ impl NewLog {
     }
 
     /// Ends the log with the summary that viewers look for, and gives it its name; gives back its length, bytes.
-    pub fn finish(mut self, commits: usize) -> Result<u64, NewLogError> {
+    pub fn finish(self, commits: usize) -> Result<u64, NewLogError> {
+        self.close(commits)?.keep()
+    }
+
+    /// Ends the log with the summary that viewers look for.
+    pub fn close(mut self, commits: usize) -> Result<ClosedLog, NewLogError> {
         self.write()?;
         let Self { target, file, encoder, .. } = self;
-        let kept = encoder.close(commits as u64, |piece| file.file().write_all(&piece)).and_then(|()| {
-            let length = file.file().metadata()?.len();
-            file.keep_as(&target).map(|()| length)
-        });
-        kept.map_err(not_written(&target))
+        let closed = encoder.close(commits as u64, |piece| file.file().write_all(&piece));
+        match closed {
+            Ok(()) => Ok(ClosedLog { target, file }),
+            Err(error) => Err(not_written(&target)(error)),
+        }
     }
 
     fn write(&mut self) -> Result<(), NewLogError> {
         self.pending = 0;
         self.file.file().write_all(&self.encoder.take()).map_err(not_written(&self.target))
+    }
+}
+
+/// A log that is made to its end and has no name yet. Dropped, it is as if it had never been.
+pub(super) struct ClosedLog {
+    target: PathBuf,
+    file: WholeFile,
+}
+
+impl ClosedLog {
+    /// What a reader makes of it.
+    pub fn read(&self) -> Result<Log, ReadError> {
+        let io = |source| ReadError::Io { path: self.target.display().to_string(), source };
+        let file = self.file.file();
+        let mut bytes = vec![0; file.metadata().map_err(io)?.len() as usize];
+        file.read_exact_at(&mut bytes, 0).map_err(io)?;
+        Log::from_bytes(bytes)
+    }
+
+    /// Gives it its name; gives back its length, bytes.
+    pub fn keep(self) -> Result<u64, NewLogError> {
+        let Self { target, file } = self;
+        let kept = file.file().metadata().and_then(|metadata| file.keep_as(&target).map(|()| metadata.len()));
+        kept.map_err(not_written(&target))
     }
 }
 

@@ -11,7 +11,7 @@ use super::encode_error::EncodeError;
 use super::encoder::Encoder;
 use super::frame;
 use super::log::{Kept, Log};
-use super::new_log::{BATCH_BYTES, NewLog, NewLogError};
+use super::new_log::{BATCH_BYTES, ClosedLog, NewLog, NewLogError};
 use super::portions::Portions;
 use super::reader::ReadError;
 
@@ -122,10 +122,11 @@ pub fn recover_mended(
         };
         if !portion.log().later_commits().is_empty()
             && let Some(mended) = mend(&Log::read(path)?)
+            && let Some(whole) = copy_whole(&mended, new)?
         {
-            drop(copy);
-            let copy = copy_whole(&mended, new)?;
-            return Ok(outcome(&mended, copy)?);
+            let outcome = outcome(&mended);
+            whole.keep()?;
+            return Ok(outcome);
         }
         let log = portion.log();
         let finished = log.completeness() == Completeness::Finished;
@@ -139,33 +140,43 @@ pub fn recover_mended(
             good.add(log, part, |_| true)?;
         }
         match portion.into_end() {
-            Some(log) => return Ok(outcome(&log, good)?),
+            Some(log) => {
+                good.finish(log.commits())?;
+                return Ok(outcome(&log));
+            }
             None => copy = Some(good),
         }
     }
 }
 
-/// A copy of all that is good of a log.
-fn copy_whole(log: &Log, new: &Path) -> Result<NewLog, NewLogError> {
+/// A copy of a mended log; `None` where it does not read as that does. Messages of a log that has lost the descriptions of its
+/// channels may say other things of them than what was described again.
+fn copy_whole(log: &Log, new: &Path) -> Result<Option<ClosedLog>, NewLogError> {
     let finished = log.completeness() == Completeness::Finished;
     let mut good = NewLog::begin(new, &log.library)?;
     for part in log.parts.iter().filter(|part| finished || part.kept != Kept::Finished) {
-        good.add(log, part, |_| true)?;
+        match good.add(log, part, |_| true) {
+            Err(NewLogError::Encode { .. }) => return Ok(None),
+            added => added?,
+        }
     }
-    Ok(good)
+    let copy = good.close(log.commits())?;
+    let reads_alike = copy.read().is_ok_and(|copy| {
+        copy.commits() == log.commits() && copy.last_commit() == log.last_commit() && copy.problems().is_empty()
+    });
+    Ok(reads_alike.then_some(copy))
 }
 
-/// Gives the copy its name; says what it lacks of a log that was read to its end.
-fn outcome(log: &Log, copy: NewLog) -> Result<RecoverOutcome, NewLogError> {
+/// What a copy of a log lacks, which was read to its end.
+fn outcome(log: &Log) -> RecoverOutcome {
     let (commits, later_commits) = (log.commits() as u64, log.later_commits().len() as u64);
-    copy.finish(log.commits())?;
     let dropped = log.file_len() - log.good_end();
     let finished = log.completeness() == Completeness::Finished;
     let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
     let lost_manifest = log.missed_manifests().next().map(ToString::to_string);
     let lost_manifest = lost_manifest.or(log.unused_manifest().map(|note| note.text.clone()));
-    Ok(match loss.or(lost_manifest) {
+    match loss.or(lost_manifest) {
         Some(why) => RecoverOutcome::Lossy { commits, dropped, later_commits, why },
         None => RecoverOutcome::Lossless { commits },
-    })
+    }
 }

@@ -8,17 +8,19 @@ use crate::units::significant;
 pub enum ModelError {
     /// Two rows of control points at each end are taken by its support.
     #[error(
-        "{elements} element(s) of degree {degree} along the length have {rows} rows of control points, but the supports \
-         at both ends take 2 each: write at least {least} elements along the length of the model (mesh.elements)"
+        "{elements} element(s) of degree {degree} along {along} have {rows} rows of control points, but the supports \
+         at both ends take 2 each: write at least {least} elements along {along} of the model (mesh.elements)"
     )]
     TooFewRows {
-        /// Elements along the length of the model.
+        /// The direction.
+        along: &'static str,
+        /// Elements along it of the model.
         elements: usize,
-        /// Degree along the length.
+        /// Degree along it.
         degree: usize,
         /// Rows of control points.
         rows: usize,
-        /// Elements along the length that suffice.
+        /// Elements that suffice.
         least: usize,
     },
     /// A symmetric support that is neither on an edge nor on a line.

@@ -1,13 +1,14 @@
 //! The mesh that a scene starts from: an exact NURBS surface with the scene's elements.
 
 use crate::model::ModelError;
+use crate::model::edge::side;
 use crate::model::limits::MOST_CONTROL_POINTS;
 use crate::model::mirror_check::check_mirror_images;
 use crate::model::overhang::check_overhangs;
-use crate::model::shape::shape;
+use crate::model::shape::{Shape, shape};
 use crate::model::subdivision::subdivide;
 use crate::model::thinness::check_thinness;
-use crate::scene::Scene;
+use crate::scene::{Hold, Place, Scene};
 use crate::spline::{Grid, Mesh};
 
 /// Builds the starting mesh.
@@ -22,9 +23,10 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
         let (elements, degree) = (shape.elements[0], scene.mesh.degree[0]);
         let rows = elements + degree;
         if rows < 4 {
-            return Err(ModelError::TooFewRows { elements, degree, rows, least: 4 - degree });
+            return Err(ModelError::TooFewRows { along: "the length", elements, degree, rows, least: 4 - degree });
         }
     }
+    check_rows(scene, &shape)?;
     let count = Grid::new([0, 1].map(|way| shape.elements[way] + shape.mesh.degree[way])).len();
     if count > MOST_CONTROL_POINTS {
         return Err(ModelError::TooManyControlPoints { elements: shape.elements, count });
@@ -34,4 +36,28 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     check_mirror_images(scene, &mesh)?;
     check_overhangs(scene, &mesh)?;
     Ok(mesh)
+}
+
+/// An edge that a section holds, turning the normal with it, takes two rows of control points; where the edge across takes two
+/// of three as well (or ties them, as a plane of symmetry does), nothing is left to bend, or one of the sections loses its hold.
+fn check_rows(scene: &Scene, shape: &Shape) -> Result<(), ModelError> {
+    let held = |way: usize, at_end: bool| {
+        let holds = scene.supports.iter().filter_map(move |support| match support.on {
+            Place::Edge(edge) if side(edge) == (way, at_end) => Some(&support.hold),
+            _ => None,
+        });
+        let turns = |hold: &&Hold| matches!(hold, Hold::Rigid { normals_turn: true, .. });
+        let ties = |hold: &&Hold| matches!(hold, Hold::Symmetric);
+        (holds.clone().any(|hold| turns(&hold)), holds.clone().any(|hold| ties(&hold)))
+    };
+    for way in 0..2 {
+        let [(one, one_tied), (other, other_tied)] = [held(way, false), held(way, true)];
+        let (elements, degree) = (shape.elements[way], scene.mesh.degree[way]);
+        let rows = elements + degree;
+        if rows < 4 && ((one && (other || other_tied)) || (other && one_tied)) {
+            let along = ["u", "v"][way];
+            return Err(ModelError::TooFewRows { along, elements, degree, rows, least: 4 - degree });
+        }
+    }
+    Ok(())
 }

@@ -3,7 +3,7 @@
 //! | warning | measure | looked for |
 //! |---|---|---|
 //! | the elements are coarse | the strain energy that halving all of them would change ([`Halving`](crate::adapt::Halving)) | before a jump, and at the end of a run |
-//! | a probe is off | what it would read there, after one step of Newton's method | the same |
+//! | a probe is off | what it reads at the equilibrium of the halved mesh | at the end of a run |
 //! | buckling is late | the load at which the halved mesh buckles ([`LinearBuckling`](crate::equilibrium::LinearBuckling)) | the same, and where a critical point is passed |
 //! | strains are large | the largest in the surfaces of the shell | before a jump, and at the end of a run |
 //! | refinement is blocked | how long the spans that the length limit keeps are for their bending ([`Blocked`]) | where nothing is marked any more |
@@ -42,7 +42,7 @@ pub enum Warning {
         probe: String,
         /// What it reads.
         value: f64,
-        /// What it would read on the halved mesh, to first order.
+        /// What it reads on the halved mesh.
         halved: f64,
         /// Unit of both.
         unit: String,
@@ -154,7 +154,7 @@ impl Warning {
                     _ => format!("; {} off as well", count(*others, "other probe")),
                 };
                 format!(
-                    "probe \"{probe}\" reads {} {unit} on {n1} × {n2} elements and some {} {unit} with each of them \
+                    "probe \"{probe}\" reads {} {unit} on {n1} × {n2} elements and {} {unit} with each of them \
                      halved{others}; write more elements or a higher degree in [mesh], or a lower adapt.threshold",
                     significant(*value, 3),
                     significant(*halved, 3)

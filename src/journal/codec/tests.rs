@@ -1,6 +1,7 @@
 //! Bytes that no state encodes to.
 
 use super::*;
+use crate::state::PathMemory;
 
 fn on_a_path() -> State {
     let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
