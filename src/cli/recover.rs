@@ -38,7 +38,7 @@ impl Arguments {
                 return None;
             }
             let (mended, count) = mended(log)?;
-            made = count;
+            made += count;
             Some(mended)
         };
         let outcome = recover_mended(&log, &output, mend)

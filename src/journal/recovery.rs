@@ -122,11 +122,10 @@ pub fn recover_mended(
         };
         if !portion.log().later_commits().is_empty()
             && let Some(mended) = mend(&Log::read(path)?)
-            && let Some(whole) = copy_whole(&mended, new)?
+            && let Some((copy, mended)) = copy_mended(mended, &mut mend, new)?
         {
-            let outcome = outcome(&mended);
-            whole.keep()?;
-            return Ok(outcome);
+            copy.keep()?;
+            return Ok(outcome(&mended));
         }
         let log = portion.log();
         let finished = log.completeness() == Completeness::Finished;
@@ -149,8 +148,30 @@ pub fn recover_mended(
     }
 }
 
-/// A copy of a mended log; `None` where it does not read as that does. Messages of a log that has lost the descriptions of its
-/// channels may say other things of them than what was described again.
+/// Times that a log is mended: the first time may put back what tells how more is to be read.
+const MOST_MENDS: usize = 4;
+
+/// A copy of a mended log with that log; `None` where no copy reads as its log does. What a copy lacks that was not described
+/// when it was made is mended again.
+fn copy_mended(
+    mut mended: Log,
+    mend: &mut impl FnMut(&Log) -> Option<Log>,
+    new: &Path,
+) -> Result<Option<(ClosedLog, Log)>, NewLogError> {
+    for _ in 0..MOST_MENDS {
+        let Some(copy) = copy_whole(&mended, new)? else { return Ok(None) };
+        let Ok(read) = copy.read() else { return Ok(None) };
+        let is_whole = read.commits() == mended.commits() && read.last_commit() == mended.last_commit();
+        if is_whole && read.problems().is_empty() {
+            return Ok(Some((copy, mended)));
+        }
+        let Some(again) = mend(&read) else { return Ok(None) };
+        mended = again;
+    }
+    Ok(None)
+}
+
+/// A copy of a log; `None` where MCAP takes no such log.
 fn copy_whole(log: &Log, new: &Path) -> Result<Option<ClosedLog>, NewLogError> {
     let finished = log.completeness() == Completeness::Finished;
     let mut good = NewLog::begin(new, &log.library)?;
@@ -160,11 +181,7 @@ fn copy_whole(log: &Log, new: &Path) -> Result<Option<ClosedLog>, NewLogError> {
             added => added?,
         }
     }
-    let copy = good.close(log.commits())?;
-    let reads_alike = copy.read().is_ok_and(|copy| {
-        copy.commits() == log.commits() && copy.last_commit() == log.last_commit() && copy.problems().is_empty()
-    });
-    Ok(reads_alike.then_some(copy))
+    good.close(log.commits()).map(Some)
 }
 
 /// What a copy of a log lacks, which was read to its end.

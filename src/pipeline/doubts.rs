@@ -105,8 +105,8 @@ impl Doubts<'_> {
             });
         }
         // Near a critical point the halved mesh may lead anywhere.
-        let is_vague = looked != Looked::AtEnd || halving.is_still() || self.scene.probes.is_empty();
-        if is_vague { None } else { self.probe_off(halved) }
+        let are_read = looked == Looked::AtEnd && !self.scene.probes.is_empty();
+        if are_read { self.probe_off(halved) } else { None }
     }
 
     /// A probe that reads otherwise at the equilibrium of the halved mesh. To first order is not enough: what is left out of
