@@ -3,7 +3,10 @@
 //! | file | what |
 //! |---|---|
 //! | `stages` | the stages |
-//! | `load_solve`, `path_solve` | solve by load, and by arc length |
+//! | `step` | a step of a drive: what every drive does alike |
+//! | `load_drive`, `path_drive` | steps by load, and by arc length |
+//! | `branch_switch` | from an unstable equilibrium to a stable one |
+//! | `mesh_in_hand` | what is kept of the meshes that stages meet |
 //! | `step_control`, `path_control` | how far the next step goes |
 //! | `run` | the loop |
 //! | `sink` | where stages go |
