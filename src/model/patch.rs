@@ -38,23 +38,19 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     Ok(mesh)
 }
 
-/// An edge that a section holds, turning the normal with it, takes two rows of control points; where the edge across takes two
-/// of three as well (or ties them, as a plane of symmetry does), nothing is left to bend, or one of the sections loses its hold.
+/// An edge that a section holds, turning the normal with it, takes two rows of control points; where that across takes two of
+/// three as well, one of the sections loses its hold.
 fn check_rows(scene: &Scene, shape: &Shape) -> Result<(), ModelError> {
-    let held = |way: usize, at_end: bool| {
-        let holds = scene.supports.iter().filter_map(move |support| match support.on {
-            Place::Edge(edge) if side(edge) == (way, at_end) => Some(&support.hold),
-            _ => None,
-        });
-        let turns = |hold: &&Hold| matches!(hold, Hold::Rigid { normals_turn: true, .. });
-        let ties = |hold: &&Hold| matches!(hold, Hold::Symmetric);
-        (holds.clone().any(|hold| turns(&hold)), holds.clone().any(|hold| ties(&hold)))
+    let is_held = |way: usize, at_end: bool| {
+        scene.supports.iter().any(|support| {
+            let turns = matches!(support.hold, Hold::Rigid { normals_turn: true, .. });
+            turns && matches!(support.on, Place::Edge(edge) if side(edge) == (way, at_end))
+        })
     };
     for way in 0..2 {
-        let [(one, one_tied), (other, other_tied)] = [held(way, false), held(way, true)];
         let (elements, degree) = (shape.elements[way], scene.mesh.degree[way]);
         let rows = elements + degree;
-        if rows < 4 && ((one && (other || other_tied)) || (other && one_tied)) {
+        if rows < 4 && is_held(way, false) && is_held(way, true) {
             let along = ["u", "v"][way];
             return Err(ModelError::TooFewRows { along, elements, degree, rows, least: 4 - degree });
         }

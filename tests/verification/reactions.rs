@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use foldline::model::ModelError;
 use foldline::pipeline::{MemorySink, Run, Stages};
 use foldline::scene::{Edge, History, Hold, Place, Scene, Support, parse};
 
@@ -418,4 +419,24 @@ fn a_section_keeps_its_distance_from_ties() {
     let error = arch(2).unwrap_err().to_string();
     assert!(error.contains("a joint of the surface and the rigid section \"end\""), "{error}");
     assert!(arch(4).is_ok());
+}
+
+/// Sections on two edges that one element of degree 2 joins: three rows of control points for the four that they take.
+#[test]
+fn sections_that_share_a_row_are_refused() {
+    let scene = |elements: usize| {
+        let text = format!(
+            r#"
+            geometry = {{ kind = "plate", length_mm = 10, width_mm = 1 }}
+            material = {{ kind = "isotropic", youngs_modulus_mpa = 1000, poissons_ratio = 0, thickness_mm = 0.1 }}
+            mesh = {{ degree = 2, elements = [{elements}, 1] }}
+            load = {{ kind = "steps", increment = 1 }}
+            support = [{{ on = "u-start", kind = "clamped" }}, {{ on = "u-end", kind = "rigid", z_mm = 0.01 }}]
+            "#
+        );
+        Stages::new(parse(&text, "strip.toml").unwrap()).start()
+    };
+    let refused = scene(1).unwrap_err();
+    assert!(matches!(refused, ModelError::TooFewRows { along: "u", rows: 3, least: 2, .. }), "{refused}");
+    assert!(scene(2).is_ok());
 }
