@@ -13,7 +13,7 @@
 //! | `workspace` | tables, matrix and factor for one mesh |
 //! | `iterate` | what is known of a solve under way |
 //! | `force_scale` | what a residual is compared with |
-//! | `ledger` | the balance of energy of a solve |
+//! | `ledger`, `balance` | the energies of a solve, from its start, and at its end |
 //! | `descent` | Newton's method as a descent on the energy |
 //! | `newton` | equilibrium at a value of the parameter |
 //! | `equations`, `continuation` | equilibrium along a path |
@@ -23,6 +23,7 @@
 //! | `timing` | the pieces of an iteration one by one |
 
 mod assembly;
+mod balance;
 mod condition;
 mod configuration;
 mod continuation;
@@ -48,6 +49,7 @@ mod vector;
 mod workspace;
 
 pub use assembly::{Assembled, Part, Want, strain_energy};
+pub use balance::Balance;
 pub use condition::Condition;
 pub use configuration::{Configuration, Standing};
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};

@@ -1,10 +1,12 @@
 //! What a solve leaves.
 
+use crate::equilibrium::balance::Balance;
 use crate::equilibrium::configuration::Standing;
 use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::ledger::Before;
 use crate::equilibrium::vector::{length, product};
 use crate::equilibrium::workspace::{Factored, Workspace};
+use crate::model::{At, Discretization};
 use crate::scene::Scene;
 
 /// A point of equilibrium.
@@ -14,15 +16,8 @@ pub struct Solved {
     pub displacement: Vec<[f64; 3]>,
     /// Rotation vectors of the rigid sections where one of them turns freely, radians.
     pub turns: Vec<[f64; 3]>,
-    /// Strain energy of the whole shell, N·mm.
-    pub energy: f64,
-    /// Work of loads, given motions and changes of the natural state on the whole shell since the start of the solve, N·mm: reactions, and factors of the
-    /// actions, by their means before and after; strokes of the actions along the way that the solve took.
-    pub work: f64,
-    /// What the change of the natural state would have put into the whole shell had it stayed, and at least a hundred times
-    /// what rounding of the displacement is worth, N·mm. Where a shell follows its natural state, or is carried off without
-    /// strain, this is the measure of energies, not the little that it stores.
-    pub put_in: f64,
+    /// Energies since the start of the solve.
+    pub balance: Balance,
     /// Turning ends: moment at each end of the whole shell, dΠ/dθ / 2, N·mm. Otherwise 0.
     pub moment: f64,
     /// Negative pivots of the stiffness there; 0 where the equilibrium is stable.
@@ -71,12 +66,18 @@ impl Workspace {
             Some(_) => 0.5 * parts * product(&ended.reactions, &unknowns.given_at(1.0)) * 1.0_f64.to_degrees(),
             None => 0.0,
         };
-        Solved {
-            energy: parts * last.energy,
+        let Discretization { mesh, terms, .. } = &self.discretization;
+        let of_terms = terms.energies(At { mesh, displacement: &ended.displacement, parameter });
+        let balance = Balance {
+            stored: parts * last.energy,
+            of_terms: of_terms.into_iter().map(|energy| parts * energy).collect(),
             work: parts
                 * (before.work(&self.discretization, parameter, &ended.reactions, &ended.strokes)
                     + 0.5 * (put_in[0] + put_in[1])),
             put_in: parts * put_in[0].abs().max(put_in[1].abs()).max(100.0 * rounding),
+        };
+        Solved {
+            balance,
             moment,
             negative_pivots: last.negative_pivots,
             residual: last.relative_residual(),

@@ -238,11 +238,11 @@ impl Tries<'_> {
             turns: solved.turns,
             parameter,
             moment_n_mm: solved.moment,
-            strain_energy_n_mm: solved.energy,
+            strain_energy_n_mm: solved.balance.stored,
             largest_force_n: solved.largest_force,
             negative_pivots: solved.negative_pivots as u64,
             ..from.clone()
         };
-        Ok((reached, solved.work))
+        Ok((reached, solved.balance.work))
     }
 }

@@ -140,6 +140,11 @@ impl Terms {
         self.list.iter().flat_map(|term| term.pairs()).collect()
     }
 
+    /// Energy that each stores in the model, N·mm.
+    pub fn energies(&self, at: At) -> Vec<f64> {
+        self.list.iter().map(|term| term.energy(at)).collect()
+    }
+
     /// Energy that they store in the model, N·mm.
     pub fn energy(&self, at: At) -> f64 {
         self.list.iter().map(|term| term.energy(at)).sum::<f64>() + 0.0

@@ -1,6 +1,6 @@
 //! Switch-branch: the way from an unstable equilibrium to a stable one at the same load.
 
-use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
+use crate::equilibrium::{Balance, Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
 use crate::pipeline::path_drive::path_on_branch;
 use crate::pipeline::step::{Step, out_of_order, settle};
 use crate::pipeline::step_control::{is_jump, known_release};
@@ -32,14 +32,15 @@ pub(super) fn switch_branch(mut step: Step) -> Result<(State, Report), StageErro
     let mut work_done = 0.0;
     for _ in 0..MOST_MODES {
         let left = leave(&mut step, &next, &mut effort).map_err(failed)?;
-        work_done += left.work;
+        work_done += left.balance.work;
         next = settle(&next, &left);
         next.drive.course = Course::Unknown;
         if next.negative_pivots == 0 {
             if let Course::Path(path) = &state.drive.course {
                 next.drive.course = Course::Path(path_on_branch(&mut step, state, &next, path).map_err(failed)?);
             }
-            let mut report = step.arrived(&next, &Solved { effort, work: work_done, ..left });
+            let mut report =
+                step.arrived(&next, &Solved { effort, balance: Balance { work: work_done, ..left.balance }, ..left });
             let released = state.strain_energy_n_mm + work_done - next.strain_energy_n_mm;
             report.jumped = is_jump(released, state.strain_energy_n_mm, next.strain_energy_n_mm);
             report.energy_released_n_mm = known_release(released);

@@ -117,9 +117,9 @@ impl Doubts<'_> {
         let [largest, side] = halved.halving().sizes_mm;
         let (work, at) = halved.relaxed();
         let solved = Equilibrium::new(scene, work).relax(at, &mut |last| last.iteration > MOST_ITERATIONS).ok()?;
-        let Solved { displacement, turns, energy, .. } = solved;
+        let Solved { displacement, turns, balance, .. } = solved;
         let at = Standing { displacement: &displacement, turns: &turns, ..Standing::of(state) };
-        let there = read_probes(scene, work, at, energy);
+        let there = read_probes(scene, work, at, balance.stored);
         let smallest = |reading: &Reading| match reading.unit.as_str() {
             "mm" => SMALL_READING * largest,
             "N" => SMALL_READING * state.largest_force_n,

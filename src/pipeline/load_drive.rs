@@ -120,7 +120,7 @@ impl Way {
         let ripples = watch.unstable && solved.negative_pivots == 0 && is_ripple(state, released);
         let bracketed = watch.unstable && state.drive.control.jump_seen_at_deg.is_some();
         let left = (ripples || bracketed) && leaves_path(state, attempt.target_deg, solved);
-        if left || is_jump(released, state.strain_energy_n_mm.max(solved.put_in), solved.energy) {
+        if left || is_jump(released, solved.balance.scale(state.strain_energy_n_mm), solved.balance.stored) {
             Way::OffPath
         } else if ripples {
             Way::OverRipple

@@ -135,7 +135,7 @@ impl PathAttempt {
     pub fn judge(&self, state: &State, path: &PathMemory, point: &ContinuedPoint) -> Judgement {
         let strays = point.turn < SHARPEST_TURN || point.chord < STRAIGHTEST_CHORD;
         let released = energy_released(state, &point.solved);
-        let energies = (state.strain_energy_n_mm.max(point.solved.put_in), point.solved.energy);
+        let energies = (point.solved.balance.scale(state.strain_energy_n_mm), point.solved.balance.stored);
         if strays || point.distance > FARTHEST * self.length_mm || is_jump(released, energies.0, energies.1) {
             return Judgement::TooFar;
         }

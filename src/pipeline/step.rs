@@ -63,8 +63,8 @@ impl Step<'_> {
             iterations: solved.effort.iterations,
             factorizations: solved.effort.factorizations,
             residual: solved.residual,
-            work_n_mm: solved.work,
-            put_in_n_mm: solved.put_in,
+            work_n_mm: solved.balance.work,
+            put_in_n_mm: solved.balance.put_in,
             probes: read_probes(scene, work, Standing::of(next), next.strain_energy_n_mm),
             ..Report::of(scene, next, work.discretization().unknowns.count())
         }
@@ -144,7 +144,7 @@ pub(super) fn settle(state: &State, solved: &Solved) -> State {
         turns: solved.turns.clone(),
         marked: Default::default(),
         moment_n_mm: solved.moment,
-        strain_energy_n_mm: solved.energy,
+        strain_energy_n_mm: solved.balance.stored,
         largest_force_n: solved.largest_force,
         negative_pivots: solved.negative_pivots as u64,
         ..state.clone()

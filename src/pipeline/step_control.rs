@@ -161,7 +161,7 @@ impl Attempt {
 /// Work of loads, given motions and changes of the natural state, from a state to an equilibrium, that did not go into strain
 /// energy, N·mm.
 pub fn energy_released(state: &State, solved: &Solved) -> f64 {
-    state.strain_energy_n_mm + solved.work - solved.energy
+    solved.balance.dissipated(state.strain_energy_n_mm)
 }
 
 /// Energy that left the balance, where it can be right: what a shell releases is never negative, so that what is comes from the

@@ -1,7 +1,7 @@
 //! Each row of the table, and paths made up with a critical point on them.
 
 use super::*;
-use crate::equilibrium::{Direction, Effort, Solved};
+use crate::equilibrium::{Balance, Direction, Effort, Solved};
 use crate::scene::{ArcLengthWord, Stage, parse};
 use crate::spline::Mesh;
 
@@ -42,9 +42,7 @@ fn point(distance: f64, turn: f64, rate: f64, negative_pivots: usize, iterations
         solved: Solved {
             displacement: vec![],
             turns: vec![],
-            energy: 0.0,
-            work: 0.0,
-            put_in: 0.0,
+            balance: Balance::default(),
             moment: 0.0,
             negative_pivots,
             largest_force: 0.0,
