@@ -135,7 +135,7 @@ fn moment_is_the_derivative_of_the_energy_with_respect_to_the_rotation() {
         let step = 1e-3;
         let (before, after) =
             (solve(&middle.displacement, 1.0, 1.0 - step), solve(&middle.displacement, 1.0, 1.0 + step));
-        let slope = (after.energy - before.energy) / (2.0 * step).to_radians();
+        let slope = (after.balance.stored - before.balance.stored) / (2.0 * step).to_radians();
         assert!((0.5 * slope / middle.moment - 1.0).abs() < 1e-7, "{symmetry:?}: {} {}", 0.5 * slope, middle.moment);
     }
 }

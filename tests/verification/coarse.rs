@@ -116,7 +116,7 @@ fn halving_is_foreseen() {
     let mut work = Workspace::new(&scene, &finer).unwrap();
     let at = Standing { displacement: &displacement, ..Standing::of(&state) };
     let found = Equilibrium::new(&scene, &mut work).relax(at, &mut |_| false).unwrap();
-    let model = found.energy / scene.symmetry.copies() as f64;
+    let model = found.balance.stored / scene.symmetry.copies() as f64;
     let released = foreseen.integrated - model;
     assert!(released > 0.0 && (foreseen.released / released - 1.0).abs() < 0.02, "{} {released}", foreseen.released);
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use foldline::equilibrium::{Assembled, Standing, Want, Workspace};
+use foldline::equilibrium::{Assembled, Balance, Equilibrium, Standing, Want, Workspace};
 use foldline::model::{At, ModelError, Tables, Tangent, Term, TermSource, starting_mesh};
 use foldline::pipeline::{MemorySink, Record, Run, Stages};
 use foldline::scene::{Scene, parse};
@@ -218,6 +218,33 @@ fn it_stands_in_the_sums() {
     let scale = product(&exact, &exact).sqrt();
     let off: Vec<[f64; 3]> = exact.iter().zip(&found).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect();
     assert!(product(&off, &off).sqrt() < 1e-6 * scale);
+}
+
+/// A solve under a force says what the shell stores and what the foundation does, and that force did both.
+#[test]
+fn the_balance_of_a_solve_tells_it_apart() {
+    let scene = strip(
+        10.0,
+        3,
+        r#"load = { kind = "steps", increment = 1 }
+        support = [{ on = "u-start", kind = "clamped" }]
+        action = [{ kind = "line-force", on = "u-end", force_n_per_mm = [0, 0, 0.01] }]"#,
+    );
+    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(3.0))];
+    let mesh = Arc::new(starting_mesh(&scene).unwrap());
+    let mut work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
+    let still = vec![[0.0; 3]; mesh.control_points.len()];
+    let rest = Standing { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
+    let solved = Equilibrium::new(&scene, &mut work).advance(rest, 1.0, &mut |_| false).unwrap();
+    let Balance { stored, of_terms, work: done, .. } = &solved.balance;
+    // The force, which stores nothing, is the first term.
+    let [0.0, bed] = of_terms[..] else { panic!("{of_terms:?}") };
+    let at = At { mesh: &mesh, displacement: &solved.displacement, parameter: 1.0 };
+    let shell = work.energy(&solved.displacement, 1.0) - work.discretization().terms.energy(at);
+    assert!(bed > 0.1 * stored && shell > 0.0, "{bed} {shell}");
+    assert!(((bed + shell) / stored - 1.0).abs() < 1e-12);
+    // The means of the factors make of work over a straight way what a linear shell stores.
+    assert!((done / stored - 1.0).abs() < 1e-3, "{done} {stored}");
 }
 
 /// What a run is made with stands in its hashes.
