@@ -42,7 +42,8 @@ impl BlockPattern {
             for (a, one) in controls.iter().enumerate() {
                 for other in &controls[a..] {
                     let [i, j] = [*one.min(other), *one.max(other)];
-                    let slot = self.block(i, j).unwrap_or_default() - self.starts[i];
+                    let Some(block) = self.block(i, j) else { unreachable!("control points of an element meet") };
+                    let slot = block - self.starts[i];
                     assert!(slot <= u16::MAX as usize, "control point {i} meets more than 65,535 others");
                     slots.places.push(slot as u16);
                 }

@@ -32,7 +32,17 @@ pub struct Strand {
 impl Connectivity {
     /// Of elements with these control points, in strands of so many elements. Strand k takes the first colour that is free for
     /// it, beginning with k modulo `cycle`.
+    ///
+    /// # Panics
+    /// Where the strands have not all of the elements, or an element has a control point twice: its blocks would be lost.
     pub fn new(points: usize, elements: &[Vec<usize>], strand_lengths: &[usize], cycle: usize) -> Self {
+        assert_eq!(strand_lengths.iter().sum::<usize>(), elements.len(), "every element is in one strand");
+        let is_plain = |element: &Vec<usize>| {
+            let mut sorted = element.clone();
+            sorted.sort_unstable();
+            sorted.windows(2).all(|pair| pair[0] < pair[1])
+        };
+        assert!(elements.iter().all(is_plain), "an element has no control point twice");
         let of_elements = starts(elements.iter().map(Vec::len));
         let controls: Vec<usize> = elements.concat();
         let firsts = starts(strand_lengths.iter().copied());

@@ -19,7 +19,8 @@ pub struct At<'a> {
 }
 
 /// An energy, or forces without one, on one mesh. What stores energy exerts the forces −∂E/∂u; what does work on the shell
-/// stores none, and says what it does by strokes. Both have a tangent, and say nothing of stiffness or equilibrium.
+/// stores none, and says what it does by strokes. A stored energy may not depend on the parameter: nothing counts what that would
+/// put in. What a term stores is part of what states and reports call strain energy.
 pub trait Term: Debug + Send + Sync {
     /// Pairs of control points that it couples though they share no element.
     fn pairs(&self) -> Vec<[usize; 2]> {
