@@ -196,22 +196,36 @@ pub fn element_strains(
 }
 
 /// The largest magnitude of a Green–Lagrange strain along u or v in a surface of the shell (membrane strain and half the
-/// thickness times the bending strain), and the middle of the element where it is, as parameters (u, v).
+/// thickness times the bending strain), and where it is.
 pub fn largest_strain(
     discretization: &Discretization,
     displacement: &[[f64; 3]],
     thickness_mm: f64,
 ) -> (f64, [f64; 2]) {
+    largest_along(discretization, displacement, |strains, axis| {
+        strains.membrane[axis].abs() + 0.5 * thickness_mm * strains.bending[axis].abs()
+    })
+}
+
+/// The largest magnitude of the bending strain along u or v, 1/mm, and where it is.
+pub fn largest_bending_strain(discretization: &Discretization, displacement: &[[f64; 3]]) -> (f64, [f64; 2]) {
+    largest_along(discretization, displacement, |strains, axis| strains.bending[axis].abs())
+}
+
+/// The largest physical value along u or v of what `of` makes of the strains in the parameter basis, and the middle of the element
+/// where it is, as parameters (u, v).
+fn largest_along(
+    discretization: &Discretization,
+    displacement: &[[f64; 3]],
+    of: impl Fn(&Strains, usize) -> f64 + Sync,
+) -> (f64, [f64; 2]) {
     let elements = discretization.tables.elements;
     let of_element = |element: usize| {
         let points = element_strains(discretization, displacement, element);
-        let values = points.iter().flat_map(|(strains, lengths)| {
-            [0, 1].map(|axis| {
-                let of_surface = strains.membrane[axis].abs() + 0.5 * thickness_mm * strains.bending[axis].abs();
-                of_surface / (lengths[axis] * lengths[axis])
-            })
-        });
-        values.fold(0.0, f64::max)
+        let physical = |(strains, lengths): &(Strains, [f64; 2])| {
+            [0, 1].map(|axis| of(strains, axis) / (lengths[axis] * lengths[axis]))
+        };
+        points.iter().flat_map(physical).fold(0.0, f64::max)
     };
     let values: Vec<f64> = (0..elements.len()).into_par_iter().map(of_element).collect();
     let largest =

@@ -11,5 +11,7 @@ mod indicators;
 mod refinement;
 
 pub use halving::{Halved, Halving};
-pub use indicators::{Blocked, Indicators, element_strains, evaluate_indicators, largest_strain};
+pub use indicators::{
+    Blocked, Indicators, element_strains, evaluate_indicators, largest_bending_strain, largest_strain,
+};
 pub use refinement::project_displacements;

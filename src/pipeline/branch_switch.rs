@@ -39,9 +39,9 @@ pub(super) fn switch_branch(mut step: Step) -> Result<(State, Report), StageErro
             if let Course::Path(path) = &state.drive.course {
                 next.drive.course = Course::Path(path_on_branch(&mut step, state, &next, path).map_err(failed)?);
             }
-            let mut report =
-                step.arrived(&next, &Solved { effort, balance: Balance { work: work_done, ..left.balance }, ..left });
-            let released = state.strain_energy_n_mm + work_done - next.strain_energy_n_mm;
+            let balance = Balance { work: work_done, ..left.balance };
+            let released = balance.dissipated(state.strain_energy_n_mm);
+            let mut report = step.arrived(&next, &Solved { effort, balance, ..left });
             report.jumped = is_jump(released, state.strain_energy_n_mm, next.strain_energy_n_mm);
             report.energy_released_n_mm = known_release(released);
             return Ok((next, report));

@@ -1,6 +1,6 @@
 //! The scene's probes at an equilibrium.
 
-use crate::adapt::element_strains;
+use crate::adapt::largest_bending_strain;
 use crate::equilibrium::{Configuration, Standing, Workspace};
 use crate::model::{
     At, Discretization, Exerted, Placement, Site, Terms, control_expressions, direction_at, line_place, parameters_of,
@@ -8,7 +8,7 @@ use crate::model::{
 use crate::pipeline::Reading;
 use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene, SurfaceDirection};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
-use crate::spline::{Spans, mid_surface_point};
+use crate::spline::mid_surface_point;
 
 /// Reads every probe of a scene at an equilibrium; `energy` is the strain energy of the model.
 pub fn read_probes(scene: &Scene, work: &mut Workspace, at: Standing, energy: f64) -> Vec<Reading> {
@@ -45,7 +45,7 @@ impl Reader<'_> {
             ProbeKind::SectionMoment { on, component } => (self.section_moment(*on, *component), "N·mm", None),
             ProbeKind::Energy => (self.energy, "N·mm", None),
             ProbeKind::BendingStrain => {
-                let (value, at) = self.largest_bending_strain();
+                let (value, at) = largest_bending_strain(self.discretization, self.at.displacement);
                 (value, "1/mm", Some(at))
             }
         };
@@ -134,28 +134,5 @@ impl Reader<'_> {
             Axis::Y => moment[1],
             Axis::Z => moment[2],
         }
-    }
-
-    /// Largest magnitude of the bending strain along u or v, and the middle of the element where it is.
-    fn largest_bending_strain(&self) -> (f64, [f64; 2]) {
-        let mesh = &self.discretization.mesh;
-        let tables = &self.discretization.tables;
-        let mut best = (0.0, 0);
-        for element in 0..tables.elements.len() {
-            for (strains, lengths) in element_strains(self.discretization, self.at.displacement, element) {
-                for axis in 0..2 {
-                    let value = strains.bending[axis].abs() / (lengths[axis] * lengths[axis]);
-                    if value > best.0 {
-                        best = (value, element);
-                    }
-                }
-            }
-        }
-        let place = tables.elements.place(best.1);
-        let middle = |way: usize| {
-            let [from, to] = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds[place[way]];
-            0.5 * (from + to)
-        };
-        (best.0, [middle(0), middle(1)])
     }
 }
