@@ -23,15 +23,15 @@ pub(super) struct Checkpoint {
     pub stretches: Stretches,
     /// The mesh that its state stands on; not there where that was thinned out.
     pub mesh: Option<StoredPiece>,
-    /// The displacements of its state; not there where those were thinned out.
-    pub displacement: Option<StoredPiece>,
+    /// The fields of its state; not there where they were thinned out.
+    pub fields: Vec<StoredPiece>,
     /// The words that the log was thinned with.
     pub thinned: Option<String>,
     /// The last commit before it that has its state.
     pub kept_before: Option<usize>,
 }
 
-/// A mesh or displacements in a log: hash, place, and the bytes of the message.
+/// A mesh or a field in a log: hash, place, and the bytes of the message.
 pub(super) type StoredPiece = (Hash, u64, Vec<u8>);
 
 impl Checkpoint {
@@ -51,7 +51,7 @@ impl Checkpoint {
             channels: ledger.channels_described(),
             stretches: log.stretches.up_to(ordinal),
             mesh: piece(&log.meshes, entry.mesh_hash),
-            displacement: piece(&log.displacements, entry.displacement_hash),
+            fields: entry.fields.iter().filter_map(|hash| piece(&log.fields, *hash)).collect(),
             thinned: log.thinned.clone(),
             kept_before: log.kept_before(ordinal as usize),
         })

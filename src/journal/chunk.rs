@@ -8,11 +8,13 @@ use mcap::records::{self, Record as McapRecord};
 
 use super::damage::Damage;
 use super::format::{
-    CHANNEL_BYTES_LIMIT, CHANNELS_LIMIT, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC,
-    FORMAT_VERSION, MESH_TOPIC, REPORT_BYTES_LIMIT, REPORT_TOPIC, SCHEMA_BYTES_LIMIT, SCHEMAS_LIMIT, STATE_TOPIC,
+    CHANNEL_BYTES_LIMIT, CHANNELS_LIMIT, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FIELDS_LIMIT,
+    FINISHED_TOPIC, FORMAT_VERSION, MESH_TOPIC, REPORT_BYTES_LIMIT, REPORT_TOPIC, SCHEMA_BYTES_LIMIT, SCHEMAS_LIMIT,
+    STATE_TOPIC,
 };
 use super::frame::{self, CHUNK_HEADER_LEN, Frame, op};
 use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, ReportMessage, unseal};
+use crate::state::Hash;
 
 /// Bytes of a message record in front of its data: channel, sequence and two times.
 pub(super) const MESSAGE_HEADER_LEN: usize = 2 + 4 + 8 + 8;
@@ -42,8 +44,8 @@ pub(super) struct CommitContent {
     pub state: Option<Range<usize>>,
     /// Bytes of the mesh in the log, where this chunk holds one.
     pub mesh: Option<Range<usize>>,
-    /// Bytes of the displacements in the log, where this chunk holds them; they have the hash that the commit names.
-    pub displacement: Option<Range<usize>>,
+    /// Fields in this chunk: hash, one of those that the commit names, and bytes in the log.
+    pub fields: Vec<(Hash, Range<usize>)>,
 }
 
 /// The records of a chunk, one after the other, once they were found to fill it exactly. They are walked over, not listed: a
@@ -214,18 +216,26 @@ fn content<'c>(bytes: &[u8], messages: impl Iterator<Item = Message<'c>> + Clone
     }
     let commit: CommitMessage = unseal(data).map_err(Damage::Commit)?;
     known_format(commit.format)?;
-    named_messages(bytes, before.clone(), &commit.messages)?;
+    if commit.fields().count() > FIELDS_LIMIT {
+        return Err(Damage::OtherFields);
+    }
+    let mut fields = Vec::new();
+    named_messages(bytes, before.clone(), &commit.messages, |hash, message| {
+        if message.topic != DISPLACEMENT_TOPIC {
+            return Ok(());
+        }
+        if fields.len() == FIELDS_LIMIT || commit.fields().all(|named| named != hash) {
+            return Err(Damage::OtherFields);
+        }
+        fields.push((hash, message.data));
+        Ok(())
+    })?;
     if !commit.messages.iter().any(|named| named.topic == STATE_TOPIC) {
         return Err(missing(STATE_TOPIC));
     }
     let state = one(before.clone(), STATE_TOPIC, "exactly one")?;
     let report = one(before.clone(), REPORT_TOPIC, "exactly one")?.ok_or(missing(REPORT_TOPIC))?;
-    let mesh = one(before.clone(), MESH_TOPIC, "at most one")?;
-    let displacement = one(before, DISPLACEMENT_TOPIC, "at most one")?;
-    let named = commit.messages.iter().find(|message| message.topic == DISPLACEMENT_TOPIC);
-    if named.is_some_and(|named| named.blake3 != commit.displacement_hash) {
-        return Err(Damage::OtherDisplacement);
-    }
+    let mesh = one(before, MESH_TOPIC, "at most one")?;
     if report.len() > REPORT_BYTES_LIMIT {
         return Err(Damage::ReportTooLarge { bytes: report.len() as u64 });
     }
@@ -234,32 +244,35 @@ fn content<'c>(bytes: &[u8], messages: impl Iterator<Item = Message<'c>> + Clone
     if !same_stage || report.state_hash != commit.state_hash || report.chain_hash != commit.chain_hash {
         return Err(Damage::OtherReport);
     }
-    Ok(Content::Commit(Box::new(CommitContent { commit, report, state, mesh, displacement })))
+    Ok(Content::Commit(Box::new(CommitContent { commit, report, state, mesh, fields })))
 }
 
-/// Checks that the messages of a chunk are those that its commit names, in their order. States, meshes and displacements may
-/// be left out.
+/// Checks that the messages of a chunk are those that its commit names, in their order, and shows each with its hash. States,
+/// meshes and fields may be left out.
 fn named_messages<'c>(
     bytes: &[u8],
     messages: impl Iterator<Item = Message<'c>>,
     named: &[MessageHash],
+    mut see: impl FnMut(Hash, Message<'c>) -> Result<(), Damage>,
 ) -> Result<(), Damage> {
     let may_be_left_out = |topic: &str| [STATE_TOPIC, MESH_TOPIC, DISPLACEMENT_TOPIC].contains(&topic);
     let mut expected = named.iter();
     let mut found = 0;
-    for (index, Message { topic, data }) in messages.enumerate() {
+    for (index, message) in messages.enumerate() {
+        let Message { topic, data } = &message;
         found += 1;
         let hash = HexHash(blake3::hash(&bytes[data.clone()]));
-        let other = || Damage::OtherMessage { index, topic: topic.to_owned() };
+        let other = || Damage::OtherMessage { index, topic: (*topic).to_owned() };
         loop {
             let next = expected.next().ok_or_else(other)?;
-            if next.topic == topic && next.bytes == data.len() as u64 && next.blake3 == hash {
+            if next.topic == *topic && next.bytes == data.len() as u64 && next.blake3 == hash {
                 break;
             }
-            if next.topic == topic || !may_be_left_out(&next.topic) {
+            if next.topic == *topic && *topic != DISPLACEMENT_TOPIC || !may_be_left_out(&next.topic) {
                 return Err(other());
             }
         }
+        see(hash.0, message)?;
     }
     match expected.all(|left| may_be_left_out(&left.topic)) {
         true => Ok(()),

@@ -1,29 +1,28 @@
 //! States and meshes as bytes: a version byte, then bincode (little endian, fixed-width integers, no maps).
 //!
-//! Each version has structs of its own, so that a change of [`State`] cannot change how old logs are read. Mesh and
-//! displacements lie apart from the state and are named in it: the mesh by its content hash, the displacements by the
-//! hash of their bytes. Nothing decoded leaves this file before its content
+//! Each version has structs of its own, so that a change of [`State`] cannot change how old logs are read. The mesh and the
+//! fields (vectors at the control points: displacements, those of the equilibrium before, the heading of a path) lie apart from
+//! the state and are named in it: the mesh by its content hash, a field by the hash of its bytes. So a solve writes its
+//! displacements, and those of the equilibrium before are there already. Nothing decoded leaves this file before its content
 //! hash is what the commit says and [`soundness`](super::soundness) has passed it.
 
+mod older;
 mod versions;
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use self::versions::{
-    DisplacementV1, MeshV1, PathV3, RefinementV6, RejectionV1, StageV1, StateV1, StateV2, StateV3, StateV4, StateV5,
-    StateV6,
-};
-use super::format::CHUNK_BYTES_LIMIT;
+use self::older::{Older, decode_older};
+use self::versions::{CourseV7, FieldV1, MeshV1, RefinementV6, RejectionV1, StageV1, StateV7};
+use super::format::{CHUNK_BYTES_LIMIT, FIELDS_LIMIT};
 use super::soundness::{Flaw, check_mesh, check_on_mesh, check_state};
 use crate::digest::extend_with_numbers;
 use crate::scene::Stage;
-use crate::state::{Course, DriveMemory, Hash, Mesh, Previous, Rejection, State, StepControl};
+use crate::state::{DriveMemory, Hash, Mesh, Rejection, State, StepControl};
 use serde::{Deserialize, Serialize};
 
-/// The newest version that is written, in front of every state and mesh. A state is written in the oldest version that
-/// holds it.
-pub const CODEC_VERSION: u8 = 6;
+/// The version in which states are written, in front of each of them.
+pub const CODEC_VERSION: u8 = 7;
 
 /// Why bytes are not a state or a mesh that can be used.
 #[derive(Debug, thiserror::Error)]
@@ -67,11 +66,17 @@ pub enum CodecError {
         /// Mesh that the state names.
         found: Hash,
     },
-    /// The state names displacements that the log does not hold.
-    #[error("the state has displacements {hash}, which the log does not hold")]
-    NoDisplacement {
-        /// Hash of their bytes.
+    /// The state names a field that the log does not hold.
+    #[error("the state has a field {hash} on its control points, which the log does not hold")]
+    NoField {
+        /// Hash of its bytes.
         hash: Hash,
+    },
+    /// The state names more or fewer fields than it has.
+    #[error("the state names {found} fields, and it has its displacements and at most one of its course")]
+    FieldCount {
+        /// Those that it names.
+        found: usize,
     },
     /// Decoded, but not the content that was committed.
     #[error("the {what} hashes to {found}, and its commit says {expected}")]
@@ -115,13 +120,12 @@ fn decode<T: for<'de> Deserialize<'de>>(version: u8, bytes: &[u8]) -> Result<T, 
     }
 }
 
-/// What [`encode`] makes of [`DisplacementV1`], in a tenth of the time: they are nearly all of most logs.
-fn encode_displacements(displacements: [&[[f64; 3]]; 2]) -> Vec<u8> {
-    let count: usize = displacements.iter().map(|vectors| vectors.len()).sum();
-    let mut bytes = Vec::with_capacity(1 + 8 + size_of::<[f64; 3]>() * count);
+/// What [`encode`] makes of [`FieldV1`], in a tenth of the time: fields are nearly all of most logs.
+fn encode_field(vectors: &[[f64; 3]]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(1 + 8 + size_of_val(vectors));
     bytes.push(1);
-    bytes.extend((count as u64).to_le_bytes());
-    displacements.iter().for_each(|vectors| extend_with_numbers(&mut bytes, vectors.as_flattened()));
+    bytes.extend((vectors.len() as u64).to_le_bytes());
+    extend_with_numbers(&mut bytes, vectors.as_flattened());
     bytes
 }
 
@@ -149,15 +153,31 @@ pub fn decode_mesh(bytes: &[u8], expected: Hash) -> Result<Mesh, CodecError> {
     Ok(mesh)
 }
 
-/// A state as bytes, in two messages.
+/// A vector at every control point, as bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EncodedField {
+    /// Hash of the bytes.
+    pub hash: Hash,
+    /// The field.
+    pub bytes: Vec<u8>,
+}
+
+impl EncodedField {
+    /// The field as bytes. Those that are known already need not be hashed again, which takes longer than to compare them.
+    fn of(vectors: &[[f64; 3]], known: &[EncodedField]) -> Self {
+        let bytes = encode_field(vectors);
+        let known = known.iter().find(|known| known.bytes == bytes);
+        Self { hash: known.map_or_else(|| blake3::hash(&bytes), |known| known.hash), bytes }
+    }
+}
+
+/// A state as bytes, in several messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncodedState {
-    /// The state, which names its mesh and its displacements by hash.
+    /// The state, which names its mesh and its fields by hash.
     pub state: Vec<u8>,
-    /// The displacements.
-    pub displacement: Vec<u8>,
-    /// Hash of the bytes of the displacements.
-    pub displacement_hash: Hash,
+    /// Its displacements, and what its course has: those of the equilibrium before, or the heading of the path.
+    pub fields: Vec<EncodedField>,
 }
 
 /// A state as bytes, without its mesh.
@@ -166,11 +186,11 @@ pub struct EncodedState {
 /// Where the state is unsound or larger than a log can hold.
 pub fn encode_state(state: &State) -> Result<EncodedState, CodecError> {
     check_mesh(&state.mesh)?;
-    encode_state_on(state, state.mesh.hash())
+    encode_state_on(state, state.mesh.hash(), &[])
 }
 
-/// The same where the hash of its mesh is known, and the mesh is sound.
-pub(super) fn encode_state_on(state: &State, mesh: Hash) -> Result<EncodedState, CodecError> {
+/// The same where the hash of its mesh is known, and the mesh is sound; fields are likely to be among those that are `known`.
+pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField]) -> Result<EncodedState, CodecError> {
     check_on_mesh(state)?;
     let State {
         mesh: _,
@@ -188,18 +208,12 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash) -> Result<EncodedState,
         largest_force_n,
         refinement,
     } = state;
-    let (path, previous) = match course {
-        Course::Unknown => (None, None),
-        Course::Load(previous) => (None, Some(previous)),
-        Course::Path(path) => (Some(path), None),
-    };
-    let (previous_displacement, previous_parameter) =
-        previous.map(|Previous { displacement, parameter }| (&displacement[..], *parameter)).unzip();
-    let displacement = encode_displacements([displacement, previous_displacement.unwrap_or(&[])]);
-    let displacement_hash = blake3::hash(&displacement);
-    let base = StateV1 {
+    let (course, field) = CourseV7::of(course);
+    let fields = [Some(&displacement[..]), field].into_iter().flatten();
+    let fields: Vec<EncodedField> = fields.map(|vectors| EncodedField::of(vectors, known)).collect();
+    let stored = StateV7 {
         mesh: *mesh.as_bytes(),
-        displacement: *displacement_hash.as_bytes(),
+        fields: fields.iter().map(|field| *field.hash.as_bytes()).collect(),
         marked: marked.each_ref().map(Cow::from),
         refined: refined.as_deref().map(MeshV1::of),
         step: *step,
@@ -212,10 +226,11 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash) -> Result<EncodedState,
             Stage::SwitchBranch => StageV1::SwitchBranch,
         }),
         parameter: *parameter,
+        turns: Cow::from(turns),
         moment_n_mm: *moment_n_mm,
         strain_energy_n_mm: *strain_energy_n_mm,
         negative_pivots: *negative_pivots,
-        halvings: halvings.max(&0).unsigned_abs(),
+        halvings: *halvings,
         jump_seen_at_deg: *jump_seen_at_deg,
         rejection: rejection.map(|rejection| match rejection {
             Rejection::NoEquilibrium => RejectionV1::NoEquilibrium,
@@ -223,86 +238,48 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash) -> Result<EncodedState,
             Rejection::CriticalPoint => RejectionV1::CriticalPoint,
             Rejection::SharpTurn => RejectionV1::SharpTurn,
         }),
+        course,
+        largest_force_n: *largest_force_n,
+        refinement: refinement.map(RefinementV6::of),
     };
-    let has_path = path.is_some();
-    let after = StateV3 { base, turns: Cow::from(turns), path: path.map(PathV3::of) };
-    let doublings = halvings.min(&0).unsigned_abs();
-    let state = if *largest_force_n != 0.0 || refinement.is_some() {
-        let refinement = refinement.map(RefinementV6::of);
-        let after = StateV5 { after, previous_parameter, doublings };
-        encode(6, &StateV6 { after, largest_force_n: *largest_force_n, refinement })?
-    } else if doublings > 0 {
-        encode(5, &StateV5 { after, previous_parameter, doublings })?
-    } else if let Some(previous_parameter) = previous_parameter {
-        encode(4, &StateV4 { after, previous_parameter })?
-    } else if has_path || *stage == Some(Stage::SwitchBranch) {
-        encode(3, &after)?
-    } else if !turns.is_empty() {
-        encode(2, &StateV2 { base: after.base, turns: after.turns })?
-    } else {
-        encode(1, &after.base)?
-    };
-    Ok(EncodedState { state, displacement, displacement_hash })
+    Ok(EncodedState { state: encode(CODEC_VERSION, &stored)?, fields })
 }
 
 /// The state that the bytes hold, if it stands on `mesh` (whose content hash is `mesh_hash`), its content hash is
-/// `expected` and it is sound. `displacement` finds the bytes of displacements by their hash.
+/// `expected` and it is sound. `field` finds the bytes of fields by their hash.
 ///
 /// # Errors
 /// Where the bytes are anything else.
 pub fn decode_state<'a>(
     bytes: &[u8],
-    displacement: impl FnOnce(Hash) -> Option<&'a [u8]>,
+    field: impl Fn(Hash) -> Option<&'a [u8]>,
     mesh: Arc<Mesh>,
     mesh_hash: Hash,
     expected: Hash,
 ) -> Result<State, CodecError> {
-    let fifth = |after| StateV6 { after, largest_force_n: 0.0, refinement: None };
-    let third = |after| fifth(StateV5 { after, previous_parameter: None, doublings: 0 });
-    let stored = match bytes.first() {
-        Some(6) => decode(6, bytes)?,
-        Some(5) => fifth(decode(5, bytes)?),
-        Some(4) => {
-            let StateV4 { after, previous_parameter } = decode(4, bytes)?;
-            fifth(StateV5 { after, previous_parameter: Some(previous_parameter), doublings: 0 })
-        }
-        Some(3) => third(decode(3, bytes)?),
-        Some(2) => {
-            let StateV2 { base, turns } = decode(2, bytes)?;
-            third(StateV3 { base, turns, path: None })
-        }
-        _ => third(StateV3 { base: decode(1, bytes)?, turns: Cow::default(), path: None }),
+    let Older { state: stored, heading } = match bytes.first() {
+        Some(&CODEC_VERSION) => Older { state: decode(CODEC_VERSION, bytes)?, heading: None },
+        _ => decode_older(bytes)?,
     };
-    let StateV6 { after: StateV5 { after, previous_parameter, doublings }, largest_force_n, refinement } = stored;
-    let StateV3 { base: stored, turns, path } = after;
     let found = Hash::from_bytes(stored.mesh);
     if found != mesh_hash {
         return Err(CodecError::OtherMesh { expected: mesh_hash, found });
     }
-    let hash = Hash::from_bytes(stored.displacement);
-    let DisplacementV1(displacement) = decode(1, displacement(hash).ok_or(CodecError::NoDisplacement { hash })?)?;
-    let mut displacement = displacement.into_owned();
-    let previous = previous_parameter.map(|parameter| {
-        let own = displacement.len() / 2;
-        Previous { displacement: displacement.split_off(own), parameter }
+    if stored.fields.is_empty() || stored.fields.len() > FIELDS_LIMIT {
+        return Err(CodecError::FieldCount { found: stored.fields.len() });
+    }
+    let fields = stored.fields.iter().map(|hash| {
+        let hash = Hash::from_bytes(*hash);
+        let FieldV1(vectors) = decode(1, field(hash).ok_or(CodecError::NoField { hash })?)?;
+        Ok(vectors.into_owned())
     });
-    let course = match (path, previous) {
-        (None, None) => Course::Unknown,
-        (None, Some(previous)) => Course::Load(previous),
-        (Some(path), None) => Course::Path(path.into_memory()),
-        (Some(_), Some(_)) => return Err(Flaw::TwoCourses.into()),
+    let mut fields = fields.collect::<Result<Vec<Vec<[f64; 3]>>, CodecError>>()?.into_iter();
+    let mut displacement = fields.next().unwrap_or_default();
+    let field = match (&stored.course, bytes.first()) {
+        (CourseV7::Load { .. }, Some(..CODEC_VERSION)) => Some(displacement.split_off(displacement.len() / 2)),
+        _ => heading.or_else(|| fields.next()),
     };
-    let control = StepControl {
-        // One of the two is 0; where a changed byte makes it another number, the hash sees it.
-        halvings: stored.halvings.wrapping_sub(doublings).cast_signed(),
-        jump_seen_at_deg: stored.jump_seen_at_deg,
-        rejection: stored.rejection.map(|rejection| match rejection {
-            RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,
-            RejectionV1::Jump => Rejection::Jump,
-            RejectionV1::CriticalPoint => Rejection::CriticalPoint,
-            RejectionV1::SharpTurn => Rejection::SharpTurn,
-        }),
-    };
+    let course = stored.course.with(field).filter(|_| fields.next().is_none());
     let state = State {
         mesh,
         displacement,
@@ -318,13 +295,25 @@ pub fn decode_state<'a>(
             StageV1::SwitchBranch => Stage::SwitchBranch,
         }),
         parameter: stored.parameter,
-        turns: turns.into_owned(),
+        turns: stored.turns.into_owned(),
         moment_n_mm: stored.moment_n_mm,
         strain_energy_n_mm: stored.strain_energy_n_mm,
         negative_pivots: stored.negative_pivots,
-        drive: DriveMemory { control, course },
-        largest_force_n,
-        refinement: refinement.map(RefinementV6::into_memory),
+        drive: DriveMemory {
+            control: StepControl {
+                halvings: stored.halvings,
+                jump_seen_at_deg: stored.jump_seen_at_deg,
+                rejection: stored.rejection.map(|rejection| match rejection {
+                    RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,
+                    RejectionV1::Jump => Rejection::Jump,
+                    RejectionV1::CriticalPoint => Rejection::CriticalPoint,
+                    RejectionV1::SharpTurn => Rejection::SharpTurn,
+                }),
+            },
+            course: course.ok_or(CodecError::FieldCount { found: stored.fields.len() })?,
+        },
+        largest_force_n: stored.largest_force_n,
+        refinement: stored.refinement.map(RefinementV6::into_memory),
     };
     let found = state.hash();
     if found != expected {

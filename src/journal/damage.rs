@@ -173,14 +173,14 @@ pub enum Damage {
         /// Content hash of the mesh.
         mesh: Hash,
     },
-    /// Displacements that are not those of the state.
-    #[error("the displacements in the chunk are not those that the commit names for its state")]
-    OtherDisplacement,
-    /// Displacements that the log does not hold up to here.
-    #[error("the state has displacements {displacement}, which the log does not hold up to here")]
-    UnknownDisplacement {
-        /// Hash of their bytes.
-        displacement: Hash,
+    /// Fields that are not those of the state, or more than a state can have.
+    #[error("the fields in the chunk are not those that the commit names for its state")]
+    OtherFields,
+    /// A field that the log does not hold up to here.
+    #[error("the state has a field {field} on its control points, which the log does not hold up to here")]
+    UnknownField {
+        /// Hash of its bytes.
+        field: Hash,
     },
     /// A commit out of its order.
     #[error("commit {found} stands where commit {expected} belongs")]

@@ -10,13 +10,13 @@ use mcap::write::NoSeek;
 use mcap::{McapError, WriteOptions, Writer};
 
 use super::chunk;
-use super::codec::EncodedState;
+use super::codec::EncodedField;
 use super::encode_error::EncodeError;
 use super::format::{
     BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, OWN_TOPICS,
     PROFILE, REPORT_BYTES_LIMIT, REPORT_TOPIC, STATE_TOPIC, log_time_ns, sequence,
 };
-use super::frame::{self, Frame};
+use super::frame::{self, Frame, op};
 use super::index::{Mark, Piece};
 use super::ledger::{ChunkPlace, Ledger};
 use super::manifest::Manifest;
@@ -84,6 +84,10 @@ pub(super) struct Encoder {
     described: HashSet<u16>,
     /// Topics that messages went to, and the numbers of their channels.
     channels: Vec<(ViewerTopic, u16)>,
+    /// Mesh and fields of the last state, where they lie, and their lengths.
+    pieces: Vec<(Hash, [u64; 2])>,
+    /// Those that were not taken yet: the first messages of their chunk.
+    new_pieces: Vec<Hash>,
     /// Length of the log so far.
     length: u64,
     /// Bytes that the log lacks and the ledger has.
@@ -99,9 +103,10 @@ pub(super) struct Parts<'a> {
     pub mesh_hash: Hash,
     /// The mesh, where the log does not have it yet.
     pub mesh: Option<Vec<u8>>,
-    pub state: EncodedState,
-    /// Whether the log does not have the state's displacements yet.
-    pub displacement_is_new: bool,
+    pub state: &'a [u8],
+    pub fields: &'a [EncodedField],
+    /// Fields that the log has already.
+    pub known: &'a [EncodedField],
     pub viewer: &'a [ViewerMessage],
 }
 
@@ -126,6 +131,8 @@ impl Encoder {
             described: ledger.channels.keys().copied().collect(),
             ledger,
             channels: Vec::new(),
+            pieces: Vec::new(),
+            new_pieces: Vec::new(),
             length,
             in_front: Vec::new(),
         }
@@ -140,6 +147,7 @@ impl Encoder {
             std::mem::replace(&mut *outbox, room)
         };
         self.ledger.enter(self.length, &bytes);
+        self.find_new_pieces(&bytes);
         self.length += bytes.len() as u64;
         if !self.in_front.is_empty() {
             bytes.splice(..0, std::mem::take(&mut self.in_front));
@@ -152,6 +160,26 @@ impl Encoder {
             }
         }
         bytes
+    }
+
+    /// Finds the pieces of a state in the chunk that was made of it.
+    fn find_new_pieces(&mut self, bytes: &[u8]) {
+        let Some(place) = self.ledger.chunks.last().filter(|_| !self.new_pieces.is_empty()) else { return };
+        let Some(Ok(chunk)) = place.at.checked_sub(self.length).and_then(|at| frame::next(bytes, at as usize)) else {
+            return;
+        };
+        let messages =
+            chunk::records(bytes, &chunk).into_iter().flatten().filter(|record| record.opcode == op::MESSAGE);
+        let places = messages.map(|record| {
+            let data = record.body.start + chunk::MESSAGE_HEADER_LEN;
+            [self.length + data as u64, (record.body.end - data) as u64]
+        });
+        self.pieces.extend(self.new_pieces.drain(..).zip(places));
+    }
+
+    /// Says where a mesh or a field of the last state lies, and its length.
+    pub(super) fn know(&mut self, piece: Hash, place: [u64; 2]) {
+        self.pieces.push((piece, place));
     }
 
     /// Gives back bytes that were taken: they go out in front of what is made next.
@@ -184,10 +212,15 @@ impl Encoder {
         }
         let mut messages: Vec<(&ViewerTopic, &[u8])> = Vec::new();
         messages.extend(parts.mesh.as_deref().map(|mesh| (&OWN.mesh, mesh)));
-        if parts.displacement_is_new {
-            messages.push((&OWN.displacement, &parts.state.displacement));
+        let is_new = |field: &&EncodedField| parts.known.iter().all(|known| known.hash != field.hash);
+        let mut new_fields: Vec<&EncodedField> = Vec::new();
+        for field in parts.fields.iter().filter(is_new) {
+            if new_fields.iter().all(|other| other.hash != field.hash) {
+                new_fields.push(field);
+            }
         }
-        messages.push((&OWN.state, &parts.state.state));
+        messages.extend(new_fields.iter().map(|field| (&OWN.displacement, &field.bytes[..])));
+        messages.push((&OWN.state, parts.state));
         messages.push((&OWN.report, &report));
         for message in parts.viewer {
             if OWN_TOPICS.contains(&message.topic.topic.as_str()) {
@@ -195,13 +228,18 @@ impl Encoder {
             }
             messages.push((&message.topic, &message.data));
         }
-        let (mesh, displacement) = (parts.mesh_hash, parts.state.displacement_hash);
+        let mut hashes = new_fields.iter().map(|field| field.hash);
         let named = messages.iter().map(|(topic, data)| match topic.topic.as_str() {
-            DISPLACEMENT_TOPIC => MessageHash::hashed(DISPLACEMENT_TOPIC, data, displacement),
+            DISPLACEMENT_TOPIC => hashes.next().map_or_else(
+                || MessageHash::of(DISPLACEMENT_TOPIC, data),
+                |hash| MessageHash::hashed(DISPLACEMENT_TOPIC, data, hash),
+            ),
             topic => MessageHash::of(topic, data),
         });
         let named = named.collect();
-        let commit = seal(&CommitMessage::new(&parts.record.commit, self.stretch, mesh, displacement, named))?;
+        let fields: Vec<Hash> = parts.fields.iter().map(|field| field.hash).collect();
+        let commit = CommitMessage::new(&parts.record.commit, self.stretch, parts.mesh_hash, &fields, named);
+        let commit = seal(&commit)?;
         messages.push((&OWN.commit, &commit));
 
         const RECORD_OVERHEAD: usize = 256;
@@ -213,6 +251,9 @@ impl Encoder {
         for (topic, data) in messages {
             self.message(topic, parts.record.commit.ordinal, data)?;
         }
+        self.pieces.retain(|(hash, _)| *hash == parts.mesh_hash || fields.contains(hash));
+        let mesh = parts.mesh.as_ref().map(|_| parts.mesh_hash);
+        self.new_pieces = mesh.into_iter().chain(new_fields.iter().map(|field| field.hash)).collect();
         Ok(self.writer.flush()?)
     }
 
@@ -222,15 +263,18 @@ impl Encoder {
     }
 
     /// What a block of the index says about the last commit that was taken.
-    pub(super) fn mark(&self, last: &Commit, mesh: Hash, displacement: Hash) -> Option<Mark> {
-        let piece = |topic, hash| Some(Piece { hash: HexHash(hash), place: self.ledger.last_message(topic)? });
+    pub(super) fn mark(&self, last: &Commit, mesh: Hash, fields: &[EncodedField]) -> Option<Mark> {
+        let piece = |hash| {
+            let (_, place) = self.pieces.iter().find(|(known, _)| *known == hash)?;
+            Some(Piece { hash: HexHash(hash), place: *place })
+        };
         Some(Mark {
             chain_hash: HexHash(last.chain_hash),
             patterns: self.ledger.patterns.clone(),
             metadata: self.ledger.metadata.clone(),
             described_at: self.ledger.described_at.clone(),
-            mesh: piece(MESH_TOPIC, mesh)?,
-            displacement: piece(DISPLACEMENT_TOPIC, displacement)?,
+            mesh: piece(mesh)?,
+            fields: fields.iter().map(|field| piece(field.hash)).collect::<Option<_>>()?,
         })
     }
 

@@ -3,14 +3,14 @@
 //! | topic | encoding | schema | one message |
 //! |---|---|---|---|
 //! | `/foldline/mesh` | `foldline-bincode-v1` | none | per mesh, the first time that a state uses it |
-//! | `/foldline/displacement` | `foldline-bincode-v1` | none | per field of displacements, the first time that a state has it |
+//! | `/foldline/displacement` | `foldline-bincode-v1` | none | per field on the control points, the first time that a state has it |
 //! | `/foldline/state` | `foldline-bincode-v1` | none | per stage |
 //! | `/foldline/report` | `json` | `foldline.Report` | per stage |
 //! | `/foldline/commit` | `json` | `foldline.Commit` | per stage, the last of its chunk |
 //! | `/foldline/finished` | `json` | `foldline.Finished` | at the end of a run that reached its end |
 //!
-//! A state names its mesh and its displacements by hash, so a stage that changes neither (indicators that mark
-//! nothing, a solve that is turned down) writes some hundred bytes and its report.
+//! A state names its mesh and its fields (displacements, those of the equilibrium before, the heading of a path) by hash, so a
+//! stage that changes none (indicators that mark nothing, a solve that is turned down) writes some hundred bytes and its report.
 //!
 //! Before the first chunk, and again wherever a run was taken up again, stands a metadata record `foldline.manifest`: it
 //! begins a *stretch* of the run.
@@ -22,15 +22,16 @@
 //! | 1 | |
 //! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest says which revision of the numerics wrote the stretch; a chunk may lack a state, and a mesh or displacements that no state needs, in a log that was thinned and says so in a metadata record `foldline.thinned` |
 //!
+//! | 3 | a state names each of its fields by its own hash, and a commit names them all; before, the displacements and those of the equilibrium before were one |
+//!
 //! A log may hold commits of several versions: one that is gone on with keeps those that it has.
 //!
 //! # Why nothing is compressed
 //! Measured on the chunks of three runs, one by one, as they would have to be written: zstd at level 1
 //! leaves 89 %, 60 % and 48 % of a chunk of 9, 26 and 3 kB, lz4 94 %, 74 % and 61 %, and higher levels gain no more than five in
-//! a hundred. What is left over are displacements, four fifths of a log, of which the last bits are noise. A library in C and
-//! chunks that have to be unpacked before they can be bounded are not worth that; `foldline thin` drops nine states of ten. A whole
-//! log in one piece comes to 30 to 40 %, because a state repeats the displacements of the equilibrium before it: they would
-//! have to be named by their hash, as the mesh is, in an encoding to come.
+//! a hundred. What is left over are displacements, of which the last bits are noise. A library in C and
+//! chunks that have to be unpacked before they can be bounded are not worth that; `foldline thin` drops nine states of ten. What
+//! states repeat is named by its hash instead.
 //!
 //! # Times
 //! `log_time` is the place in the run, not the clock: stage k stands at (k + 1) · 100 ms after 1970. A viewer then
@@ -39,7 +40,7 @@
 //! reads back. No hash covers either.
 
 /// Version of the layout that this module describes. A reader refuses a newer one.
-pub const FORMAT_VERSION: u32 = 2;
+pub const FORMAT_VERSION: u32 = 3;
 
 /// Profile in the header of the file.
 pub const PROFILE: &str = "foldline";
@@ -55,7 +56,7 @@ pub const BINARY_ENCODING: &str = "foldline-bincode-v1";
 
 /// Topic of the meshes.
 pub const MESH_TOPIC: &str = "/foldline/mesh";
-/// Topic of the displacements.
+/// Topic of the fields on the control points.
 pub const DISPLACEMENT_TOPIC: &str = "/foldline/displacement";
 /// Topic of the states.
 pub const STATE_TOPIC: &str = "/foldline/state";
@@ -74,6 +75,9 @@ pub const OWN_TOPICS: [&str; 6] =
 /// with its mesh and the direction of its path takes 80 bytes for each control point, so this is room for half a million
 /// of them.
 pub const CHUNK_BYTES_LIMIT: usize = 48 << 20;
+
+/// Most fields of a state that are read; it has two at most.
+pub(super) const FIELDS_LIMIT: usize = 8;
 
 /// Largest report that is written or read, bytes: room for some ten thousand probes. A report is kept as long as its log is
 /// read, and takes up to three times its length.

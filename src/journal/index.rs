@@ -24,7 +24,7 @@ use crate::pipeline::{Record, Report, as_number, fields_of};
 use crate::state::Hash;
 
 /// In front of every block.
-pub(super) const INDEX_MAGIC: &[u8; 8] = b"FOLDINX1";
+pub(super) const INDEX_MAGIC: &[u8; 8] = b"FOLDINX2";
 
 /// Commits of a block at most, and bytes of the log that it is about.
 const BLOCK_COMMITS: usize = 1024;
@@ -64,7 +64,7 @@ pub(super) struct Mark {
     pub metadata: Vec<(u64, u64, String)>,
     pub described_at: Vec<u64>,
     pub mesh: Piece,
-    pub displacement: Piece,
+    pub fields: Vec<Piece>,
 }
 
 /// A message of the log.
@@ -263,7 +263,7 @@ impl Index {
             }
         }
         let Some(here) = ledger.chunks.pop() else { return Ok(None) };
-        let Mark { chain_hash, metadata, described_at, mesh, displacement, .. } = &last.mark;
+        let Mark { chain_hash, metadata, described_at, mesh, fields, .. } = &last.mark;
         let piece = |piece: &Piece| -> io::Result<(Hash, u64, Vec<u8>)> {
             let mut bytes = Vec::new();
             let length = (piece.place[1] as usize).min(super::format::CHUNK_BYTES_LIMIT);
@@ -299,7 +299,7 @@ impl Index {
             channels: ledger.channels_described(),
             stretches,
             mesh: Some(piece(mesh)?),
-            displacement: Some(piece(displacement)?),
+            fields: fields.iter().map(piece).collect::<io::Result<_>>()?,
             // A thinned log has no index.
             thinned: None,
             kept_before: None,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mcap::records::Record as McapRecord;
 
-use super::chunk::{self, Channels, MESSAGE_HEADER_LEN};
+use super::chunk::{self, Channels};
 use super::frame::{self, Frame, op};
 
 /// One chunk.
@@ -35,8 +35,6 @@ pub(super) struct Ledger {
     pub channels: BTreeMap<u16, Vec<u8>>,
     /// First bytes of the chunks that describe schemas or channels which no chunk before them does.
     pub described_at: Vec<u64>,
-    /// Where the data of the last message of each channel lies, and its length.
-    pub last_messages: BTreeMap<u16, [u64; 2]>,
 }
 
 impl Ledger {
@@ -97,12 +95,6 @@ impl Ledger {
         parsed.collect()
     }
 
-    /// Where the data of the last message on a topic lies, and its length.
-    pub fn last_message(&self, topic: &str) -> Option<[u64; 2]> {
-        let mut channels = self.channels_described().into_iter();
-        channels.find_map(|(id, channel)| (channel.topic == topic).then(|| self.last_messages.get(&id).copied()))?
-    }
-
     /// The number of a pattern.
     pub fn number_of(&mut self, pattern: Pattern) -> u32 {
         let known = self.patterns.iter().position(|known| *known == pattern);
@@ -127,12 +119,6 @@ impl Ledger {
             let kind = match record.opcode {
                 op::SCHEMA => &mut self.schemas,
                 op::CHANNEL => &mut self.channels,
-                op::MESSAGE => {
-                    let data = record.body.start + MESSAGE_HEADER_LEN;
-                    let place = [at + (data - chunk.at) as u64, record.body.end.saturating_sub(data) as u64];
-                    self.last_messages.insert(u16::from_le_bytes(*number), place);
-                    continue;
-                }
                 _ => continue,
             };
             let whole = &bytes[record.at..record.body.end];

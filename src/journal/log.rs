@@ -20,8 +20,8 @@ pub struct Entry {
     pub record: Record,
     /// Content hash of the mesh that its state stands on.
     pub mesh_hash: Hash,
-    /// Content hash of the displacements that its state holds.
-    pub(super) displacement_hash: Hash,
+    /// Hashes of the bytes of its state's fields.
+    pub(super) fields: Box<[Hash]>,
     /// Where its chunk lies in the log, bytes.
     pub bytes: Range<u64>,
     /// Where its state lies, if that was not thinned out.
@@ -107,7 +107,7 @@ pub struct Log {
     /// The last of those that has its state.
     pub(super) kept_before: Option<usize>,
     pub(super) file_len: u64,
-    /// Bytes of the file in memory; what lies behind them are a mesh and displacements from before.
+    /// Bytes of the file in memory; what lies behind them are a mesh and fields from before.
     pub(super) walked: usize,
     /// Where those begin, in memory and in the file.
     pub(super) pieces: Vec<(usize, u64)>,
@@ -116,7 +116,7 @@ pub struct Log {
     pub(super) stretches: Stretches,
     pub(super) entries: Vec<Entry>,
     pub(super) meshes: HashMap<Hash, Range<usize>>,
-    pub(super) displacements: HashMap<Hash, Range<usize>>,
+    pub(super) fields: HashMap<Hash, Range<usize>>,
     pub(super) parts: Vec<Part>,
     pub(super) finished: bool,
     pub(super) closed: bool,
@@ -332,12 +332,17 @@ impl Log {
         };
         let mesh = self.mesh(index)?;
         let bytes = &self.bytes[place];
-        let displacement = |hash: Hash| self.displacements.get(&hash).map(|place| &self.bytes[place.clone()]);
-        let state = decode_state(bytes, displacement, mesh, entry.mesh_hash, entry.record.commit.state_hash);
+        let field = |hash: Hash| self.field(&hash);
+        let state = decode_state(bytes, field, mesh, entry.mesh_hash, entry.record.commit.state_hash);
         let unusable = |source| StateError::Content { index, source };
         let state = state.map_err(unusable)?;
         check_made_by(&state, &self.scenes_up_to(entry.stretch)).map_err(|flaw| unusable(flaw.into()))?;
         Ok(state)
+    }
+
+    /// The bytes of a field.
+    pub(super) fn field(&self, hash: &Hash) -> Option<&[u8]> {
+        self.fields.get(hash).map(|place| &self.bytes[place.clone()])
     }
 
     /// The scenes of the stretches up to this one; none where its own is not known.

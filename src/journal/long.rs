@@ -170,6 +170,6 @@ pub(super) fn mark(log: &Log, ledger: &Ledger, entry: &Entry) -> Option<Mark> {
         metadata: ledger.metadata.iter().filter(|(place, ..)| *place < at).cloned().collect(),
         described_at: ledger.described_at.iter().copied().filter(|place| *place <= at).collect(),
         mesh: piece(&log.meshes, entry.mesh_hash)?,
-        displacement: piece(&log.displacements, entry.displacement_hash)?,
+        fields: entry.fields.iter().map(|hash| piece(&log.fields, *hash)).collect::<Option<_>>()?,
     })
 }

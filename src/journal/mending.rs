@@ -1,7 +1,7 @@
 //! Stages that a log has lost, put back: whole ones that stand behind them follow on them again. That they are the right ones says
 //! the chain.
 
-use super::codec::{encode_mesh, encode_state_on};
+use super::codec::{EncodedState, encode_mesh, encode_state_on};
 use super::encode_error::EncodeError;
 use super::encoder::{Encoder, Parts};
 use super::ledger::Ledger;
@@ -50,8 +50,9 @@ impl Log {
         for (state, record) in made {
             let mesh_hash = state.mesh.hash();
             let mesh = (!self.meshes.contains_key(&mesh_hash)).then(|| encode_mesh(&state.mesh)).transpose()?;
-            let state = encode_state_on(state, mesh_hash)?;
-            encoder.commit(&Parts { record, mesh_hash, mesh, state, displacement_is_new: true, viewer: &[] })?;
+            let EncodedState { state, fields } = encode_state_on(state, mesh_hash, &[])?;
+            let (state, fields) = (&state, &fields);
+            encoder.commit(&Parts { record, mesh_hash, mesh, state, fields, known: &[], viewer: &[] })?;
         }
         Ok(encoder.take())
     }

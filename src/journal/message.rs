@@ -98,8 +98,13 @@ pub struct CommitMessage {
     pub chain_hash: HexHash,
     /// Hash of the mesh that the state stands on, which this chunk or an earlier one holds.
     pub mesh_hash: HexHash,
-    /// Hash of the bytes of the state's displacements, which this chunk or an earlier one holds.
-    pub displacement_hash: HexHash,
+    /// Hashes of the bytes of the state's fields, its displacements first, which this chunk or earlier ones hold; not there
+    /// before version 3.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub field_hashes: Vec<HexHash>,
+    /// The same of the one field that states had before version 3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement_hash: Option<HexHash>,
     /// The other messages of this chunk, in their order.
     pub messages: Vec<MessageHash>,
     /// Hash of the manifest of the stretch that this commit belongs to; not there in version 1.
@@ -111,13 +116,7 @@ pub struct CommitMessage {
 
 impl CommitMessage {
     /// The message for a commit of the stretch that a manifest with the hash `manifest` begins, whose chunk holds `messages`.
-    pub fn new(
-        commit: &Commit,
-        manifest: Hash,
-        mesh_hash: Hash,
-        displacement_hash: Hash,
-        messages: Vec<MessageHash>,
-    ) -> Self {
+    pub fn new(commit: &Commit, manifest: Hash, mesh_hash: Hash, fields: &[Hash], messages: Vec<MessageHash>) -> Self {
         Self {
             format: FORMAT_VERSION,
             ordinal: commit.ordinal,
@@ -128,11 +127,17 @@ impl CommitMessage {
             scene_hash: HexHash(commit.scene_hash),
             chain_hash: HexHash(commit.chain_hash),
             mesh_hash: HexHash(mesh_hash),
-            displacement_hash: HexHash(displacement_hash),
+            field_hashes: fields.iter().copied().map(HexHash).collect(),
+            displacement_hash: None,
             messages,
             manifest_hash: Some(HexHash(manifest)),
             check: UNSEALED,
         }
+    }
+
+    /// Hashes of the bytes of the state's fields.
+    pub fn fields(&self) -> impl Iterator<Item = Hash> {
+        self.displacement_hash.iter().chain(&self.field_hashes).map(|hash| hash.0)
     }
 
     /// The commit that the message stands for; its chain hash is as written, not yet recomputed.

@@ -2,8 +2,8 @@
 //!
 //! A log is an ordinary MCAP file, so that viewers can open it, and three things more:
 //!
-//! 1. **One chunk is one commit.** A chunk holds the state that a stage made (its mesh and its displacements only where
-//!    the log does not have them yet), the stage's report, and at its end a commit message. It reaches the file in one
+//! 1. **One chunk is one commit.** A chunk holds the state that a stage made (its mesh and its fields, displacements for one,
+//!    only where the log does not have them yet), the stage's report, and at its end a commit message. It reaches the file in one
 //!    write. A process that dies loses the stage in flight and nothing else.
 //! 2. **Every commit vouches for its chunk.** The commit message is sealed with the hash of its own bytes and names the
 //!    hash of every other message in the chunk and of the manifest of its stretch; its chain hash follows from the commit
@@ -119,7 +119,9 @@ mod writer;
 
 pub use agreement::Disagreement;
 pub use backend::{Backend, FileBackend};
-pub use codec::{CODEC_VERSION, CodecError, EncodedState, decode_mesh, decode_state, encode_mesh, encode_state};
+pub use codec::{
+    CODEC_VERSION, CodecError, EncodedField, EncodedState, decode_mesh, decode_state, encode_mesh, encode_state,
+};
 pub use damage::{Completeness, Damage, LaterCommit, Problem};
 pub use encode_error::EncodeError;
 pub use encoder::{ViewerMessage, ViewerTopic};

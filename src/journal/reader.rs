@@ -110,13 +110,12 @@ impl Log {
         let mut scan = from.map_or_else(Scan::default, Scan::from);
         let mut pieces = Vec::new();
         if let Some(from) = from {
-            let stored = [(&mut scan.meshes, &from.mesh), (&mut scan.displacements, &from.displacement)];
-            for (places, (hash, at, piece)) in
-                stored.into_iter().filter_map(|(places, piece)| Some((places, piece.as_ref()?)))
-            {
-                places.insert(*hash, bytes.len()..bytes.len() + piece.len());
-                pieces.push((bytes.len(), *at));
-                bytes.extend_from_slice(piece);
+            for (places, stored) in [(&mut scan.meshes, from.mesh.as_slice()), (&mut scan.fields, &from.fields)] {
+                for (hash, at, piece) in stored {
+                    places.insert(*hash, bytes.len()..bytes.len() + piece.len());
+                    pieces.push((bytes.len(), *at));
+                    bytes.extend_from_slice(piece);
+                }
             }
         }
         scan.run(&bytes[..walked], base + (walked as u64) < file_len);
@@ -138,7 +137,7 @@ impl Log {
             stretches: scan.stretches,
             entries: scan.entries,
             meshes: scan.meshes,
-            displacements: scan.displacements,
+            fields: scan.fields,
             parts: scan.parts,
             finished: scan.finished.is_some(),
             closed: scan.closed,

@@ -19,6 +19,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::backend::{Backend, FileBackend, beside};
+use super::codec::EncodedField;
 use super::damage::Completeness;
 use super::encode_error::EncodeError;
 use super::encoder::Encoder;
@@ -33,8 +34,9 @@ use super::long::{LongLog, mark};
 use super::manifest::Manifest;
 use super::reader::ReadError;
 use super::recovery::{CopyError, copy};
-use super::writer::JournalWriter;
+use super::writer::{JournalWriter, KnownPieces};
 use crate::scene::SyncPolicy;
+use crate::state::Hash;
 use crate::whole_file::write_new;
 
 /// Why a run cannot go on from a log.
@@ -204,6 +206,15 @@ impl Resume {
                 false => Some(index),
             });
         }
+        if let Some(last) = log.entries().last() {
+            let mesh = log.meshes.get_key_value(&last.mesh_hash);
+            let fields = last.fields.iter().filter_map(|hash| log.fields.get_key_value(hash));
+            for (hash, place) in mesh.into_iter().chain(fields) {
+                if let Some(at) = log.place_of(place) {
+                    encoder.know(*hash, [at, place.len() as u64]);
+                }
+            }
+        }
         // Stands in front of the first commit, and reaches the log together with it.
         encoder.manifest(manifest).map_err(|source| begin(&name, source))?;
         let backend = FileBackend::behind(&path, length, log.file_len()).map_err(|source| ResumeError::Copy {
@@ -335,8 +346,10 @@ fn encoder_behind(log: &Log, ledger: Option<Ledger>) -> Result<Option<(Encoder, 
     Ok(Some((encoder, log.base + (last + same) as u64)))
 }
 
-/// The mesh and the displacements of the last of the first `keep` stages.
-fn known(log: &Log, keep: usize) -> Vec<crate::state::Hash> {
-    let last = keep.checked_sub(1).and_then(|last| log.entry(last));
-    last.map_or_else(Vec::new, |entry| vec![entry.mesh_hash, entry.displacement_hash])
+/// The mesh and the fields of the last of the first `keep` stages.
+fn known(log: &Log, keep: usize) -> KnownPieces {
+    let Some(entry) = keep.checked_sub(1).and_then(|last| log.entry(last)) else { return KnownPieces::default() };
+    let field = |hash: &Hash| Some(EncodedField { hash: *hash, bytes: log.field(hash)?.to_vec() });
+    let mesh = log.meshes.contains_key(&entry.mesh_hash).then_some(entry.mesh_hash);
+    KnownPieces { mesh, fields: entry.fields.iter().filter_map(field).collect() }
 }

@@ -27,7 +27,7 @@ const PARSED_IN_VAIN: usize = 4;
 /// Largest header, bytes: it names a profile and a program.
 const HEADER_BYTES_LIMIT: usize = 4 << 10;
 
-/// Reading under way. Places in `entries`, `parts`, `meshes` and `displacements` count from the first byte that is walked
+/// Reading under way. Places in `entries`, `parts`, `meshes` and `fields` count from the first byte that is walked
 /// over, those that are told from the start of the file.
 #[derive(Default)]
 pub(super) struct Scan {
@@ -42,7 +42,7 @@ pub(super) struct Scan {
     pub manifest_seen: bool,
     pub entries: Vec<Entry>,
     pub meshes: HashMap<Hash, Range<usize>>,
-    pub displacements: HashMap<Hash, Range<usize>>,
+    pub fields: HashMap<Hash, Range<usize>>,
     pub parts: Vec<Part>,
     pub finished: Option<FinishedMessage>,
     pub closed: bool,
@@ -64,7 +64,7 @@ pub(super) struct Scan {
 
 impl Scan {
     /// A walk that begins at a commit in the middle of a log; `bytes` are those from there on, and `meshes` and
-    /// `displacements` say where the ones before it lie beside them.
+    /// `fields` say where the ones before it lie beside them.
     pub fn from(checkpoint: &Checkpoint) -> Self {
         Self {
             base: checkpoint.at,
@@ -338,30 +338,25 @@ impl Scan {
         if commit.chain_hash != expected {
             return Err(Damage::BrokenChain { ordinal, expected, found: commit.chain_hash });
         }
-        let (mesh_hash, displacement) = (content.commit.mesh_hash.0, content.commit.displacement_hash.0);
+        let mesh_hash = content.commit.mesh_hash.0;
+        let fields: Box<[Hash]> = content.commit.fields().collect();
         let has_state = content.state.is_some();
         if has_state && content.mesh.is_none() && !self.meshes.contains_key(&mesh_hash) {
             return Err(Damage::UnknownMesh { mesh: mesh_hash });
         }
-        if has_state && content.displacement.is_none() && !self.displacements.contains_key(&displacement) {
-            return Err(Damage::UnknownDisplacement { displacement });
+        let is_there =
+            |field: &Hash| self.fields.contains_key(field) || content.fields.iter().any(|(hash, _)| hash == field);
+        if let Some(field) = fields.iter().find(|field| has_state && !is_there(field)) {
+            return Err(Damage::UnknownField { field: *field });
         }
         self.meshes.extend(content.mesh.map(|place| (mesh_hash, place)));
-        self.displacements.extend(content.displacement.map(|place| (displacement, place)));
+        self.fields.extend(content.fields);
         let stretch =
             self.stretches.of_commit(self.place(frame.at), ordinal, content.commit.manifest_hash.map(|hash| hash.0));
         let names_stretch = content.commit.manifest_hash.is_some();
         let record = Record { wall_s: content.report.wall_s, report: content.report.report, commit };
         let bytes = self.place(frame.at)..self.place(frame.body.end);
-        self.entries.push(Entry {
-            record,
-            mesh_hash,
-            displacement_hash: displacement,
-            bytes,
-            state: content.state,
-            stretch,
-            names_stretch,
-        });
+        self.entries.push(Entry { record, mesh_hash, fields, bytes, state: content.state, stretch, names_stretch });
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! A log without the states between some load steps: every commit and every report stays, and with them the chain.
 //!
 //! A commit names its messages by their hashes, and goes on naming those that are left out. So a thinned chunk lacks a state,
-//! and a mesh or displacements that no kept state stands on, and nothing else; its commit, sealed as ever, says what the state
+//! and a mesh or fields that no kept state stands on, and nothing else; its commit, sealed as ever, says what the state
 //! hashed to. A metadata record in front says that this was meant, so that a state which is lost otherwise is told from one that
 //! was dropped.
 
@@ -75,7 +75,8 @@ pub fn thin(path: &Path, new: &Path, kept_as: &str, keeps: impl Fn(u64) -> bool)
         for (place, entry) in portion.entries().iter().enumerate() {
             last_step = entry.record.report.step;
             if keeps_state(portion.log(), place, &keeps) {
-                needed.extend([entry.mesh_hash, entry.displacement_hash]);
+                needed.insert(entry.mesh_hash);
+                needed.extend(&entry.fields);
                 steps.insert(last_step);
                 states += 1;
             }
@@ -129,12 +130,12 @@ fn keeps_state(log: &Log, place: usize, keeps: impl Fn(u64) -> bool) -> bool {
     log.entries[place].state.is_some() && ends_step && (is_last || step(place).is_some_and(keeps))
 }
 
-/// First bytes of the messages of a portion that go: states, and meshes and displacements that no kept state stands on.
+/// First bytes of the messages of a portion that go: states, and meshes and fields that no kept state stands on.
 fn dropped_messages(portion: &Portion, needed: &HashSet<Hash>, keeps: impl Fn(u64) -> bool) -> HashSet<usize> {
     let log = portion.log();
     let go = (0..portion.entries().len()).filter(|place| !keeps_state(log, *place, &keeps));
     let states = go.filter_map(|place| log.entries[place].state.as_ref()).map(|state| state.start);
-    let messages = log.meshes.iter().chain(&log.displacements);
+    let messages = log.meshes.iter().chain(&log.fields);
     let unneeded = messages.filter(|(hash, _)| !needed.contains(*hash)).map(|(_, message)| message.start);
     states.chain(unneeded).collect()
 }

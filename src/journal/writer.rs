@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::backend::{Backend, FileBackend, beside};
-use super::codec::{encode_mesh, encode_state_on};
+use super::codec::{EncodedField, EncodedState, encode_mesh, encode_state_on};
 use super::encode_error::EncodeError;
 use super::encoder::{Encoder, Parts, ViewerMessage};
 use super::format::library;
@@ -185,6 +185,13 @@ impl From<WriteError> for SinkError {
     }
 }
 
+/// What a log has of a state.
+#[derive(Debug, Default)]
+pub(super) struct KnownPieces {
+    pub mesh: Option<Hash>,
+    pub fields: Vec<EncodedField>,
+}
+
 /// Writes a run to a log, one commit a stage. Dropped without [`JournalWriter::finish`] or [`JournalWriter::close`] it
 /// leaves what a killed process leaves: every commit, and no summary.
 pub struct JournalWriter {
@@ -198,8 +205,8 @@ pub struct JournalWriter {
     pub(super) viewer: Option<Box<dyn ViewerTopics>>,
     /// The index of a log that is or becomes long.
     pub(super) index: Option<IndexKeeper>,
-    /// Hashes of the mesh and the displacements of the last state: a stage that changes neither writes neither again.
-    pub(super) known: Vec<Hash>,
+    /// The mesh and the fields of the last state: what a stage does not change is not written again.
+    pub(super) known: KnownPieces,
     pub(super) mesh_hash: MeshHash,
     pub(super) last: Option<Commit>,
     /// Bytes of the log that are good.
@@ -292,7 +299,7 @@ impl JournalWriter {
             sync,
             viewer: None,
             index: None,
-            known: Vec::new(),
+            known: KnownPieces::default(),
             mesh_hash: MeshHash::default(),
             last: None,
             length: 0,
@@ -400,19 +407,19 @@ impl JournalWriter {
         let mesh_hash = self.mesh_hash.of(&state.mesh);
         let viewer = self.viewer.as_mut().map(|topics| topics.messages(state, record)).unwrap_or_default();
         let encoded = (|| {
-            let mesh = if self.known.contains(&mesh_hash) { None } else { Some(encode_mesh(&state.mesh)?) };
-            let state = encode_state_on(state, mesh_hash)?;
-            let displacement_hash = state.displacement_hash;
-            let displacement_is_new = !self.known.contains(&displacement_hash);
-            self.encoder.commit(&Parts { record, mesh_hash, mesh, state, displacement_is_new, viewer: &viewer })?;
-            Ok(displacement_hash)
+            let mesh = if self.known.mesh == Some(mesh_hash) { None } else { Some(encode_mesh(&state.mesh)?) };
+            let known = &self.known.fields;
+            let EncodedState { state, fields } = encode_state_on(state, mesh_hash, known)?;
+            let (state, viewer) = (&state, &viewer);
+            self.encoder.commit(&Parts { record, mesh_hash, mesh, state, fields: &fields, known, viewer })?;
+            Ok(fields)
         })();
-        let displacement_hash = encoded.map_err(|source| self.encode_error(ordinal, source))?;
+        let fields = encoded.map_err(|source| self.encode_error(ordinal, source))?;
         self.append()?;
-        self.known = vec![mesh_hash, displacement_hash];
+        self.known = KnownPieces { mesh: Some(mesh_hash), fields };
         self.last = Some(*commit);
         let (encoder, place) = (&self.encoder, self.encoder.last_chunk());
-        let mark = || encoder.mark(commit, mesh_hash, displacement_hash);
+        let mark = || encoder.mark(commit, mesh_hash, &self.known.fields);
         self.index = self.index.take().zip(place).and_then(|(index, place)| index.take(place, record, mark));
         match self.sync {
             SyncPolicy::EachStage => self.backend.sync(),

@@ -42,7 +42,7 @@ struct Ordinary {
 
 impl Ordinary {
     fn new() -> Self {
-        let bytes = include_bytes!("../../checkpoints/golden/v2-0.1.0-finished.mcap");
+        let bytes = include_bytes!("../../checkpoints/golden/v3-0.1.0-finished.mcap");
         let log = Log::from_bytes(bytes.to_vec()).unwrap();
         let records: Vec<_> = log.entries().iter().map(|entry| entry.record.clone()).collect();
         Self {
@@ -58,7 +58,7 @@ impl Ordinary {
         let encoded = encode_state(state).unwrap();
         Said {
             mesh: encode_mesh(&state.mesh).unwrap(),
-            displacement: encoded.displacement,
+            fields: encoded.fields.into_iter().map(|field| field.bytes).collect(),
             state: encoded.state,
             report: self.reports[index].to_string().into_bytes(),
             ..Said::default()

@@ -90,7 +90,7 @@ fn every_log_gives_what_the_table_says() {
             assert_eq!(before.record, after.record, "{name}");
         }
     }
-    assert!(bytes < 700_000, "{bytes} bytes of golden logs");
+    assert!(bytes < 1_000_000, "{bytes} bytes of golden logs");
 }
 
 /// A scene that leaves the rule of quadrature out means the rule that was the default when its log was begun.
@@ -176,17 +176,11 @@ fn read_scene(name: &str) -> (Scene, Manifest) {
     (scene, manifest)
 }
 
-/// Not a test: writes the logs of later encodings of states, where they are not there yet.
+/// Not a test: writes the logs of other scenes, where they are not there yet.
 #[test]
 #[ignore = "writes to checkpoints/golden"]
-fn write_golden_logs_of_later_states() {
-    for (what, last) in [
-        ("turning", None),
-        ("path", Some(Stage::SwitchBranch)),
-        ("predicted", None),
-        ("growing", None),
-        ("balanced", None),
-    ] {
+fn write_golden_logs_of_other_courses() {
+    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch))] {
         if path_of(what).exists() {
             continue;
         }

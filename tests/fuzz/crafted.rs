@@ -8,7 +8,7 @@ use foldline::journal::format::{
     COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, REPORT_TOPIC, STATE_TOPIC,
 };
 use foldline::journal::message::{CommitMessage, FinishedMessage, MessageHash, seal};
-use foldline::journal::{CodecError, decode_mesh, decode_state};
+use foldline::journal::{CODEC_VERSION, CodecError, decode_mesh, decode_state};
 use foldline::pipeline::Commit;
 use foldline::scene::Stage;
 use foldline::state::{Hash, Mesh};
@@ -29,9 +29,9 @@ const NONE: Hash = Hash::from_bytes([0; 32]);
 pub struct Said {
     /// Bytes of a mesh; that of the chunk before where there are none.
     pub mesh: Vec<u8>,
-    /// Bytes of displacements; those of the chunk before where there are none.
-    pub displacement: Vec<u8>,
-    /// Bytes of a state; the hashes of mesh and displacements in it are put right.
+    /// Fields: the first that the state names; the others are those of the chunk before.
+    pub fields: Vec<Vec<u8>>,
+    /// Bytes of a state; the hashes of mesh and fields in it are put right.
     pub state: Vec<u8>,
     /// A report; the hashes in it are put right where it is an object.
     pub report: Vec<u8>,
@@ -49,7 +49,7 @@ pub struct Crafted {
     scene_hash: Hash,
     previous: Option<Commit>,
     mesh: (Hash, Option<Arc<Mesh>>),
-    displacement: (Hash, Vec<u8>),
+    fields: Vec<(Hash, Vec<u8>)>,
     channels: Vec<String>,
 }
 
@@ -103,7 +103,7 @@ impl Crafted {
             scene_hash: blake3::hash(b"a scene"),
             previous: None,
             mesh: (NONE, None),
-            displacement: (NONE, Vec::new()),
+            fields: Vec::new(),
             channels: Vec::new(),
         };
         crafted.manifest(entries);
@@ -114,7 +114,7 @@ impl Crafted {
     pub fn manifest(&mut self, entries: &[(&str, &str)]) {
         let first_ordinal = self.previous.map_or(0, |commit| commit.ordinal + 1).to_string();
         let ordinary = [
-            ("format_version", "2"),
+            ("format_version", "3"),
             ("program", "foldline"),
             ("program_version", "0.1.0"),
             ("scene_file", "scene.toml"),
@@ -145,23 +145,20 @@ impl Crafted {
 
     /// A commit that vouches for what a chunk says.
     pub fn commit(&mut self, stage: Stage, step: u64, said: Said) {
-        let Said { mesh, displacement, mut state, report, others, records } = said;
+        let Said { mesh, fields, mut state, report, others, records } = said;
         if !mesh.is_empty() {
             self.mesh = match decode_mesh(&mesh, NONE) {
                 Err(CodecError::ContentHash { found, .. }) => (found, decode_mesh(&mesh, found).ok().map(Arc::new)),
                 _ => (blake3::hash(&mesh), None),
             };
         }
-        if !displacement.is_empty() {
-            self.displacement = (blake3::hash(&displacement), displacement.clone());
-        }
-        if state.len() >= 65 {
-            state[1..33].copy_from_slice(self.mesh.0.as_bytes());
-            state[33..65].copy_from_slice(self.displacement.0.as_bytes());
-        }
+        let said = fields.iter().map(|field| (blake3::hash(field), field.clone()));
+        self.fields = said.chain(std::mem::take(&mut self.fields)).collect();
+        self.name_pieces(&mut state);
         let state_hash = match &self.mesh {
             (hash, Some(mesh)) => {
-                match decode_state(&state, |_| Some(&self.displacement.1[..]), mesh.clone(), *hash, NONE) {
+                let field = |asked| self.fields.iter().find(|(hash, _)| *hash == asked).map(|(_, field)| &field[..]);
+                match decode_state(&state, field, mesh.clone(), *hash, NONE) {
                     Err(CodecError::ContentHash { found, .. }) => found,
                     _ => blake3::hash(&state),
                 }
@@ -179,14 +176,33 @@ impl Crafted {
             }
             _ => report,
         };
-        let own =
-            [(MESH_TOPIC, mesh), (DISPLACEMENT_TOPIC, displacement), (STATE_TOPIC, state), (REPORT_TOPIC, report)];
-        let own = own.into_iter().filter(|(_, data)| !data.is_empty()).map(|(topic, data)| (topic.to_owned(), data));
+        let fields = fields.into_iter().map(|field| (DISPLACEMENT_TOPIC, field));
+        let own = [(MESH_TOPIC, mesh)].into_iter().chain(fields).chain([(STATE_TOPIC, state), (REPORT_TOPIC, report)]);
+        let own = own.filter(|(_, data)| !data.is_empty()).map(|(topic, data)| (topic.to_owned(), data));
         let mut messages: Vec<(String, Vec<u8>)> = own.chain(others).collect();
         let named = messages.iter().map(|(topic, data)| MessageHash::of(topic, data)).collect();
-        let message = CommitMessage::new(&commit, self.manifest, self.mesh.0, self.displacement.0, named);
+        let fields: Vec<Hash> = self.fields.iter().map(|(hash, _)| *hash).collect();
+        let message = CommitMessage::new(&commit, self.manifest, self.mesh.0, &fields, named);
         messages.push((COMMIT_TOPIC.to_owned(), seal(&message).unwrap()));
         self.chunk(records, &messages);
+    }
+
+    /// Puts the hashes right that a state names, and forgets fields that it does not.
+    fn name_pieces(&mut self, state: &mut [u8]) {
+        const FIRST_FIELD: usize = 1 + 32 + 8;
+        if state.len() < 65 {
+            return;
+        }
+        state[1..33].copy_from_slice(self.mesh.0.as_bytes());
+        if state[0] < CODEC_VERSION {
+            self.fields.truncate(1);
+            state[33..65].copy_from_slice(self.fields.first().map_or(NONE, |(hash, _)| *hash).as_bytes());
+            return;
+        }
+        self.fields.truncate(usize::from(state[33]));
+        for ((hash, _), place) in self.fields.iter().zip(state[FIRST_FIELD..].chunks_exact_mut(32)) {
+            place.copy_from_slice(hash.as_bytes());
+        }
     }
 
     /// The end of the run.

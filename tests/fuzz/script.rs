@@ -44,7 +44,7 @@ pub fn log_of(script: &[u8]) -> Vec<u8> {
         let crafted = crafted.get_or_insert_with(|| Crafted::new(""));
         match kind % KINDS {
             MESH => said.mesh = piece.to_vec(),
-            DISPLACEMENT => said.displacement = piece.to_vec(),
+            DISPLACEMENT => said.fields.push(piece.to_vec()),
             STATE => said.state = piece.to_vec(),
             REPORT => said.report = piece.to_vec(),
             OTHER => said.others.push((text().chars().take(40).collect(), piece.to_vec())),
@@ -121,7 +121,7 @@ pub fn read(bytes: Vec<u8>) {
         assert_eq!(state.hash(), log.entries()[index].record.commit.state_hash);
         let again = foldline::journal::decode_state(
             &encoded.state,
-            |_| Some(&encoded.displacement[..]),
+            |asked| encoded.fields.iter().find(|field| field.hash == asked).map(|field| &field.bytes[..]),
             state.mesh.clone(),
             state.mesh.hash(),
             state.hash(),

@@ -125,7 +125,7 @@ proptest! {
         let mesh = decode_mesh(&encode_mesh(&state.mesh).unwrap(), mesh_hash).unwrap();
         prop_assert_eq!(mesh.hash(), mesh_hash);
         let bytes = encode_state(&state).unwrap();
-        let find = |_: Hash| Some(&bytes.displacement[..]);
+        let find = |asked: Hash| bytes.fields.iter().find(|field| field.hash == asked).map(|field| &field.bytes[..]);
         let back = decode_state(&bytes.state, find, Arc::new(mesh), mesh_hash, hash).unwrap();
         prop_assert_eq!(back.hash(), hash);
         prop_assert_eq!(encode_state(&back).unwrap(), bytes);
@@ -136,10 +136,13 @@ proptest! {
         let (mesh_hash, hash) = (state.mesh.hash(), state.hash());
         let good = encode_state(&state).unwrap();
         let bytes = flipped(good.state.clone(), place, flip);
-        let find = |asked: Hash| (asked == good.displacement_hash).then_some(&good.displacement[..]);
+        let find = |asked: Hash| good.fields.iter().find(|field| field.hash == asked).map(|field| &field.bytes[..]);
         prop_assert!(decode_state(&bytes, find, state.mesh.clone(), mesh_hash, hash).is_err());
-        let bytes = flipped(good.displacement.clone(), place, flip);
-        prop_assert!(decode_state(&good.state, |_| Some(&bytes[..]), state.mesh.clone(), mesh_hash, hash).is_err());
+        for changed in &good.fields {
+            let bytes = flipped(changed.bytes.clone(), place, flip);
+            let find = |asked: Hash| if asked == changed.hash { Some(&bytes[..]) } else { find(asked) };
+            prop_assert!(decode_state(&good.state, find, state.mesh.clone(), mesh_hash, hash).is_err());
+        }
         let bytes = flipped(encode_mesh(&state.mesh).unwrap(), place, flip);
         prop_assert!(decode_mesh(&bytes, mesh_hash).is_err());
     }
@@ -245,7 +248,7 @@ fn nonsense() -> impl Strategy<Value = Cow<'static, [u8]>> {
         &record.commit,
         record.commit.state_hash,
         record.commit.state_hash,
-        Hash::from_bytes([4; 32]),
+        &[Hash::from_bytes([4; 32])],
         Vec::new(),
     ))
     .unwrap();
