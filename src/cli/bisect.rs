@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::asked::Asked;
 use super::failure::Failure;
 use super::log_file::{ReadLog, ask_long, read_log, scene_at};
 use super::output::print;
@@ -45,17 +46,16 @@ impl Arguments {
             let never = || Failure::NeverHolds { log: self.log.clone(), condition: condition.clone() };
             return print(&stage_table(&found?.ok_or_else(never)?)).map(|()| 0);
         }
-        let read = read_log(&self.log)?;
         match (&self.other, &self.when) {
-            (Some(other), _) => self.part(&read, &read_log(other)?, other),
-            (None, Some(condition)) => self.first(&read, condition),
-            (None, None) => self.jump(&read),
+            (Some(other), _) => self.part(&Asked::open(&self.log)?, &Asked::open(other)?, other),
+            (None, Some(condition)) => self.first(&read_log(&self.log)?, condition),
+            (None, None) => self.jump(&read_log(&self.log)?),
         }
     }
 
-    fn part(&self, a: &ReadLog, b: &ReadLog, other: &std::path::Path) -> Result<u8, Failure> {
+    fn part(&self, a: &Asked, b: &Asked, other: &std::path::Path) -> Result<u8, Failure> {
         let unusable = |source| Failure::WrongLog { log: self.log.clone(), source: Box::new(source) };
-        let lengths = [a, b].map(|read| read.log.entries().len());
+        let lengths = [a, b].map(|asked| asked.log.commits());
         let mut text = String::new();
         let found = find_parting(&a.log, &b.log).map_err(unusable)?;
         match &found {
@@ -68,7 +68,7 @@ impl Arguments {
                 lengths[1]
             )),
             Some(parting) => {
-                let report = &a.log.entries()[parting.index].record.report;
+                let report = a.log.record(parting.index).map_err(a.changed())?.report;
                 text.push_str(&format!(
                     "part at stage {}: step {} {} at {} (found in {} looks)\n",
                     parting.index,
@@ -80,14 +80,14 @@ impl Arguments {
                 text.push_str(&compared(&parting.comparison));
             }
         }
-        for (read, log) in [(a, &*self.log), (b, other)] {
-            text.extend(read.older_scene().map(|line| format!("  {}: {line}\n", log.display())));
+        for (asked, log) in [(a, &*self.log), (b, other)] {
+            text.extend(asked.older_scene().map(|line| format!("  {}: {line}\n", log.display())));
         }
         for difference in a.scene.differences(&b.scene) {
             let [x, y] = difference.values();
             text.push_str(&format!("  scene: {} is {x} and {y}\n", difference.path));
         }
-        if let (Some(x), Some(y)) = (a.log.manifests().first(), b.log.manifests().first()) {
+        if let (Some(x), Some(y)) = (a.log.end().manifests().first(), b.log.end().manifests().first()) {
             let mut differs = |what: &str, p: String, q: String| {
                 if p != q {
                     text.push_str(&format!("  {what}: {p} and {q}\n"));

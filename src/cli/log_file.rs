@@ -51,22 +51,12 @@ impl ReadLog {
 
     /// What is shown as the scene's where that is lost: a line that says so.
     pub(super) fn older_scene(&self) -> Option<String> {
-        let lost = self.log.lost_manifests().last().filter(|_| self.scene_is_older)?;
-        Some(format!(
-            "what the run was asked for from stage {} on is lost: its target, settings and probes are not known, and those below are \
-             of the scene before",
-            lost.ordinal
-        ))
+        older_scene(&self.log, self.scene_is_older)
     }
 
     /// Whether the run came to its end.
     pub(super) fn is_finished(&self) -> bool {
         self.log.completeness() == Completeness::Finished
-    }
-
-    /// First and last load step.
-    pub(super) fn steps(&self) -> Option<(u64, u64)> {
-        first_and_last(self.log.entries().iter().map(|entry| &entry.record))
     }
 
     /// What was lost of a log, a line each.
@@ -136,9 +126,7 @@ pub(super) fn ask_long<T>(
 ) -> Result<Option<T>, Failure> {
     let unreadable = |source| Failure::Read { path: path.to_path_buf(), source };
     let Some(long) = LongLog::open(path).map_err(unreadable)? else { return Ok(None) };
-    for warning in ReadLog::warnings_of(long.tail()) {
-        say(&format!("foldline: {}: {warning}", path.display()));
-    }
+    say_warnings(long.tail(), path);
     if let Ok(answer) = ask(&long) {
         return Ok(Some(answer));
     }
@@ -165,7 +153,7 @@ pub(super) fn read_through(path: &Path, mut see: impl FnMut(&Portion)) -> Result
     }
 }
 
-fn unreadable(path: &Path) -> impl Fn(ReadError) -> Failure {
+pub(super) fn unreadable(path: &Path) -> impl Fn(ReadError) -> Failure {
     |error| match error {
         ReadError::Io { source, .. } => Failure::Read { path: path.to_path_buf(), source },
         error => Failure::WrongLog { log: path.to_path_buf(), source: Box::new(error) },
@@ -173,15 +161,35 @@ fn unreadable(path: &Path) -> impl Fn(ReadError) -> Failure {
 }
 
 fn with_scene(log: Log, path: &Path) -> Result<ReadLog, Failure> {
-    let (scene, scene_is_older) = match (scene_of(&log, path), log.manifests().last()) {
-        (_, Some(manifest)) if !manifest.own_terms.is_empty() => (scene_in(manifest, path, &[])?, false),
-        (Err(Failure::SceneLost { .. }), Some(manifest)) => (scene_in(manifest, path, &[])?, true),
-        (scene, _) => (scene?, false),
-    };
-    for warning in ReadLog::warnings_of(&log) {
+    let (scene, scene_is_older) = end_scene(&log, path)?;
+    say_warnings(&log, path);
+    Ok(ReadLog { log, scene, scene_is_older })
+}
+
+/// The scene of a log's last stretch, or where that is lost an earlier one, and whether it is that.
+pub(super) fn end_scene(log: &Log, path: &Path) -> Result<(Scene, bool), Failure> {
+    match (scene_of(log, path), log.manifests().last()) {
+        (_, Some(manifest)) if !manifest.own_terms.is_empty() => Ok((scene_in(manifest, path, &[])?, false)),
+        (Err(Failure::SceneLost { .. }), Some(manifest)) => Ok((scene_in(manifest, path, &[])?, true)),
+        (scene, _) => Ok((scene?, false)),
+    }
+}
+
+/// Says what of a log is lost.
+pub(super) fn say_warnings(log: &Log, path: &Path) {
+    for warning in ReadLog::warnings_of(log) {
         say(&format!("foldline: {}: {warning}", path.display()));
     }
-    Ok(ReadLog { log, scene, scene_is_older })
+}
+
+/// What is shown as the scene's where that is lost (`is_older`): a line that says so.
+pub(super) fn older_scene(log: &Log, is_older: bool) -> Option<String> {
+    let lost = log.lost_manifests().last().filter(|_| is_older)?;
+    Some(format!(
+        "what the run was asked for from stage {} on is lost: its target, settings and probes are not known, and those below are \
+         of the scene before",
+        lost.ordinal
+    ))
 }
 
 /// The scene that the log was last gone on with.

@@ -17,6 +17,7 @@
 //! | `trace` | iterates of replayed stages |
 //! | `output`, `failure` | streams and files; what can stop a command |
 
+mod asked;
 mod bench;
 mod bisect;
 mod converge;

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::asked::Asked;
 use super::failure::Failure;
-use super::log_file::{ReadLog, read_log, say_other_numerics, scene_at};
+use super::log_file::{say_other_numerics, scene_at};
 use super::output::{file_name, print, refuse_what_is_there};
 use super::scene_file::stage_named;
 use super::session::use_threads;
@@ -13,7 +14,7 @@ use super::trace;
 use crate::equilibrium::Iterate;
 use crate::history::{Comparison, ReplayError, Replayed, States, Verdict, replay_stage, verdict};
 use crate::journal::TraceRow;
-use crate::pipeline::Stages;
+use crate::pipeline::{Commit, Stages};
 use crate::scene::{Scene, Stage};
 use crate::spline::Mesh;
 
@@ -50,48 +51,66 @@ impl Arguments {
         if let Some(file) = &self.trace {
             refuse_what_is_there(&trace::files(file))?;
         }
-        let read = read_log(&self.log)?;
-        say_other_numerics(&read.log);
-        let mut states = States::of(&read.log);
-        let mut stages: Option<Stages> = None;
+        let asked = Asked::open(&self.log)?;
+        say_other_numerics(asked.log.end());
         let mut rows: Vec<TraceRow> = Vec::new();
-        let mut worst = 0;
-        for index in self.chosen(&read)? {
-            let entry = &read.log.entries()[index];
-            let commit = entry.record.commit;
-            // Each stretch of a log with the scene that it was run with.
-            let scene = scene_at(&read.log, &self.log, index, &self.set)?;
-            self.check_settings(&scene_at(&read.log, &self.log, index, &[])?, &scene)?;
-            let stages = match stages.take().filter(|stages| *stages.scene() == scene) {
-                Some(same) => stages.insert(same),
-                None => stages.insert(Stages::new(scene)),
-            };
-            let mut observer = |mesh: &Mesh, iterate: &Iterate| {
-                if self.trace.is_some() {
-                    rows.push(trace::row(&commit, mesh, iterate));
-                }
-            };
-            let (ordinal, stage, step) = (commit.ordinal, commit.stage, commit.step);
-            let replayed = match replay_stage(&mut states, index, stages, &mut observer) {
-                Ok(replayed) => replayed,
-                // It did not fail when the log was written.
-                Err(ReplayError::Stage(error)) => {
-                    print(&format!("{ordinal:>5}  step {step} {stage}: different: it fails now: {error}\n"))?;
-                    worst = code(&Verdict::Different(String::new()));
-                    continue;
-                }
-                Err(source) => {
-                    // What led there is what the trace is for.
-                    self.write_trace(&rows)?;
-                    return Err(Failure::Replay { ordinal, stage, step, source: Box::new(source) });
-                }
-            };
-            let verdict = verdict(&replayed.comparison);
-            print(&line(&verdict, &replayed, commit.ordinal))?;
-            worst = worst.max(code(&verdict));
+        let worst = self.replay_chosen(&asked, &mut rows);
+        // What led to a stage that cannot be run again is what the trace is for.
+        if worst.is_ok() || !rows.is_empty() {
+            self.write_trace(&rows)?;
         }
-        self.write_trace(&rows)?;
+        worst
+    }
+
+    fn replay_chosen(&self, asked: &Asked, rows: &mut Vec<TraceRow>) -> Result<u8, Failure> {
+        let chosen = self.chosen(asked)?;
+        let mut stages = None;
+        let mut worst = 0;
+        for part in asked.log.parts(&chosen) {
+            let (log, indices) = part.map_err(asked.changed())?;
+            let mut states = States::of(&log);
+            for index in indices {
+                worst = worst.max(self.replay(&mut states, *index, &mut stages, rows)?);
+            }
+        }
         Ok(worst)
+    }
+
+    /// Replays a stage, and says what came of it: the exit code.
+    fn replay(
+        &self,
+        states: &mut States,
+        index: usize,
+        stages: &mut Option<Stages>,
+        rows: &mut Vec<TraceRow>,
+    ) -> Result<u8, Failure> {
+        // Each stretch of a log with the scene that it was run with.
+        let scene = scene_at(states.log(), &self.log, index, &self.set)?;
+        self.check_settings(&scene_at(states.log(), &self.log, index, &[])?, &scene)?;
+        let stages = match stages.take().filter(|stages| *stages.scene() == scene) {
+            Some(same) => stages.insert(same),
+            None => stages.insert(Stages::new(scene)),
+        };
+        let Some(commit) = states.log().entry(index).map(|entry| entry.record.commit) else { return Ok(0) };
+        let mut observer = |mesh: &Mesh, iterate: &Iterate| {
+            if self.trace.is_some() {
+                rows.push(trace::row(&commit, mesh, iterate));
+            }
+        };
+        let (ordinal, stage, step) = (commit.ordinal, commit.stage, commit.step);
+        match replay_stage(states, index, stages, &mut observer) {
+            Ok(replayed) => {
+                let verdict = verdict(&replayed.comparison);
+                print(&line(&verdict, &replayed, ordinal))?;
+                Ok(code(&verdict))
+            }
+            // It did not fail when the log was written.
+            Err(ReplayError::Stage(error)) => {
+                print(&format!("{ordinal:>5}  step {step} {stage}: different: it fails now: {error}\n"))?;
+                Ok(code(&Verdict::Different(String::new())))
+            }
+            Err(source) => Err(Failure::Replay { ordinal, stage, step, source: Box::new(source) }),
+        }
     }
 
     /// Settings of what a state already holds would be ignored in silence.
@@ -113,23 +132,19 @@ impl Arguments {
     }
 
     /// Indices of the stages to run again.
-    fn chosen(&self, read: &ReadLog) -> Result<Vec<usize>, Failure> {
-        let entries = read.log.entries();
-        let Some(step) = self.step else { return Ok((0..entries.len()).collect()) };
-        let of_step: Vec<usize> =
-            (0..entries.len()).filter(|index| entries[*index].record.commit.step == step).collect();
-        if of_step.is_empty() {
-            return Err(Failure::NoSuchStep { log: self.log.clone(), step, known: read.steps() });
+    fn chosen(&self, asked: &Asked) -> Result<Vec<usize>, Failure> {
+        let Some(step) = self.step else { return Ok((0..asked.log.commits()).collect()) };
+        let of_step: Vec<Commit> = asked.stages_of_step(step)?.iter().map(|record| record.commit).collect();
+        let is_asked_for = |commit: &&Commit| self.stage.is_none_or(|stage| commit.stage == stage);
+        let chosen: Vec<usize> = of_step.iter().filter(is_asked_for).map(|commit| commit.ordinal as usize).collect();
+        match self.stage {
+            Some(stage) if chosen.is_empty() => {
+                let mut known: Vec<String> = of_step.iter().map(|commit| commit.stage.name().to_string()).collect();
+                known.dedup();
+                Err(Failure::NoSuchStage { log: self.log.clone(), step, stage, known })
+            }
+            _ => Ok(chosen),
         }
-        let Some(stage) = self.stage else { return Ok(of_step) };
-        let stage_of = |index: &usize| entries[*index].record.commit.stage;
-        let of_stage: Vec<usize> = of_step.iter().copied().filter(|index| stage_of(index) == stage).collect();
-        if of_stage.is_empty() {
-            let mut known: Vec<String> = of_step.iter().map(|index| stage_of(index).name().to_string()).collect();
-            known.dedup();
-            return Err(Failure::NoSuchStage { log: self.log.clone(), step, stage, known });
-        }
-        Ok(of_stage)
     }
 }
 

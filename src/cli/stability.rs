@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::asked::Asked;
 use super::failure::{EXIT_CODES, Failure};
-use super::log_file::{read_log, scene_at};
+use super::log_file::scene_at;
 use super::output::{file_name, print, refuse_what_is_there, write_files};
 use super::plot::cells_per_element;
 use crate::history::{StabilityReport, States, stability_at};
@@ -38,27 +39,39 @@ impl Arguments {
         if let Some(folder) = &self.output {
             refuse_what_is_there(&pictures(folder))?;
         }
-        let read = read_log(&self.log)?;
-        let records = read.records();
-        let ends = ends_of_steps(&records);
-        let mut states = States::of(&read.log);
-        let Some(step) = self.step else {
-            print(HEAD)?;
-            // Each as soon as it is known: a long log takes its time.
-            return ends.into_iter().try_for_each(|index| {
-                let (report, _) = self.report(&mut states, index)?;
-                print(&row(&records[index], &report))
-            });
-        };
-        let found = ends.into_iter().find(|index| records[*index].report.step == step);
-        let no_step = || Failure::NoSuchStep { log: self.log.clone(), step, known: read.steps() };
-        let index = found.ok_or_else(no_step)?;
-        let (report, scene) = self.report(&mut states, index)?;
-        print(&in_full(&records[index], &report))?;
+        let asked = Asked::open(&self.log)?;
+        let Some(step) = self.step else { return self.all(&asked) };
+        let mut ends = Ends::default();
+        asked.stages_of_step(step)?.iter().for_each(|record| ends.take(record));
+        let no_end = || Failure::NoSuchStep { log: self.log.clone(), step, known: asked.steps() };
+        let index = ends.stages.pop().ok_or_else(no_end)?;
+        let record = asked.log.record(index).map_err(asked.changed())?;
+        let log = asked.log.part(index..index + 1).map_err(asked.changed())?;
+        let (report, scene) = self.report(&mut States::of(&log), index)?;
+        print(&in_full(&record, &report))?;
         match &self.output {
-            Some(folder) => draw(folder, &scene, &records[index], &report),
+            Some(folder) => draw(folder, &scene, &record, &report),
             None => Ok(()),
         }
+    }
+
+    fn all(&self, asked: &Asked) -> Result<(), Failure> {
+        let every: Vec<usize> = (0..asked.log.commits()).collect();
+        let mut ends = Ends::default();
+        for part in asked.log.parts(&every) {
+            let (log, indices) = part.map_err(asked.changed())?;
+            indices.iter().filter_map(|index| log.entry(*index)).for_each(|entry| ends.take(&entry.record));
+        }
+        print(HEAD)?;
+        for part in asked.log.parts(&ends.stages) {
+            let (log, indices) = part.map_err(asked.changed())?;
+            let mut states = States::of(&log);
+            for (index, entry) in indices.iter().filter_map(|index| Some((*index, log.entry(*index)?))) {
+                // Each as soon as it is known: a long log takes its time.
+                print(&row(&entry.record, &self.report(&mut states, index)?.0))?;
+            }
+        }
+        Ok(())
     }
 
     fn report(&self, states: &mut States, index: usize) -> Result<(StabilityReport, Scene), Failure> {
@@ -69,18 +82,24 @@ impl Arguments {
 }
 
 /// The last equilibrium of each load step.
-fn ends_of_steps(records: &[Record]) -> Vec<usize> {
-    let mut ends: Vec<usize> = Vec::new();
-    for (index, Record { report, .. }) in records.iter().enumerate() {
+#[derive(Default)]
+struct Ends {
+    stages: Vec<usize>,
+    /// The load step of the last of them.
+    step: Option<u64>,
+}
+
+impl Ends {
+    /// Takes the stage that follows.
+    fn take(&mut self, Record { report, commit, .. }: &Record) {
         if report.outcome != Outcome::Done || !report.stage.finds_equilibrium() {
-            continue;
+            return;
         }
-        if ends.last().is_some_and(|last| records[*last].report.step == report.step) {
-            ends.pop();
+        if self.step.replace(report.step) == Some(report.step) {
+            self.stages.pop();
         }
-        ends.push(index);
+        self.stages.push(commit.ordinal as usize);
     }
-    ends
 }
 
 const HEAD: &str = " step   parameter   negative pivots   lowest eigenvalue N/mm\n";

@@ -3,7 +3,8 @@
 use crate::history::bisection::IndexBisection;
 use crate::history::compare::{Comparison, compare};
 use crate::history::states::{RemakeError, States};
-use crate::journal::Log;
+use crate::journal::{AskedLog, LongLogError};
+use crate::pipeline::Commit;
 
 /// The first stage at which two runs differ.
 #[derive(Clone, Debug)]
@@ -25,24 +26,29 @@ pub struct Parting {
 ///
 /// # Errors
 /// Where a state cannot be had.
-pub fn find_parting(a: &Log, b: &Log) -> Result<Option<Parting>, RemakeError> {
-    let len = a.entries().len().min(b.entries().len());
-    let commit = |log: &Log, index: usize| log.entries()[index].record.commit;
-    let same_scene = len > 0 && commit(a, 0).scene_hash == commit(b, 0).scene_hash;
-    let parted = |index: usize| {
-        let (x, y) = (commit(a, index), commit(b, index));
-        if same_scene { x.chain_hash != y.chain_hash } else { (x.stage, x.state_hash) != (y.stage, y.state_hash) }
-    };
+pub fn find_parting(a: &AskedLog, b: &AskedLog) -> Result<Option<Parting>, RemakeError> {
+    let len = a.commits().min(b.commits());
+    if len == 0 {
+        return Ok(None);
+    }
+    let both =
+        |index: usize| -> Result<[Commit; 2], LongLogError> { Ok([a.record(index)?.commit, b.record(index)?.commit]) };
+    let [x, y] = both(0)?;
+    let same_scene = x.scene_hash == y.scene_hash;
     let mut search = IndexBisection::new(len);
     let mut looks = 0;
     while let Some(index) = search.next() {
-        search = search.told(index, parted(index));
+        let [x, y] = both(index)?;
+        let parted =
+            if same_scene { x.chain_hash != y.chain_hash } else { (x.stage, x.state_hash) != (y.stage, y.state_hash) };
+        search = search.told(index, parted);
         looks += 1;
     }
     let index = search.answer();
     if index == len {
         return Ok(None);
     }
-    let comparison = compare(&States::of(a).at(index)?, &States::of(b).at(index)?);
+    let [x, y] = [a.part(index..index + 1)?, b.part(index..index + 1)?];
+    let comparison = compare(&States::of(&x).at(index)?, &States::of(&y).at(index)?);
     Ok(Some(Parting { index, looks, comparison }))
 }

@@ -3,6 +3,7 @@
 use crate::equilibrium::Iterate;
 use crate::history::compare::{Comparison, Difference, compare};
 use crate::history::states::{RemakeError, States};
+use crate::journal::StateError;
 use crate::pipeline::{Report, StageError, Stages};
 use crate::spline::Mesh;
 use crate::state::State;
@@ -56,7 +57,11 @@ pub fn replay_stage(
     observer: &mut dyn FnMut(&Mesh, &Iterate),
 ) -> Result<Replayed, ReplayError> {
     let before = states.before(index)?;
-    let entry = &states.log().entries()[index].record;
+    let log = states.log();
+    let Some(entry) = log.entry(index) else {
+        return Err(RemakeError::from(StateError::NoSuchStage { index, len: log.commits() }).into());
+    };
+    let entry = &entry.record;
     let (state, report) = stages.run(entry.report.stage, &before, &mut |iterate| observer(&before.mesh, iterate))?;
     let comparison = match states.at(index) {
         Ok(logged) => compare(&logged, &state),

@@ -2,7 +2,7 @@
 //! and has to come out with the hash that the log has for it.
 
 use crate::history::logged_scene::{LoggedSceneError, logged_scene};
-use crate::journal::{Log, Manifest, StateError};
+use crate::journal::{Log, LongLogError, Manifest, StateError};
 use crate::model::ModelError;
 use crate::pipeline::{StageError, Stages};
 use crate::state::{Hash, State};
@@ -13,6 +13,9 @@ pub enum RemakeError {
     /// What the log holds cannot be used.
     #[error(transparent)]
     State(#[from] StateError),
+    /// The part of a long log that it stands in cannot be read.
+    #[error(transparent)]
+    Part(#[from] LongLogError),
     /// The scene of a stage that has to run again is lost.
     #[error("the state was thinned out, and cannot be made again")]
     Scene(#[from] LoggedSceneError),

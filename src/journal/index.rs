@@ -251,9 +251,19 @@ impl Index {
 
     /// Reads what the last block marks from the log, and where all chunks before that commit lie.
     pub fn checkpoint(&self, log: &File) -> io::Result<Option<(Checkpoint, Ledger)>> {
-        let Some(last) = self.heads.last() else { return Ok(None) };
+        self.checkpoint_of(log, &self.heads)
+    }
+
+    /// The same of the last block whose commits are all before another.
+    pub fn checkpoint_before(&self, log: &File, ordinal: usize) -> io::Result<Option<(Checkpoint, Ledger)>> {
+        let behind = self.heads.partition_point(|head| head.first + head.commits <= ordinal as u64);
+        self.checkpoint_of(log, &self.heads[..behind])
+    }
+
+    fn checkpoint_of(&self, log: &File, heads: &[Head]) -> io::Result<Option<(Checkpoint, Ledger)>> {
+        let Some(last) = heads.last() else { return Ok(None) };
         let mut ledger = Ledger { patterns: last.mark.patterns.clone(), ..Ledger::default() };
-        for head in &self.heads {
+        for head in heads {
             let [at, bytes, pattern] = PLACES.map(|name| self.column(head, name));
             for ((at, bytes), pattern) in at?.into_iter().zip(bytes?).zip(pattern?) {
                 if pattern as usize >= ledger.patterns.len() {

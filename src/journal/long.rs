@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io;
+use std::ops::Range;
 use std::path::Path;
 
 use super::backend::beside;
@@ -21,6 +22,14 @@ pub enum LongLogError {
     /// The log or its index cannot be read.
     #[error("the log or its index cannot be read")]
     Io(#[from] io::Error),
+    /// No such stage.
+    #[error("there is no stage {ordinal} in this log: it holds {commits}, counted from 0")]
+    NoSuchStage {
+        /// What was asked for.
+        ordinal: usize,
+        /// Stages in the log.
+        commits: usize,
+    },
     /// A commit that is not what the index says: damaged, or of another log.
     #[error(
         "commit {ordinal} at byte {at} is not what it was when the index was written: `foldline verify` tells more"
@@ -122,7 +131,7 @@ impl LongLog {
             return Ok(entry.record.clone());
         }
         let at = self.ledger.chunks.get(ordinal).map_or(0, |place| place.at);
-        let changed = || LongLogError::Changed { ordinal: ordinal as u64, at };
+        let changed = || self.changed(ordinal);
         let (bytes, record) = record_at(&self.file, at)?.ok_or_else(changed)?;
         let mut channels = self.ledger.channels_described();
         match chunk::open(&bytes, &record, &mut channels) {
@@ -132,6 +141,34 @@ impl LongLog {
             }
             _ => Err(changed()),
         }
+    }
+
+    /// A part of the log with these stages and the one before them, from the last commit before them that a block of the index
+    /// marks.
+    ///
+    /// # Errors
+    /// Where it cannot be read, or they are not what they were.
+    pub fn part(&self, stages: Range<usize>) -> Result<Log, LongLogError> {
+        let first = stages.start.saturating_sub(1);
+        let (from, _) = match &self.index {
+            Some(index) => index.checkpoint_before(&self.file, first)?.unzip(),
+            None => (None, None),
+        };
+        let end = self.ledger.chunks.get(stages.end).map(|place| place.at);
+        let end = end.unwrap_or(self.tail.base + self.tail.walked as u64);
+        let log = Log::read_on(&self.file, end, from.as_ref(), usize::MAX)?;
+        match (first..stages.end).find(|ordinal| log.entry(*ordinal).is_none()) {
+            None => Ok(log),
+            Some(ordinal) if ordinal >= self.commits() => {
+                Err(LongLogError::NoSuchStage { ordinal, commits: self.commits() })
+            }
+            Some(ordinal) => Err(self.changed(ordinal)),
+        }
+    }
+
+    fn changed(&self, ordinal: usize) -> LongLogError {
+        let at = self.ledger.chunks.get(ordinal).map_or(0, |place| place.at);
+        LongLogError::Changed { ordinal: ordinal as u64, at }
     }
 
     /// Ordinals of the stages from `from` on, of those before the end that was read, whose reports hold numbers that `holds`
@@ -160,7 +197,7 @@ impl LongLog {
 /// What a block says about its last commit.
 pub(super) fn mark(log: &Log, ledger: &Ledger, entry: &Entry) -> Option<Mark> {
     let at = entry.bytes.start;
-    let piece = |places: &std::collections::HashMap<_, std::ops::Range<usize>>, hash| {
+    let piece = |places: &std::collections::HashMap<_, Range<usize>>, hash| {
         let place = places.get(&hash)?;
         Some(Piece { hash: HexHash(hash), place: [log.place_of(place)?, place.len() as u64] })
     };

@@ -20,7 +20,7 @@
 //! | `message`, `manifest` | reports, commits, the end, who wrote it |
 //! | `ledger`, `summary`, `encoder`, `encode_error`, `backend`, `writer` | from a stage to bytes in a file |
 //! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
-//! | `checkpoint`, `parts`, `index`, `index_keeper`, `long` | a long log, of which only the end is read |
+//! | `checkpoint`, `parts`, `index`, `index_keeper`, `long`, `asked` | a long log, of which only what is asked for is read |
 //! | `portions` | a log of any length, read through without holding it |
 //! | `resume`, `recovery` | going on with a log, copying what is good of one |
 //! | `new_log`, `thin` | a log that is made of another, without some of its states |
@@ -81,6 +81,7 @@
 //! the last program before the change, by the command that the `README.md` names, and add them with their rows. A
 //! golden log is never written again.
 mod agreement;
+mod asked;
 mod backend;
 mod checkpoint;
 mod chunk;
@@ -118,6 +119,7 @@ mod verify;
 mod writer;
 
 pub use agreement::Disagreement;
+pub use asked::AskedLog;
 pub use backend::{Backend, FileBackend};
 pub use codec::{
     CODEC_VERSION, CodecError, EncodedField, EncodedState, decode_mesh, decode_state, encode_mesh, encode_state,

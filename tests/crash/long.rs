@@ -11,7 +11,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use foldline::journal::{JournalWriter, Level, Log, LongLog, Manifest, Resume, verify};
+use foldline::journal::{AskedLog, JournalWriter, Level, Log, LongLog, Manifest, Resume, verify};
 use foldline::pipeline::{Commit, MemorySink, Record, Run, Stages};
 use foldline::scene::SyncPolicy;
 use foldline::state::State;
@@ -142,6 +142,60 @@ fn an_index_changes_no_answer() {
     }
     fs::remove_file(place.file("long.mcap.index")).unwrap();
     assert_eq!(ask(), (step, first));
+}
+
+/// Stages of a long log are had, and run again, without the rest of it; and what is said of them is what is said having read it.
+#[test]
+fn a_part_of_a_long_log_is_as_good_as_all_of_it() {
+    const COMMITS: u64 = 8000;
+    let place = Place::new();
+    let path = place.file("long.mcap");
+    write_long(&path, COMMITS);
+    let whole = Log::read(&path).unwrap();
+    let (asked, memory) = peak(|| {
+        let asked = AskedLog::open(&path).unwrap();
+        // At the start, on both sides of a block of the index, and at the end.
+        for ordinal in [0, 1, 1023, 1024, 1025, 5000, COMMITS as usize - 1] {
+            let part = asked.part(ordinal..ordinal + 1).unwrap();
+            assert!(part.entries().len() <= 2200, "{} stages for one", part.entries().len());
+            for index in ordinal.saturating_sub(1)..=ordinal {
+                assert_eq!(part.state(index).unwrap().hash(), whole.state(index).unwrap().hash());
+                assert_eq!(part.entry(index).unwrap().record, whole.entry(index).unwrap().record);
+            }
+        }
+        asked
+    });
+    assert!(matches!(asked, AskedLog::Long(_)));
+    assert!(memory < 24 << 20, "{memory} bytes for a log of {}", whole.file_len());
+    let beyond = asked.part(COMMITS as usize..COMMITS as usize + 1).unwrap_err();
+    assert!(beyond.to_string().contains("there is no stage 8000 in this log: it holds 8000"), "{beyond}");
+    let every: Vec<usize> = (0..COMMITS as usize).collect();
+    let in_parts = asked.parts(&every).flat_map(|part| {
+        let (log, indices) = part.unwrap();
+        indices.iter().map(|index| log.entry(*index).unwrap().record.clone()).collect::<Vec<_>>()
+    });
+    assert!(in_parts.eq(whole.entries().iter().map(|entry| entry.record.clone())));
+
+    fs::copy(&path, place.file("copy.mcap")).unwrap();
+    for (command, code) in [
+        ("replay LOG --step 5000", 2),
+        ("stability LOG --step 5000", 0),
+        ("stability LOG --step 8001", 2),
+        ("replay LOG --step 5000 --stage refine-knots", 2),
+        ("bisect LOG copy.mcap", 0),
+    ] {
+        let of_part = place.foldline(&command.replace("LOG", "long.mcap")).ends(code);
+        let of_whole = place.foldline(&command.replace("LOG", "copy.mcap")).ends(code);
+        assert_eq!(of_part.out, of_whole.out.replace("copy.mcap", "long.mcap"), "{command}");
+        assert_eq!(of_part.err, of_whole.err.replace("copy.mcap", "long.mcap"), "{command}");
+    }
+    // A flipped byte in the middle: what stands before it is still had, and what stands there is refused.
+    let mut damaged = place.read("long.mcap");
+    let chunk = &whole.entries()[5000].bytes;
+    damaged[(chunk.start + chunk.end) as usize / 2] ^= 1;
+    place.write("long.mcap", damaged);
+    place.foldline("stability long.mcap --step 4000").ends(0);
+    place.foldline("stability long.mcap --step 5001").ends(1).says(&["commit 5000", "foldline verify"]);
 }
 
 /// A long log is gone on with from its end, in place, with the index or without; its index grows with it.

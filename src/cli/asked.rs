@@ -1,0 +1,60 @@
+//! Logs of any length, as the commands see them that ask for some stages.
+
+use std::path::{Path, PathBuf};
+
+use super::failure::Failure;
+use super::log_file::{end_scene, older_scene, say_warnings, unreadable};
+use crate::history::stages_of_step;
+use crate::journal::{AskedLog, LongLogError};
+use crate::pipeline::Record;
+use crate::scene::Scene;
+
+/// A log, with the scene that its last stretch was run with.
+pub(super) struct Asked {
+    path: PathBuf,
+    pub(super) log: AskedLog,
+    pub(super) scene: Scene,
+    scene_is_older: bool,
+}
+
+impl Asked {
+    /// Opens a log, and says what of it is lost.
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        let log = AskedLog::open(path).map_err(unreadable(path))?;
+        let (scene, scene_is_older) = end_scene(log.end(), path)?;
+        say_warnings(log.end(), path);
+        Ok(Self { path: path.to_path_buf(), log, scene, scene_is_older })
+    }
+
+    /// What is shown as the scene's where that is lost: a line that says so.
+    pub(super) fn older_scene(&self) -> Option<String> {
+        older_scene(self.log.end(), self.scene_is_older)
+    }
+
+    /// The stages of a load step, in their order.
+    pub(super) fn stages_of_step(&self, step: u64) -> Result<Vec<Record>, Failure> {
+        let found = match &self.log {
+            AskedLog::Long(long) => stages_of_step(long, step),
+            AskedLog::Whole(log) => {
+                let records = log.entries().iter().map(|entry| &entry.record);
+                Ok(records.filter(|record| record.report.step == step).cloned().collect())
+            }
+        };
+        let found = found.map_err(self.changed())?;
+        if found.is_empty() {
+            return Err(Failure::NoSuchStep { log: self.path.clone(), step, known: self.steps() });
+        }
+        Ok(found)
+    }
+
+    /// First and last load step.
+    pub(super) fn steps(&self) -> Option<(u64, u64)> {
+        let step_of = |ordinal: usize| self.log.record(ordinal).ok().map(|record| record.report.step);
+        step_of(0).zip(step_of(self.log.commits().checked_sub(1)?))
+    }
+
+    /// What became of a log that is not what it was.
+    pub(super) fn changed(&self) -> impl Fn(LongLogError) -> Failure {
+        |source| Failure::WrongLog { log: self.path.clone(), source: Box::new(source) }
+    }
+}
