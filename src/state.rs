@@ -28,7 +28,7 @@ pub struct State {
     pub turns: Vec<[f64; 3]>,
     /// Turning ends: moment dΠ/dθ / 2 (of each end, whole section), N·mm. Otherwise 0.
     pub moment_n_mm: f64,
-    /// Strain energy of the whole shell, N·mm.
+    /// Energy that the whole shell stores, N·mm: strain energy, and what terms of the caller's own store.
     pub strain_energy_n_mm: f64,
     /// Negative pivots of the (symmetric part of the) tangent stiffness at the last equilibrium; 0 where it is stable.
     pub negative_pivots: u64,

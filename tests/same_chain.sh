@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs scenes with two builds of foldline and compares the chains of hashes of their logs: what is meant to change no result
-# changes no bit of one. Usage: tests/same_chain.sh OLD NEW, from the top of the tree.
+# changes no bit of one. Every scene has to run to its end with both. Usage: tests/same_chain.sh OLD NEW, from the top of the tree.
 set -eu
 old=$1
 new=$2
@@ -10,7 +10,7 @@ status=0
 
 # The chain hash of the last stage.
 last_of() {
-    "$1" inspect "$2" --json | tail -n 1 | sed 's/.*"chain_hash":"\([0-9a-f]*\)".*/\1/'
+    "$1" inspect "$2" --json | tail -n 1 | sed -n 's/.*"chain_hash":"\([0-9a-f]*\)".*/\1/p'
 }
 
 # A scene, changed by a sed script, and what that does.
@@ -18,8 +18,12 @@ compare() {
     sed "${2:-}" "$1" >"$work/scene.toml"
     for build in old new; do
         eval program=\$$build
-        # How a run ends does not matter here: its log tells what it did.
-        "$program" run -q "$work/scene.toml" -o "$work/$build.mcap" >"$work/$build.txt" 2>&1 || true
+        if ! "$program" run -q "$work/scene.toml" -o "$work/$build.mcap" >"$work/$build.txt" 2>&1; then
+            echo "FAILED    $1 ${3:-} with the $build build: $(tail -n 1 "$work/$build.txt")"
+            status=1
+            rm -f "$work"/*
+            return
+        fi
     done
     one=$(last_of "$old" "$work/old.mcap")
     other=$(last_of "$new" "$work/new.mcap")

@@ -11,7 +11,8 @@ use super::output::print;
 use super::replay::place;
 use super::stage_table::stage_table;
 use crate::history::{
-    Comparison, Condition, ConditionError, SnapReport, find_parting, find_snap, first_loss_of_stability, first_where,
+    Comparison, Condition, ConditionError, SnapReport, States, find_parting, find_snap, first_loss_of_stability,
+    first_where,
 };
 use crate::journal::{LongLog, LongLogError};
 use crate::pipeline::{Parameter, Record};
@@ -122,7 +123,7 @@ impl Arguments {
         let jump = first_loss_of_stability(&read.log);
         // The scene of the stretch that jumped; without a jump no scene is needed.
         let scene = jump.map_or(Ok(read.scene.clone()), |jump| scene_at(&read.log, &self.log, jump, &[]))?;
-        let report = find_snap(&read.log, &scene, self.tolerance).map_err(Box::new)?;
+        let report = find_snap(&mut States::of(&read.log), &scene, self.tolerance).map_err(Box::new)?;
         print(&told(&report, Parameter::of(&scene))).map(|()| 0)
     }
 }

@@ -208,10 +208,10 @@ pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
 
 /// The scene that stage `index` was run with, with settings laid over it.
 pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
-    logged_scene(log, index, settings).map_err(|error| match error {
+    logged_scene(log, index, settings, &[]).map_err(|error| match error {
         LoggedSceneError::Lost { ordinal } => Failure::SceneLost { log: path.to_path_buf(), ordinal },
         LoggedSceneError::Unreadable(error) => unreadable_scene(error, path),
-        own @ LoggedSceneError::OwnTerms { .. } => Failure::WrongLog { log: path.to_path_buf(), source: Box::new(own) },
+        error => Failure::WrongLog { log: path.to_path_buf(), source: Box::new(error) },
     })
 }
 

@@ -100,7 +100,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
             restored = Some(
                 "the log has lost its last scene; this one decides the same states and takes its place".to_string(),
             );
-            restored_scene(log, &scene).ok_or(lost)?
+            restored_scene(log, &Stages::new(scene.clone())).ok_or(lost)?
         }
         was => was?,
     };

@@ -11,7 +11,7 @@ pub use crate::equilibrium::kernel::Want;
 use crate::equilibrium::kernel::{Build, ElementBuffers, integrate_element};
 use crate::equilibrium::vector::length;
 use crate::model::{At, BLOCK, BlockPattern, Blocks, Discretization, NaturalState, Strand, Tables};
-use crate::shell::sub;
+use crate::shell::{add, sub};
 
 /// Strain energy of the model at a displacement of the control points that `tables` act on, N·mm. `natural` is the state
 /// without forces, where that is not the undeformed one. Summed in the order of [`Assembled::assemble`].
@@ -58,6 +58,8 @@ pub struct Assembled {
     pub residual: Vec<[f64; 3]>,
     /// Forces that loads and other terms exert on the control points, N; empty where there are none.
     pub external: Vec<[f64; 3]>,
+    /// The part of these that terms exert which store energy: internal forces of the model; empty where there are none.
+    pub internal: Vec<[f64; 3]>,
     /// Norm of the part of the residual that the free strain makes, N: a load in all but name. 0 where there is none.
     pub free_strain_forces: f64,
     /// Symmetric part of the tangent of the residual less the external forces, N/mm; empty where it is not asked for.
@@ -102,9 +104,11 @@ impl Assembled {
 
     fn add_terms(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64, want: Want) {
         let Discretization { mesh, terms, blocks, .. } = discretization;
-        self.external = discretization.external_forces(displacement, parameter);
+        (self.external, self.internal) = (Vec::new(), Vec::new());
         if !terms.is_empty() {
             let at = At { mesh, displacement, parameter };
+            [self.external, self.internal] = terms.forces_apart(at);
+            self.external.iter_mut().zip(&self.internal).for_each(|(sum, force)| *sum = add(*sum, *force));
             self.energy += terms.energy(at);
             if want == Want::Stiffness {
                 self.skew = terms.add_tangent(at, blocks, &mut self.stiffness);

@@ -7,10 +7,11 @@ pub struct Balance {
     pub stored: f64,
     /// What each of those terms stores, in their order; 0 for loads.
     pub of_terms: Vec<f64>,
-    /// Work of loads, given motions and changes of the natural state since the start of the solve: reactions, and factors of the
-    /// actions, by their means before and after; strokes of the actions along the way that the solve took.
+    /// Work of loads, given motions and changes of the natural state, or of what terms store, with the parameter since the start of
+    /// the solve: reactions, and factors of the actions, by their means before and after; strokes of the actions along the way
+    /// that the solve took.
     pub work: f64,
-    /// What the change of the natural state would have put in had the shell stayed, and at least a hundred times what rounding of
+    /// What these changes with the parameter would have put in had the shell stayed, and at least a hundred times what rounding of
     /// the displacement is worth. Where a shell follows its natural state, or is carried off without strain, this is the measure
     /// of energies, not the little that it stores.
     pub put_in: f64,

@@ -2,7 +2,8 @@
 //!
 //! Forces balance where what is left of their sum is small beside the forces themselves. Which ones?
 //!
-//! - Reactions and loads, as long as there are any: what M, and every other reaction, is measured in.
+//! - Reactions and loads, as long as there are any: what M, and every other reaction, is measured in. Forces of terms that store
+//!   energy are internal, as the shell's: a plate that lies on a foundation balances the load on it though it carries nothing.
 //! - A shell that is let go has neither, though it may be under stress (a cured laminate, a coiled tape on determinate
 //!   supports): there it is the forces of its elements before they are summed. On control points these cancel but for
 //!   reactions and loads, so they are much the larger, and count by a share alone.
@@ -15,7 +16,7 @@
 //! magnitudes would grow with the number of elements for one and the same stress, which the norm of membrane forces does
 //! not.
 
-use crate::equilibrium::assembly::Assembled;
+use crate::equilibrium::assembly::{Assembled, subtract};
 use crate::equilibrium::vector::length;
 use crate::model::Discretization;
 
@@ -61,7 +62,11 @@ impl ForceScale {
         let own = assembled.stiffness.diagonal(&discretization.blocks).zip(displacement);
         let squares = own.flat_map(|(block, u)| [0, 1, 2].map(|c| (block[4 * c] * u[c]).powi(2)));
         let rounding = ROUNDINGS * f64::EPSILON * squares.sum::<f64>().sqrt();
-        let (reactions, loads) = (length(&assembled.residual), length(&assembled.external));
+        let Assembled { residual, external, internal, .. } = assembled;
+        let [reactions, loads] = match internal.is_empty() {
+            true => [length(residual), length(external)],
+            false => [length(&subtract(residual, internal)), length(&subtract(external, internal))],
+        };
         // Loads are known, and so are reactions that stand out of the rounding.
         let known = match loads > 0.0 {
             true => loads,

@@ -9,7 +9,7 @@ use crate::model::Unknowns;
 pub struct Iterate {
     /// Newton steps taken.
     pub iteration: usize,
-    /// Strain energy of the model, N·mm.
+    /// Energy that the model stores, N·mm: strain energy, and that of other terms.
     pub energy: f64,
     /// |Tᵀ (g − f)|, N.
     pub residual: f64,

@@ -96,7 +96,7 @@ impl<'a> Equilibrium<'a> {
         let unknowns = &discretization.unknowns;
         let Configuration { free: old, placement, .. } = Configuration::of(unknowns, from);
         let forces = assembled.forces();
-        let before = Before::with(discretization, &placement, &forces, from, assembled.energy);
+        let before = Before::with(&placement, &forces, from, assembled.energy);
         if negative > 0 {
             return (old, None, before);
         }

@@ -90,3 +90,155 @@ impl TangentStiffness {
         values
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::digest::Hash;
+    use crate::equilibrium::{Equilibrium, Standing, Want, Workspace};
+    use crate::model::{At, ModelError, Tables, Tangent, Term, TermSource, starting_mesh};
+    use crate::scene::{Scene, parse};
+    use crate::spline::Mesh;
+
+    /// A spring along z between two control points, N/mm.
+    #[derive(Clone, Copy, Debug)]
+    struct Tie([usize; 2], f64);
+
+    impl TermSource for Tie {
+        fn name(&self) -> &str {
+            "tie"
+        }
+
+        fn hash(&self) -> Hash {
+            Hash::from_bytes([0; 32])
+        }
+
+        fn on(&self, _: &Scene, _: &Mesh, _: &Tables) -> Result<Box<dyn Term>, ModelError> {
+            Ok(Box::new(*self))
+        }
+    }
+
+    impl Tie {
+        fn stretch(&self, at: At) -> f64 {
+            at.displacement[self.0[1]][2] - at.displacement[self.0[0]][2]
+        }
+    }
+
+    impl Term for Tie {
+        fn pairs(&self) -> Vec<[usize; 2]> {
+            vec![self.0]
+        }
+
+        fn energy(&self, at: At) -> f64 {
+            0.5 * self.1 * self.stretch(at).powi(2)
+        }
+
+        fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
+            let force = self.1 * self.stretch(at);
+            forces[self.0[0]][2] += force;
+            forces[self.0[1]][2] -= force;
+        }
+
+        fn has_tangent(&self) -> bool {
+            true
+        }
+
+        fn add_tangent(&self, _: At, tangent: &mut Tangent) {
+            for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let slope = if a == b { -self.1 } else { self.1 };
+                tangent.add([self.0[a], self.0[b]], [[0.0; 3], [0.0; 3], [0.0, 0.0, slope]]);
+            }
+        }
+    }
+
+    const STIFFNESS: f64 = 0.3;
+
+    /// A plate with a tie between two control points that are far apart, or without.
+    fn plate(tied: bool) -> (Scene, Workspace, [usize; 2]) {
+        let column = include_str!("../../tests/restart/column.toml");
+        let bent = column.replace("[-1.43932, 0.0, 0.0]", "[0.0, 0.0, 0.2]");
+        let mut scene = parse(&bent, "column.toml").unwrap();
+        scene.mesh.elements = [12, 4];
+        let mesh = Arc::new(starting_mesh(&scene).unwrap());
+        let grid = mesh.grid();
+        let points = [grid.index([3, 2]), grid.index([grid.counts[0] - 3, grid.counts[1] - 1])];
+        let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Tie(points, STIFFNESS))];
+        let work = Workspace::with_terms(&scene, &mesh, if tied { &own } else { &[] }).unwrap();
+        (scene, work, points)
+    }
+
+    /// The same matrix in strips, and in supernodes.
+    fn of_both_kinds(discretization: &Discretization) -> [TangentStiffness; 2] {
+        let couplings = couplings(discretization);
+        let solvers = [SparseSolver::new(&couplings).unwrap(), SparseSolver::supernodal(&couplings).unwrap()];
+        assert!(matches!(solvers, [SparseSolver::Strips(_), SparseSolver::Supernodal(_)]));
+        solvers.map(|solver| TangentStiffness {
+            pattern: Pattern::new(discretization, &solver),
+            solver,
+            symmetric: Vec::new(),
+        })
+    }
+
+    /// The tie is a matrix of rank one, k e eᵀ, on the unknowns: (K + k e eᵀ)⁻¹ f = x − k z (e·x)/(1 + k e·z) with x = K⁻¹f and
+    /// z = K⁻¹e (Sherman & Morrison 1950).
+    #[test]
+    fn points_far_apart_are_coupled_in_either_storage() {
+        let mut solutions = Vec::new();
+        for tied in [false, true] {
+            let (_, work, points) = plate(tied);
+            let discretization = work.discretization();
+            let still = vec![[0.0; 3]; discretization.mesh.control_points.len()];
+            let count = discretization.unknowns.count();
+            let placement = discretization.unknowns.place(&vec![0.0; count], 0.0);
+            let mut assembled = Assembled::new(discretization);
+            assembled.assemble(discretization, &still, 0.0, Want::Stiffness);
+            let load: Vec<f64> = (0..count).map(|i| (i * 7919 % 1013) as f64 / 1013.0 - 0.5).collect();
+            let mut ends = still.clone();
+            (ends[points[0]][2], ends[points[1]][2]) = (-1.0, 1.0);
+            let direction = placement.restrict(&ends);
+            for mut tangent in of_both_kinds(discretization) {
+                tangent.factorize(discretization, &placement, &assembled).unwrap();
+                let solve = |mut vector: Vec<f64>| {
+                    tangent.solver.solve(&mut vector);
+                    vector
+                };
+                solutions.push([solve(load.clone()), solve(direction.clone()), direction.clone()]);
+            }
+        }
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let [[x, z, e], _, tied @ ..] = &solutions[..] else { unreachable!() };
+        let share = STIFFNESS * product(e, x) / (1.0 + STIFFNESS * product(e, z));
+        let scale = x.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        assert!((share * product(e, z)).abs() > 1e-3 * scale, "the tie tells");
+        for [found, ..] in tied {
+            for (i, found) in found.iter().enumerate() {
+                assert!((found - (x[i] - share * z[i])).abs() < 1e-9 * scale, "{i}: {found}");
+            }
+        }
+    }
+
+    /// A solve far into bending ends in one shape on either storage, and the tie bears a part of the load.
+    #[test]
+    fn a_solve_ends_alike_in_either_storage() {
+        let (mut shapes, mut stretches) = (Vec::new(), Vec::new());
+        for tied in [true, false] {
+            let (scene, mut work, points) = plate(tied);
+            for tangent in of_both_kinds(&work.discretization) {
+                work.tangent = tangent;
+                let still = vec![[0.0; 3]; work.discretization.mesh.control_points.len()];
+                let rest = Standing { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
+                let solved = Equilibrium::new(&scene, &mut work).advance(rest, 0.5, &mut |_| false).unwrap();
+                let [one, other] = points.map(|point| solved.displacement[point][2]);
+                stretches.push((other - one).abs());
+                shapes.push(solved.displacement);
+            }
+        }
+        let scale = shapes[0].as_flattened().iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        for (a, b) in shapes[0].as_flattened().iter().zip(shapes[1].as_flattened()) {
+            assert!((a - b).abs() < 1e-6 * scale, "{a} {b}");
+        }
+        assert!(stretches[0] < 0.9 * stretches[2], "{stretches:?}");
+    }
+}

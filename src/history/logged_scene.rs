@@ -1,7 +1,12 @@
 //! The scene that a stage of a log was run with.
 
+use std::sync::Arc;
+
 use crate::journal::{Log, SceneInLogError};
+use crate::model::TermSource;
+use crate::pipeline::run_hash;
 use crate::scene::Scene;
+use crate::state::Hash;
 
 /// Defaults as they once were, for scenes in logs of that time that leave them out: any of them, as not all changed at once.
 /// Laid over any other scene they would change its hash, which the log holds.
@@ -30,33 +35,68 @@ pub enum LoggedSceneError {
         /// Names of the terms.
         names: String,
     },
+    /// The run had the same terms with other parameters, fewer, or in another order.
+    #[error(
+        "stage {ordinal} was run with other terms of its program's own: {differences}; give those that it was run with"
+    )]
+    OtherTerms {
+        /// Ordinal of the stage.
+        ordinal: usize,
+        /// What differs, in words.
+        differences: String,
+    },
     /// It does not read with the settings.
     #[error(transparent)]
     Unreadable(#[from] SceneInLogError),
 }
 
-/// The scene that stage `index` was run with, with settings laid over it: that of its stretch, and held against the
-/// hash in its commit, so that no other takes its place where it is lost.
+/// The scene that stage `index` was run with beside these terms of the caller's own, with settings laid over it: that of its
+/// stretch, and held with them against the hash in its commit, so that no other takes its place where it is lost.
 ///
 /// # Errors
-/// Where it is lost, does not read with the settings, or does not decide the states alone.
-pub fn logged_scene(log: &Log, index: usize, settings: &[String]) -> Result<Scene, LoggedSceneError> {
+/// Where it is lost, does not read with the settings, or was run with other terms.
+pub fn logged_scene(
+    log: &Log,
+    index: usize,
+    settings: &[String],
+    own: &[Arc<dyn TermSource>],
+) -> Result<Scene, LoggedSceneError> {
     let lost = LoggedSceneError::Lost { ordinal: index };
     let Some(entry) = log.entry(index) else { return Err(lost) };
     let expected = entry.record.commit.scene_hash;
+    let terms: Vec<(&str, Hash)> = own.iter().map(|source| (source.name(), source.hash())).collect();
     for manifest in log.manifests_of(index) {
-        if !manifest.own_terms.is_empty() {
-            let names: Vec<&str> = manifest.own_terms.iter().map(|(name, _)| &name[..]).collect();
-            return Err(LoggedSceneError::OwnTerms { ordinal: index, names: names.join(", ") });
-        }
+        check_terms(index, &manifest.own_terms, &terms)?;
         for chosen in 0..1 << DEFAULTS_BEFORE.len() {
             let is_chosen = |index: usize| chosen >> index & 1 == 1;
             let defaults = DEFAULTS_BEFORE.iter().enumerate().filter(|(index, _)| is_chosen(*index));
             let as_then: Vec<String> = defaults.map(|(_, default)| default.to_string()).collect();
-            if manifest.scene(&as_then).is_ok_and(|scene| scene.hash() == expected) {
+            if manifest.scene(&as_then).is_ok_and(|scene| run_hash(&scene, &terms) == expected) {
                 return Ok(manifest.scene(&[&as_then[..], settings].concat())?);
             }
         }
     }
     Err(lost)
+}
+
+/// Refuses terms of the caller's own that are not those, by name and hash, that a stage was run with.
+fn check_terms(ordinal: usize, logged: &[(String, String)], here: &[(&str, Hash)]) -> Result<(), LoggedSceneError> {
+    let is_same =
+        |((name, hash), (this, other)): (&(String, String), &(&str, Hash))| name == this && *hash == other.to_string();
+    if logged.len() == here.len() && logged.iter().zip(here).all(is_same) {
+        return Ok(());
+    }
+    let missing = logged.iter().filter(|(name, _)| here.iter().all(|(this, _)| this != name));
+    let names: Vec<&str> = missing.map(|(name, _)| &name[..]).collect();
+    if !names.is_empty() {
+        return Err(LoggedSceneError::OwnTerms { ordinal, names: names.join(", ") });
+    }
+    let differences = here.iter().filter_map(|(name, hash)| match logged.iter().find(|(known, _)| known == name) {
+        None => Some(format!("\"{name}\" was not there")),
+        Some((_, known)) => (*known != hash.to_string()).then(|| format!("\"{name}\" had other parameters")),
+    });
+    let differences: Vec<String> = differences.collect();
+    let differences =
+        if differences.is_empty() { "they stood in another order".into() } else { differences.join(", ") };
+    Err(LoggedSceneError::OtherTerms { ordinal, differences })
 }

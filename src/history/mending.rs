@@ -21,7 +21,7 @@ fn with_lost_stages(log: &Log) -> Option<(Log, usize)> {
     let next = log.later_commits().iter().map(|commit| commit.ordinal).min()?;
     let lost = (next as usize).checked_sub(log.commits()).filter(|lost| *lost > 0)?;
     let (stages, state) = match log.commits().checked_sub(1) {
-        Some(last) => (Stages::new(logged_scene(log, last, &[]).ok()?), States::of(log).at(last).ok()?),
+        Some(last) => (Stages::new(logged_scene(log, last, &[], &[]).ok()?), States::of(log).at(last).ok()?),
         None => {
             let mut stages = Stages::new(log.manifests().last()?.scene(&[]).ok()?);
             let start = stages.start().ok()?;

@@ -25,7 +25,7 @@ pub enum ProbeError {
 /// # Errors
 /// Where a state cannot be read.
 pub fn read_probes(log: &Log, stages: &mut Stages, records: &mut [Record]) -> Result<(), ProbeError> {
-    let mut states = States::of(log);
+    let mut states = States::of(log).with_terms(stages.own_terms());
     for (index, Record { report, .. }) in records.iter_mut().enumerate() {
         if report.outcome == Outcome::Done && report.stage.finds_equilibrium() {
             report.probes = stages.read_probes(&states.at(index)?)?;

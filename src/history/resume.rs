@@ -163,12 +163,12 @@ fn complete_steps(log: &Log, keep: usize, scene: &Scene) -> Result<usize, StateE
     Ok(0)
 }
 
-/// The scene of a log's last stretch where the log has lost it and `scene`, which decides the same states, takes its
-/// place. Its target is not known any more; what was attempted says which steps it may have cut short.
-pub fn restored_scene(log: &Log, scene: &Scene) -> Option<Scene> {
+/// The scene of a log's last stretch where the log has lost it and the scene of `stages`, which with their terms decides the
+/// same states, takes its place. Its target is not known any more; what was attempted says which steps it may have cut short.
+pub fn restored_scene(log: &Log, stages: &Stages) -> Option<Scene> {
     let last = log.last_commit()?;
     let attempts = log.entries().iter().map(|entry| entry.record.report.attempted_parameter);
-    let mut restored = scene.clone();
+    let mut restored = stages.scene().clone();
     restored.load.set_target(attempts.fold(f64::MIN, |most, attempt| most.max(attempt.abs())));
-    (last.scene_hash == scene.hash()).then_some(restored)
+    (last.scene_hash == stages.hash()).then_some(restored)
 }

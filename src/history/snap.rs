@@ -88,11 +88,13 @@ pub fn first_loss_of_stability(log: &Log) -> Option<usize> {
     })
 }
 
-/// Locates the first jump or loss of stability of a log to `tolerance_deg`, on the mesh of the last stable state before it.
+/// Locates the first jump or loss of stability of a log to `tolerance_deg`, on the mesh of the last stable state before it;
+/// `states` are those of the log, and know the terms of the caller's own.
 ///
 /// # Errors
 /// Where the log holds no such thing or a solve fails.
-pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapReport, SnapError> {
+pub fn find_snap(states: &mut States, scene: &Scene, tolerance_deg: f64) -> Result<SnapReport, SnapError> {
+    let log = states.log();
     let entries = log.entries();
     let shown = |value: f64| Parameter::of(scene).shown(value);
     let Some(jump) = first_loss_of_stability(log) else {
@@ -105,8 +107,8 @@ pub fn find_snap(log: &Log, scene: &Scene, tolerance_deg: f64) -> Result<SnapRep
         let report = &entries[*index].record.report;
         report.parameter < reached || (report.path_length_mm.is_some() && report.negative_pivots == 0)
     });
-    let start = States::of(log).at(before.ok_or(SnapError::NothingBefore)?)?;
-    let mut work = Workspace::new(scene, &start.mesh)?;
+    let start = states.at(before.ok_or(SnapError::NothingBefore)?)?;
+    let mut work = Workspace::with_terms(scene, &start.mesh, states.own_terms())?;
     let mut tries = Tries { scene, work: &mut work, count: 0 };
 
     let mut stable = start;

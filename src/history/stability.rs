@@ -36,7 +36,7 @@ pub enum StabilityError {
 /// Where the state cannot be had, or its stiffness has no factor.
 pub fn stability_at(states: &mut States, index: usize, scene: &Scene) -> Result<StabilityReport, StabilityError> {
     let state = states.at(index)?;
-    let mut work = Workspace::new(scene, &state.mesh)?;
+    let mut work = Workspace::with_terms(scene, &state.mesh, states.own_terms())?;
     let (mode, mode_at) = mode_of(scene, &mut work, &state)?;
     Ok(StabilityReport { mode_at, mode, state })
 }

@@ -1,9 +1,11 @@
 //! The states of a log, whether it holds them or not: what was thinned out is made again from the last state that was kept,
 //! and has to come out with the hash that the log has for it.
 
+use std::sync::Arc;
+
 use crate::history::logged_scene::{LoggedSceneError, logged_scene};
 use crate::journal::{Log, LongLogError, Manifest, StateError};
-use crate::model::ModelError;
+use crate::model::{ModelError, TermSource};
 use crate::pipeline::{StageError, Stages};
 use crate::state::{Hash, State};
 
@@ -59,6 +61,8 @@ fn because(why: &Option<String>) -> String {
 #[derive(Debug)]
 pub struct States<'l> {
     log: &'l Log,
+    /// Terms of the caller's own that the run was made with.
+    own: Vec<Arc<dyn TermSource>>,
     /// Stages of the scene of one stretch: which one says its first ordinal and the hash of the scene.
     stages: Option<((u64, Hash), Stages)>,
     /// The last state that was made again, behind so many stages.
@@ -68,7 +72,17 @@ pub struct States<'l> {
 impl<'l> States<'l> {
     /// Those of a log.
     pub fn of(log: &'l Log) -> Self {
-        Self { log, stages: None, made: None }
+        Self { log, own: Vec::new(), stages: None, made: None }
+    }
+
+    /// Those of a log of a run with terms of the caller's own.
+    pub fn with_terms(self, own: &[Arc<dyn TermSource>]) -> Self {
+        Self { own: own.to_vec(), ..self }
+    }
+
+    /// Terms of the caller's own.
+    pub fn own_terms(&self) -> &[Arc<dyn TermSource>] {
+        &self.own
     }
 
     /// The log.
@@ -132,7 +146,10 @@ impl<'l> States<'l> {
         let same = self.stages.take().filter(|(of, _)| *of == (stretch, scene_hash));
         let stages = match same {
             Some(same) => same,
-            None => ((stretch, scene_hash), Stages::new(logged_scene(self.log, index, &[])?)),
+            None => {
+                let scene = logged_scene(self.log, index, &[], &self.own)?;
+                ((stretch, scene_hash), Stages::with_terms(scene, self.own.clone()))
+            }
         };
         Ok(&mut self.stages.insert(stages).1)
     }

@@ -183,8 +183,8 @@ impl Log {
             let made = (lost.ordinal..end).filter_map(|ordinal| self.entry(ordinal as usize));
             let mut hashes: Vec<Hash> = made.map(|entry| entry.record.commit.scene_hash).collect();
             hashes.dedup();
-            let scenes = || behind.iter().filter_map(|manifest| manifest.scene(&[]).ok());
-            behind.is_empty() || !is_known || !hashes.iter().all(|hash| scenes().any(|scene| scene.hash() == *hash))
+            let runs = || behind.iter().filter_map(Manifest::run_hash);
+            behind.is_empty() || !is_known || !hashes.iter().all(|hash| runs().any(|run| run == *hash))
         })
     }
 

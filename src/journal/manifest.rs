@@ -12,7 +12,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use super::encode_error::EncodeError;
 use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT, SCENE_VALUES_LIMIT, library};
 use crate::model::TermSource;
-use crate::pipeline::NUMERICS_REVISION;
+use crate::pipeline::{NUMERICS_REVISION, run_hash};
 use crate::printable::one_line;
 use crate::scene::{Scene, SceneError, parse_with_settings};
 use crate::state::Hash;
@@ -121,6 +121,13 @@ impl Manifest {
     pub fn with_terms(self, own: &[Arc<dyn TermSource>]) -> Self {
         let own_terms = own.iter().map(|source| (source.name().to_owned(), source.hash().to_string())).collect();
         Self { own_terms, ..self }
+    }
+
+    /// Hash of what the stages of this stretch were made with, as their commits have it; `None` where it does not read.
+    pub fn run_hash(&self) -> Option<Hash> {
+        let hash = |hash: &str| Hash::from_hex(hash).ok();
+        let terms: Option<Vec<_>> = self.own_terms.iter().map(|(name, of)| Some((&name[..], hash(of)?))).collect();
+        Some(run_hash(&self.scene(&[]).ok()?, &terms?))
     }
 
     /// Whether both were written by machines that compute alike as far as a manifest can tell.

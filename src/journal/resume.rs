@@ -176,7 +176,9 @@ impl Resume {
         let keep = keep.min(all);
         let in_place = keep == all && !self.copies && self.log.is_clean() && self.lock.is_exclusive();
         let before = self.log.manifests().last().filter(|_| !self.log.last_manifest_is_lost());
-        let same_scene = before.is_some_and(|before| before.scene_text == manifest.scene_text);
+        let same =
+            |before: &Manifest| before.scene_text == manifest.scene_text && before.own_terms == manifest.own_terms;
+        let same_scene = before.is_some_and(same);
         let manifest = Manifest { first_ordinal: keep as u64, same_scene, ..manifest.clone() };
         if in_place { self.in_place(&manifest, sync) } else { self.whole()?.copied(keep, &manifest, sync) }
     }

@@ -354,6 +354,38 @@ pub enum ModelError {
         /// Where.
         load_factor: f64,
     },
+    /// A support that holds rigid motions alone, and terms of the caller's own that hold some of them as well.
+    #[error(
+        "support \"{support}\" holds rigid motions alone, and terms of the program's own hold the shell as well: {motion} but against \
+         their forces, of which the support would take a share; take it out, and hold what they leave free by another kind of support"
+    )]
+    HeldByTerms {
+        /// Name of the support.
+        support: String,
+        /// A motion that both hold, in words.
+        motion: String,
+    },
+    /// A probe of a support that is not in the scene.
+    #[error("a probe asks for the reaction of support \"{support}\", and the scene has none of that name")]
+    NoSuchSupport {
+        /// Name of the support.
+        support: String,
+    },
+    /// A section moment across something else than a line.
+    #[error("probe \"{probe}\" asks for a section moment, and a section is a line: write for example `on = \"u=0.5\"`")]
+    NotASection {
+        /// Name of the probe.
+        probe: String,
+    },
+    /// A section moment of a model with a term that does not know its part on one side.
+    #[error(
+        "a section moment is found from all that acts on one side of the line, and the term \"{term}\" of the program's own does not \
+         say what of it acts there: take the probe out, or say it (`TermSource::below`)"
+    )]
+    NoPart {
+        /// Name of the term.
+        term: String,
+    },
     /// The supports leave nothing free.
     #[error(
         "the supports hold every control point of {} × {} elements: nothing is left to solve for; write more in mesh.elements, or hold less",

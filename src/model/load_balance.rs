@@ -1,8 +1,10 @@
 //! Whether loads balance by themselves where a support holds rigid motions and nothing else.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 
-use crate::model::{At, ModelError, Terms, Unknowns};
+use crate::model::{At, ModelError, TermSource, Terms, Unknowns};
 use crate::scene::Scene;
 use crate::shell::norm;
 use crate::spline::Mesh;
@@ -12,13 +14,18 @@ use crate::spline::Mesh;
 /// the same sum widens it.
 const BALANCE: f64 = 1e-9;
 
-/// Refuses loads that push along a motion that only a support of rigid motions holds.
+/// Refuses loads that push along a motion that only a support of rigid motions holds, and terms that hold one as well.
 ///
 /// # Errors
-/// Where they do, at the end or at a kink of a history.
-pub fn check_balance(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<(), ModelError> {
+/// Where they do, at the end or at a kink of a history for loads; where one of them does not fit the mesh.
+pub fn check_balance(
+    scene: &Scene,
+    mesh: &Mesh,
+    unknowns: &Unknowns,
+    own: &[Arc<dyn TermSource>],
+) -> Result<(), ModelError> {
     let Some(held) = &unknowns.supports().held_motions else { return Ok(()) };
-    let loads = Terms::of_actions(scene, mesh)?;
+    let loads = Terms::on(scene, mesh, own)?;
     let still = vec![[0.0; 3]; unknowns.points.len()];
     let kinks = scene.actions.iter().flat_map(|action| action.history.kinks());
     for load_factor in kinks.chain([scene.load.target()]) {
@@ -37,6 +44,15 @@ pub fn check_balance(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<
                 motion: held.free.body.words(&motion),
                 share: on_free.norm() / all,
                 load_factor,
+            });
+        }
+    }
+    if !own.is_empty() {
+        let [_, by_terms] = held.free.parted_by_terms(scene, mesh, own)?;
+        if by_terms.basis.ncols() > 0 {
+            return Err(ModelError::HeldByTerms {
+                support: unknowns.supports().traces[held.support].name.clone(),
+                motion: by_terms.body.words(&by_terms.basis),
             });
         }
     }

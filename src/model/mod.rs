@@ -94,7 +94,7 @@ pub(crate) use place::{line_place, parameters_of};
 pub use placement::Placement;
 pub use reactions::{Exerted, PointForces};
 pub(crate) use remarks::remarks;
-pub(crate) use rigid_motion::free_motion;
+pub(crate) use rigid_motion::check_held;
 pub use supports::Supports;
 pub(crate) use tables::{BATCH, LANES};
 pub use tables::{PointTable, Tables};

@@ -1,10 +1,12 @@
 //! What the words of a scene come to where they leave it open.
 
+use std::sync::Arc;
+
 use crate::model::limits::ROUNDING;
 use crate::model::mirror::Mirror;
 use crate::model::place::parameters_of;
 use crate::model::thinness::{ERROR_OF_OFFSET, Extent, THICK};
-use crate::model::{At, FreeStrains, ModelError, Terms, Unknowns};
+use crate::model::{At, FreeStrains, ModelError, TermSource, Terms, Unknowns};
 use crate::scene::{Action, ActionKind, ForceVector, Geometry, History, Scene, SurfaceDirection};
 use crate::shell::{FreeStrain, cross, dot, norm, scaled};
 use crate::spline::{Mesh, Spans, mid_surface_point};
@@ -21,7 +23,12 @@ const LOCKED: f64 = 2.0;
 ///
 /// # Errors
 /// Where loads or planes of symmetry do not fit the mesh.
-pub fn remarks(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<Vec<String>, ModelError> {
+pub fn remarks(
+    scene: &Scene,
+    mesh: &Mesh,
+    unknowns: &Unknowns,
+    own: &[Arc<dyn TermSource>],
+) -> Result<Vec<String>, ModelError> {
     let supports = unknowns.supports().held_motions.iter().map(|held| {
         let name = &unknowns.supports().traces[held.support].name;
         let motions = match held.free.basis.ncols() {
@@ -35,8 +42,11 @@ pub fn remarks(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<Vec<St
     });
     let actions = scene.actions.iter().filter_map(|action| of_action(scene, mesh, action));
     let theory = of_thickness(scene, mesh).into_iter().chain(of_degree_2(scene, mesh));
-    let all =
-        supports.chain(actions).chain(of_images(scene, mesh)?).chain(of_nothing(scene, mesh, unknowns)?).chain(theory);
+    let all = supports
+        .chain(actions)
+        .chain(of_images(scene, mesh)?)
+        .chain(of_nothing(scene, mesh, unknowns, own)?)
+        .chain(theory);
     Ok(all.collect())
 }
 
@@ -98,8 +108,13 @@ fn of_degree_2(scene: &Scene, mesh: &Mesh) -> Option<String> {
 }
 
 /// Loads, given motions and free strains that are zero throughout, or on places that are held.
-fn of_nothing(scene: &Scene, mesh: &Mesh, unknowns: &Unknowns) -> Result<Option<String>, ModelError> {
-    let (loads, free_strains) = (Terms::of_actions(scene, mesh)?, FreeStrains::new(scene, mesh));
+fn of_nothing(
+    scene: &Scene,
+    mesh: &Mesh,
+    unknowns: &Unknowns,
+    own: &[Arc<dyn TermSource>],
+) -> Result<Option<String>, ModelError> {
+    let (loads, free_strains) = (Terms::on(scene, mesh, own)?, FreeStrains::new(scene, mesh));
     let still = vec![[0.0; 3]; mesh.control_points.len()];
     let histories = scene.actions.iter().map(|action| &action.history);
     let kinks = histories.chain(scene.supports.iter().map(|support| &support.history)).flat_map(History::kinks);

@@ -1,7 +1,6 @@
 //! Switch-branch: the way from an unstable equilibrium to a stable one at the same load.
 
 use crate::equilibrium::{Balance, Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
-use crate::pipeline::path_drive::path_on_branch;
 use crate::pipeline::step::{Step, out_of_order, settle};
 use crate::pipeline::step_control::{is_jump, known_release};
 use crate::pipeline::{Report, StageError};
@@ -15,8 +14,11 @@ const SWITCHING_AMPLITUDE: f64 = 0.1;
 /// ridge; the tape spring in equal-sense bending has two such modes at once.
 const MOST_MODES: usize = 8;
 
-/// Leaves an unstable equilibrium along its soft modes, one after the other. A path goes on along the branch.
-pub(super) fn switch_branch(mut step: Step) -> Result<(State, Report), StageError> {
+/// Leaves an unstable equilibrium along its soft modes, one after the other; `course_on` is what its drive remembers on the branch.
+pub(super) fn switch_branch(
+    step: &mut Step,
+    course_on: impl FnOnce(&mut Step, &State) -> Result<Course, SolveError>,
+) -> Result<(State, Report), StageError> {
     let state = step.state;
     if state.negative_pivots == 0 {
         return Err(out_of_order(state, Stage::SwitchBranch, "the equilibrium is stable"));
@@ -31,17 +33,15 @@ pub(super) fn switch_branch(mut step: Step) -> Result<(State, Report), StageErro
     let mut effort = Effort::default();
     let mut work_done = 0.0;
     for _ in 0..MOST_MODES {
-        let left = leave(&mut step, &next, &mut effort).map_err(failed)?;
+        let left = leave(step, &next, &mut effort).map_err(failed)?;
         work_done += left.balance.work;
         next = settle(&next, &left);
         next.drive.course = Course::Unknown;
         if next.negative_pivots == 0 {
-            if let Course::Path(path) = &state.drive.course {
-                next.drive.course = Course::Path(path_on_branch(&mut step, state, &next, path).map_err(failed)?);
-            }
+            next.drive.course = course_on(step, &next).map_err(failed)?;
             let balance = Balance { work: work_done, ..left.balance };
             let released = balance.dissipated(state.strain_energy_n_mm);
-            let mut report = step.arrived(&next, &Solved { effort, balance, ..left });
+            let mut report = step.arrived(&next, &Solved { effort, balance, ..left })?;
             report.jumped = is_jump(released, state.strain_energy_n_mm, next.strain_energy_n_mm);
             report.energy_released_n_mm = known_release(released);
             return Ok((next, report));

@@ -113,13 +113,13 @@ impl Doubts<'_> {
     /// balance are membrane forces, and reactions would be off by multiples where the reading is right.
     fn probe_off(&mut self, mut halved: Halved) -> Option<Warning> {
         let Self { scene, work, state, .. } = self;
-        let here = read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm);
+        let here = read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm).ok()?;
         let [largest, side] = halved.halving().sizes_mm;
         let (work, at) = halved.relaxed();
         let solved = Equilibrium::new(scene, work).relax(at, &mut |last| last.iteration > MOST_ITERATIONS).ok()?;
         let Solved { displacement, turns, balance, .. } = solved;
         let at = Standing { displacement: &displacement, turns: &turns, ..Standing::of(state) };
-        let there = read_probes(scene, work, at, balance.stored);
+        let there = read_probes(scene, work, at, balance.stored).ok()?;
         let smallest = |reading: &Reading| match reading.unit.as_str() {
             "mm" => SMALL_READING * largest,
             "N" => SMALL_READING * state.largest_force_n,

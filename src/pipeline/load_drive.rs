@@ -1,6 +1,7 @@
 //! The load as drive: increments of the parameter, cut where they fail or jump.
 
 use crate::equilibrium::{Continuation, Equilibrium, Observer, SolveError, Solved, Standing, Workspace};
+use crate::pipeline::branch_switch::switch_branch;
 use crate::pipeline::ripple::{Watch, is_ripple};
 use crate::pipeline::step::{Drives, Step, settle};
 use crate::pipeline::step_control::{Attempt, energy_released, is_jump, known_release, next_attempt};
@@ -23,7 +24,7 @@ impl Drives for LoadDrive<'_> {
     /// Moves the load on by one increment. Where that fails or jumps too coarsely, the state stays and only its step
     /// control changes.
     fn solve(&mut self) -> Result<(State, Report), StageError> {
-        let Step { scene, work, state, observer } = &mut self.step;
+        let Step { scene, work, state, observer, .. } = &mut self.step;
         let attempt = next_attempt(scene, state);
         let mut watch = Watch::new(state, scene.symmetry.copies() as f64);
         let solved = reach(scene, work, state, attempt.target_deg, &mut |iterate| {
@@ -48,11 +49,15 @@ impl Drives for LoadDrive<'_> {
             let report = self.step.rejected(Outcome::RejectedJump, attempt.target_deg, solved.effort);
             return Ok((self.before_jump(attempt), report));
         }
-        Ok(self.take(attempt, way, &solved))
+        self.take(attempt, way, &solved)
     }
 
     fn re_equilibrate(&mut self) -> Result<(State, Report), StageError> {
         self.step.relax()
+    }
+
+    fn switch_branch(&mut self) -> Result<(State, Report), StageError> {
+        switch_branch(&mut self.step, |_, _| Ok(Course::Unknown))
     }
 }
 
@@ -64,7 +69,7 @@ impl LoadDrive<'_> {
     }
 
     /// The state at the load that was tried.
-    fn take(&mut self, attempt: Attempt, way: Way, solved: &Solved) -> (State, Report) {
+    fn take(&mut self, attempt: Attempt, way: Way, solved: &Solved) -> Result<(State, Report), StageError> {
         let Step { scene, state, .. } = self.step;
         let released = energy_released(state, solved);
         let mut next = settle(state, solved);
@@ -82,12 +87,12 @@ impl LoadDrive<'_> {
         if let Some(refinement) = next.refinement.as_mut().filter(|_| way != Way::Along) {
             refinement.ripple_n_mm = if way == Way::OverRipple { released.max(0.0) } else { 0.0 };
         }
-        let mut report = self.step.arrived(&next, solved);
+        let mut report = self.step.arrived(&next, solved)?;
         report.jumped = way == Way::OffPath;
         report.rippled = way == Way::OverRipple;
         report.critical_point = CriticalPoint::passed_by_load(state, &next).filter(|_| way == Way::Along);
         report.energy_released_n_mm = if way == Way::Along { Some(0.0) } else { known_release(released) };
-        (next, report)
+        Ok((next, report))
     }
 }
 

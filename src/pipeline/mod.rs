@@ -45,7 +45,7 @@ pub use revision::NUMERICS_REVISION;
 pub use run::{Ending, Run, RunError};
 pub use sink::{MemorySink, Sink, SinkError};
 pub use stage_error::StageError;
-pub use stages::Stages;
+pub use stages::{Stages, run_hash};
 pub use step_control::next_stage;
 pub(crate) use step_control::{is_jump, known_release, next_attempt};
 pub use warning::Warning;

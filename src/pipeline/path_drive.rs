@@ -1,6 +1,7 @@
 //! The path of equilibria as drive, followed by arc length.
 
 use crate::equilibrium::{Continuation, ContinuedPoint, Direction, Iterate, Sense, SolveError, Standing};
+use crate::pipeline::branch_switch::switch_branch;
 use crate::pipeline::path_control::{CriticalPoint, Judgement, PathAttempt, next_path_attempt, path_begun};
 use crate::pipeline::step::{Drives, Step, settle};
 use crate::pipeline::step_control::{has_reached, next_attempt};
@@ -38,12 +39,21 @@ impl Drives for PathDrive<'_> {
             Some(path) => self.correct(path),
         }
     }
+
+    /// The path goes on along the branch.
+    fn switch_branch(&mut self) -> Result<(State, Report), StageError> {
+        let state = self.step.state;
+        switch_branch(&mut self.step, |step, branch| match state.drive.path() {
+            None => Ok(Course::Unknown),
+            Some(path) => path_on_branch(step, state, branch, path).map(Course::Path),
+        })
+    }
 }
 
 impl PathDrive<'_> {
     /// The first step: an increment of the parameter.
     fn begin(&mut self) -> Result<(State, Report), StageError> {
-        let Step { scene, work, state, observer } = &mut self.step;
+        let Step { scene, work, state, observer, .. } = &mut self.step;
         let attempt = next_attempt(scene, state);
         let found = Continuation::new(scene, work).begin(Standing::of(state), attempt.target_deg, &mut |iterate| {
             observer(iterate);
@@ -60,7 +70,7 @@ impl PathDrive<'_> {
             let report = self.step.rejected(Outcome::RejectedCriticalPoint, attempt.target_deg, point.solved.effort);
             return Ok((self.step.stay(control, course), report));
         }
-        Ok(self.take(&point, path_begun(self.limits, &point), passed))
+        self.take(&point, path_begun(self.limits, &point), passed)
     }
 
     /// A step from a point of the path.
@@ -76,7 +86,7 @@ impl PathDrive<'_> {
         };
         let rejected = |outcome| self.step.rejected(outcome, point.parameter, point.solved.effort);
         match attempt.judge(self.step.state, path, &point) {
-            Judgement::Taken(passed) => Ok(self.take(&point, attempt.after(self.limits, path, &point, passed), passed)),
+            Judgement::Taken(passed) => self.take(&point, attempt.after(self.limits, path, &point, passed), passed),
             Judgement::Past(ahead) => {
                 let memory = PathMemory { critical_ahead: Some(ahead), ..path.clone() };
                 let report = rejected(Outcome::RejectedCriticalPoint);
@@ -93,7 +103,7 @@ impl PathDrive<'_> {
     /// The point that a step finds: at the next corner of a history where there is one on the way, and at the target where the
     /// path leads beyond it. Beside it the parameter that was aimed at.
     fn find(&mut self, path: &PathMemory, attempt: PathAttempt) -> (Result<ContinuedPoint, SolveError>, f64) {
-        let Step { scene, work, state, observer } = &mut self.step;
+        let Step { scene, work, state, observer, .. } = &mut self.step;
         let mut watch = |iterate: &Iterate| {
             observer(iterate);
             false
@@ -164,21 +174,26 @@ impl PathDrive<'_> {
     }
 
     /// The state at a new point of the path.
-    fn take(&mut self, point: &ContinuedPoint, path: PathMemory, passed: Option<CriticalPoint>) -> (State, Report) {
+    fn take(
+        &mut self,
+        point: &ContinuedPoint,
+        path: PathMemory,
+        passed: Option<CriticalPoint>,
+    ) -> Result<(State, Report), StageError> {
         let mut next = settle(self.step.state, &point.solved);
         next.step = self.step.state.step + 1;
         next.parameter = point.parameter;
         next.drive = DriveMemory { control: StepControl::default(), course: Course::Path(path) };
-        let mut report = self.step.arrived(&next, &point.solved);
+        let mut report = self.step.arrived(&next, &point.solved)?;
         report.critical_point = passed;
-        (next, report)
+        Ok((next, report))
     }
 
     /// The point of the refined mesh's path that is nearest to where the shell is, or, at the end of the run, the one with that
     /// parameter.
     fn correct(&mut self, path: &PathMemory) -> Result<(State, Report), StageError> {
         let heading = Direction { motion: path.heading.clone(), parameter: path.parameter_rate };
-        let Step { scene, work, state, observer } = &mut self.step;
+        let Step { scene, work, state, observer, .. } = &mut self.step;
         let mut watch = |iterate: &Iterate| {
             observer(iterate);
             false
@@ -200,7 +215,7 @@ impl PathDrive<'_> {
             critical_ahead: None,
             ..path.clone()
         });
-        let mut report = self.step.arrived(&next, &point.solved);
+        let mut report = self.step.arrived(&next, &point.solved)?;
         // A finer mesh has its critical points elsewhere: the shell may now stand beyond one that lay ahead of it.
         report.critical_point = CriticalPoint::between(before, after);
         Ok((next, report))
@@ -218,12 +233,7 @@ impl PathDrive<'_> {
 /// Memory on the branch that was switched to from `before`: onwards with the parameter as before. What was a long step
 /// before may be nothing here (a column that bends moves much farther than one that is compressed), so that the way from
 /// one branch to the other becomes the unit where it is longer.
-pub(super) fn path_on_branch(
-    step: &mut Step,
-    before: &State,
-    state: &State,
-    path: &PathMemory,
-) -> Result<PathMemory, SolveError> {
+fn path_on_branch(step: &mut Step, before: &State, state: &State, path: &PathMemory) -> Result<PathMemory, SolveError> {
     let sense = Sense::Parameter { grows: path.parameter_rate > 0.0 };
     let mut continuation = Continuation::new(step.scene, step.work);
     let heading = continuation.heading_at(Standing::of(state), sense)?;

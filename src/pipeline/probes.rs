@@ -1,27 +1,30 @@
 //! The scene's probes at an equilibrium.
 
+use std::cell::OnceCell;
+
 use crate::adapt::largest_bending_strain;
 use crate::equilibrium::{Configuration, Standing, Workspace};
 use crate::model::{
-    At, Discretization, Exerted, Placement, Site, Terms, control_expressions, direction_at, line_place, parameters_of,
+    At, Discretization, Exerted, ModelError, Placement, Site, control_expressions, direction_at, line_place,
+    parameters_of,
 };
 use crate::pipeline::Reading;
 use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene, SurfaceDirection};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::mid_surface_point;
 
-/// Reads every probe of a scene at an equilibrium; `energy` is the strain energy of the model.
-pub fn read_probes(scene: &Scene, work: &mut Workspace, at: Standing, energy: f64) -> Vec<Reading> {
+/// Reads every probe of a scene at an equilibrium; `energy` is what the whole shell stores, N·mm.
+///
+/// # Errors
+/// Where a probe asks for what the scene does not have, or for a section moment that a term of the caller's own has no part of.
+pub fn read_probes(scene: &Scene, work: &mut Workspace, at: Standing, energy: f64) -> Result<Vec<Reading>, ModelError> {
     if scene.probes.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let forces = work.forces(at);
     let discretization = work.discretization();
     let Configuration { placement, .. } = Configuration::of(&discretization.unknowns, at);
-    let of_supports =
-        |probe: &Probe| matches!(probe.kind, ProbeKind::Reaction { .. } | ProbeKind::SectionMoment { .. });
-    let exerted = scene.probes.iter().any(of_supports).then(|| placement.exerted(&forces));
-    let reader = Reader { scene, discretization, at, placement, forces: &forces, exerted, energy };
+    let reader = Reader { scene, discretization, at, placement, forces: &forces, exerted: OnceCell::new(), energy };
     scene.probes.iter().map(|probe| reader.read(probe)).collect()
 }
 
@@ -32,24 +35,28 @@ struct Reader<'a> {
     placement: Placement<'a>,
     /// What supports and joints exert on the control points, N.
     forces: &'a [[f64; 3]],
-    /// The same, each apart; where a probe asks for it.
-    exerted: Option<Exerted>,
+    /// The same, each apart, once a probe asks for it.
+    exerted: OnceCell<Exerted>,
     energy: f64,
 }
 
 impl Reader<'_> {
-    fn read(&self, probe: &Probe) -> Reading {
-        let (value, unit, at) = match &probe.kind {
+    fn read(&self, Probe { name, kind }: &Probe) -> Result<Reading, ModelError> {
+        let (value, unit, at) = match kind {
             ProbeKind::Displacement { on, component } => (self.displacement(*on, *component), "mm", None),
-            ProbeKind::Reaction { support, component } => self.reaction(support, *component),
-            ProbeKind::SectionMoment { on, component } => (self.section_moment(*on, *component), "N·mm", None),
+            ProbeKind::Reaction { support, component } => self.reaction(support, *component)?,
+            ProbeKind::SectionMoment { on, component } => (self.section_moment(name, *on, *component)?, "N·mm", None),
             ProbeKind::Energy => (self.energy, "N·mm", None),
             ProbeKind::BendingStrain => {
                 let (value, at) = largest_bending_strain(self.discretization, self.at.displacement);
                 (value, "1/mm", Some(at))
             }
         };
-        Reading { name: probe.name.clone(), value, unit: unit.into(), at }
+        Ok(Reading { name: name.clone(), value, unit: unit.into(), at })
+    }
+
+    fn exerted(&self) -> &Exerted {
+        self.exerted.get_or_init(|| self.placement.exerted(self.forces))
     }
 
     fn displacement(&self, on: [f64; 2], component: Component) -> f64 {
@@ -73,22 +80,27 @@ impl Reader<'_> {
     }
 
     /// Force and moment that a support exerts.
-    fn reaction(&self, support: &str, component: Reaction) -> (f64, &'static str, Option<[f64; 2]>) {
+    fn reaction(
+        &self,
+        support: &str,
+        component: Reaction,
+    ) -> Result<(f64, &'static str, Option<[f64; 2]>), ModelError> {
         let traces = &self.discretization.unknowns.supports().traces;
-        let named = traces.iter().position(|trace| trace.name == support);
-        let (Some(index), Some(exerted)) = (named, &self.exerted) else { return (f64::NAN, "N", None) };
+        let Some(index) = traces.iter().position(|trace| trace.name == support) else {
+            return Err(ModelError::NoSuchSupport { support: support.to_owned() });
+        };
         let trace = &traces[index];
         let pole = trace.section.map_or(trace.pole, |section| add(trace.pole, self.placement.translation(section)));
-        let forces = exerted.by_supports[index].iter().map(|(point, force)| (*point, *force));
+        let forces = self.exerted().by_supports[index].iter().map(|(point, force)| (*point, *force));
         let [force, moment] = self.resultant(forces, pole);
-        match component {
+        Ok(match component {
             Reaction::ForceX => (force[0], "N", None),
             Reaction::ForceY => (force[1], "N", None),
             Reaction::ForceZ => (force[2], "N", None),
             Reaction::MomentX => (moment[0], "N·mm", None),
             Reaction::MomentY => (moment[1], "N·mm", None),
             Reaction::MomentZ => (moment[2], "N·mm", None),
-        }
+        })
     }
 
     fn position(&self, point: usize) -> [f64; 3] {
@@ -103,18 +115,20 @@ impl Reader<'_> {
         })
     }
 
-    /// By equilibrium of the side of smaller u or v: what supports and loads exert there is carried across the line. Loads are
-    /// summed up over just that side. Where supports hold within one element of the line, their forces are shared out between
-    /// the sides as the functions of the control points are.
-    fn section_moment(&self, on: Place, component: Axis) -> f64 {
-        let mesh = &self.discretization.mesh;
-        let Some(line) = line_place(self.scene, mesh, on) else { return f64::NAN };
+    /// By equilibrium of the side of smaller u or v: what supports, loads and other terms exert there is carried across the line.
+    /// Terms are summed up over just that side. Where supports hold within one element of the line, their forces are shared out
+    /// between the sides as the functions of the control points are.
+    fn section_moment(&self, probe: &str, on: Place, component: Axis) -> Result<f64, ModelError> {
+        let Discretization { mesh, tables, terms, .. } = self.discretization;
+        let Some(line) = line_place(self.scene, mesh, on) else {
+            return Err(ModelError::NotASection { probe: probe.to_owned() });
+        };
         let mut limits = [f64::INFINITY; 2];
         limits[line.way] = line.parameter;
-        let Ok(loads) = Terms::of_actions_below(self.scene, mesh, limits) else { return f64::NAN };
+        let terms = terms.below(self.scene, mesh, tables, limits)?;
         let at = At { mesh, displacement: self.at.displacement, parameter: self.at.parameter };
-        let loads = loads.forces(at);
-        let places = control_expressions(self.scene, mesh, on).unwrap_or_default();
+        let exerted = terms.forces(at);
+        let places = control_expressions(self.scene, mesh, on)?;
         let count = places.len() as f64;
         let middle = places
             .iter()
@@ -122,17 +136,17 @@ impl Reader<'_> {
             .fold([0.0; 3], |sum, (point, factor)| add(sum, scaled(factor / count, self.position(*point))));
         let grid = mesh.grid();
         let side = (0..grid.len()).filter(|point| grid.place(*point)[line.way] < line.first_beyond);
-        let Some(Exerted { by_joints, .. }) = &self.exerted else { return f64::NAN };
+        let Exerted { by_joints, .. } = self.exerted();
         // A joint across the line pulls on control points of both sides: its part on this one is no push from outside.
         let held = side.map(|point| {
             let joint = by_joints.get(&point).copied().unwrap_or_default();
             (point, sub(self.forces[point], joint))
         });
-        let [_, moment] = self.resultant(held.chain(loads.into_iter().enumerate()), middle);
-        -match component {
+        let [_, moment] = self.resultant(held.chain(exerted.into_iter().enumerate()), middle);
+        Ok(-match component {
             Axis::X => moment[0],
             Axis::Y => moment[1],
             Axis::Z => moment[2],
-        }
+        })
     }
 }

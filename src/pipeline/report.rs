@@ -25,13 +25,14 @@ pub struct Report {
     pub attempted_parameter: f64,
     /// Turning ends: end moment, N·mm.
     pub moment_n_mm: f64,
-    /// Strain energy of the whole shell, N·mm.
+    /// Strain energy of the whole shell, and what terms of the caller's own store, N·mm.
     pub strain_energy_n_mm: f64,
     /// Work in this stage of loads and given motions (forces by their means before and after, strokes of the loads along the
-    /// way of the solve), and of changes of the natural state (the mean of what they put in before and after), N·mm.
+    /// way of the solve), and of changes of the natural state and of what terms store with the parameter (the mean of what they
+    /// put in before and after), N·mm.
     pub work_n_mm: f64,
-    /// Energy that changes of the natural state would have put in, had the shell stayed before or after, whichever is more,
-    /// N·mm; 0 where nothing changes it.
+    /// Energy that these changes would have put in, had the shell stayed before or after, whichever is more, N·mm; 0 where there
+    /// are none.
     pub put_in_n_mm: f64,
     /// Elements (along u, along v) of the model.
     pub elements: [usize; 2],

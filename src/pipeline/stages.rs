@@ -6,10 +6,9 @@ use crate::adapt::{evaluate_indicators, project_displacements};
 use crate::digest::{Feed, Hash};
 use crate::equilibrium::{Iterate, Standing, Workspace, WorkspaceError, strain_energy};
 use crate::model::{
-    At, FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, TermSource, check_balance, free_motion, remarks,
+    At, FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, TermSource, check_balance, check_held, remarks,
     starting_mesh,
 };
-use crate::pipeline::branch_switch::switch_branch;
 use crate::pipeline::doubts::{Doubts, doubtful};
 use crate::pipeline::load_drive::LoadDrive;
 use crate::pipeline::mesh_in_hand::MeshInHand;
@@ -47,17 +46,8 @@ impl Stages {
 
     /// Hash of what decides the results: of the scene, and of the terms where there are any of the caller's own.
     pub fn hash(&self) -> Hash {
-        if self.own.is_empty() {
-            return self.scene.hash();
-        }
-        let mut feed = Feed::new("foldline scene with terms");
-        feed.bytes(self.scene.hash().as_bytes());
-        for source in &self.own {
-            feed.integer(source.name().len() as u64);
-            feed.bytes(source.name().as_bytes());
-            feed.bytes(source.hash().as_bytes());
-        }
-        feed.finish()
+        let terms: Vec<(&str, Hash)> = self.own.iter().map(|source| (source.name(), source.hash())).collect();
+        run_hash(&self.scene, &terms)
     }
 
     /// The scene.
@@ -68,16 +58,14 @@ impl Stages {
     /// The state that the scene starts from: undeformed, before the first step.
     ///
     /// # Errors
-    /// Where the scene cannot be made discrete, its supports leave a rigid motion free, or its loads push one that is
+    /// Where the scene cannot be made discrete, its supports and terms leave a rigid motion free, or its loads push one that is
     /// only held so.
     pub fn start(&mut self) -> Result<State, ModelError> {
         let mut state = State::undeformed(starting_mesh(&self.scene)?);
         let mesh = &state.mesh;
         let unknowns = self.in_hand.unknowns(&self.scene, mesh)?;
-        if let Some(motion) = free_motion(unknowns) {
-            return Err(ModelError::FreeMotion { motion });
-        }
-        check_balance(&self.scene, mesh, unknowns)?;
+        check_held(&self.scene, mesh, unknowns, &self.own)?;
+        check_balance(&self.scene, mesh, unknowns, &self.own)?;
         if unknowns.count() == 0 {
             return Err(ModelError::NothingFree { elements: mesh.element_counts() });
         }
@@ -92,7 +80,7 @@ impl Stages {
     /// # Errors
     /// Where supports or loads do not fit the mesh of the state.
     pub fn remarks(&mut self, state: &State) -> Result<Vec<String>, ModelError> {
-        remarks(&self.scene, &state.mesh, self.in_hand.unknowns(&self.scene, &state.mesh)?)
+        remarks(&self.scene, &state.mesh, self.in_hand.unknowns(&self.scene, &state.mesh)?, &self.own)
     }
 
     /// Runs a stage. `observer` sees every Newton iterate.
@@ -107,7 +95,7 @@ impl Stages {
     ) -> Result<(State, Report), StageError> {
         let (mut next, mut report) = match stage {
             Stage::Solve => self.drive(stage, state, observer)?.solve()?,
-            Stage::SwitchBranch => switch_branch(self.step(stage, state, observer)?)?,
+            Stage::SwitchBranch => self.drive(stage, state, observer)?.switch_branch()?,
             Stage::EvaluateIndicators => self.evaluate(state)?,
             Stage::RefineKnots => self.refine(state)?,
             Stage::ProjectDisplacements => self.project(state)?,
@@ -126,22 +114,13 @@ impl Stages {
         state: &'a State,
         observer: &'a mut dyn FnMut(&Iterate),
     ) -> Result<Box<dyn Drives + 'a>, StageError> {
-        let step = self.step(stage, state, observer)?;
-        Ok(match Drive::of(step.scene) {
+        let step = if stage == Stage::Solve { state.step + 1 } else { state.step };
+        let (scene, work) = self.workspace(&state.mesh, step, stage)?;
+        let step = Step { stage, scene, work, state, observer };
+        Ok(match Drive::of(scene) {
             Drive::Load(_) => Box::new(LoadDrive { step }),
             Drive::Path(_, limits) => Box::new(PathDrive { step, limits }),
         })
-    }
-
-    fn step<'a>(
-        &'a mut self,
-        stage: Stage,
-        state: &'a State,
-        observer: &'a mut dyn FnMut(&Iterate),
-    ) -> Result<Step<'a>, StageError> {
-        let step = if stage == Stage::Solve { state.step + 1 } else { state.step };
-        let (scene, work) = self.workspace(&state.mesh, step, stage)?;
-        Ok(Step { scene, work, state, observer })
     }
 
     fn workspace(&mut self, mesh: &Arc<Mesh>, step: u64, stage: Stage) -> Result<(&Scene, &mut Workspace), StageError> {
@@ -277,12 +256,32 @@ impl Stages {
     /// Reads every probe of the scene at an equilibrium.
     ///
     /// # Errors
-    /// Where the scene cannot be made discrete on the state's mesh.
+    /// Where the scene cannot be made discrete on the state's mesh, or a probe asks for what there is not.
     pub fn read_probes(&mut self, state: &State) -> Result<Vec<Reading>, StageError> {
         let made_by = state.stage.unwrap_or(Stage::Solve);
         let (scene, work) = self.workspace(&state.mesh, state.step, made_by)?;
-        Ok(read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm))
+        read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm).map_err(|cause| StageError::Model {
+            step: state.step,
+            stage: made_by,
+            cause,
+        })
     }
+}
+
+/// Hash of what decides the results of a run: of its scene, and of the terms of the caller's own, by name and hash, where there
+/// are any.
+pub fn run_hash(scene: &Scene, terms: &[(&str, Hash)]) -> Hash {
+    if terms.is_empty() {
+        return scene.hash();
+    }
+    let mut feed = Feed::new("foldline scene with terms");
+    feed.bytes(scene.hash().as_bytes());
+    for (name, hash) in terms {
+        feed.integer(name.len() as u64);
+        feed.bytes(name.as_bytes());
+        feed.bytes(hash.as_bytes());
+    }
+    feed.finish()
 }
 
 /// The error of a stage whose mesh the scene does not fit, or that does not fit in memory.

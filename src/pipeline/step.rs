@@ -7,17 +7,21 @@ use crate::pipeline::{Outcome, Report, StageError};
 use crate::scene::{Parameter, Scene, Stage};
 use crate::state::{Course, DriveMemory, State, StepControl};
 
-/// A drive at a state: how it moves the structure on, and how it meets its course again on a finer mesh.
+/// A drive at a state: how it moves the structure on, and how it meets its course again on a finer mesh or another branch.
 pub(super) trait Drives {
     /// One step on. Where that fails or leads too far, the state stays and only the memory of the drive changes.
     fn solve(&mut self) -> Result<(State, Report), StageError>;
 
     /// Equilibrium on the refined mesh of the state.
     fn re_equilibrate(&mut self) -> Result<(State, Report), StageError>;
+
+    /// From an unstable equilibrium to a stable one at the same load.
+    fn switch_branch(&mut self) -> Result<(State, Report), StageError>;
 }
 
 /// What a stage that looks for an equilibrium works with.
 pub(super) struct Step<'a> {
+    pub stage: Stage,
     pub scene: &'a Scene,
     /// Of the state's mesh.
     pub work: &'a mut Workspace,
@@ -57,17 +61,19 @@ impl Step<'_> {
     }
 
     /// Of the state at a new equilibrium, with its probes.
-    pub fn arrived(&mut self, next: &State, solved: &Solved) -> Report {
-        let Self { scene, work, .. } = self;
-        Report {
+    pub fn arrived(&mut self, next: &State, solved: &Solved) -> Result<Report, StageError> {
+        let Self { stage, scene, work, .. } = self;
+        let probes = read_probes(scene, work, Standing::of(next), next.strain_energy_n_mm)
+            .map_err(|cause| StageError::Model { step: next.step, stage: *stage, cause })?;
+        Ok(Report {
             iterations: solved.effort.iterations,
             factorizations: solved.effort.factorizations,
             residual: solved.residual,
             work_n_mm: solved.balance.work,
             put_in_n_mm: solved.balance.put_in,
-            probes: read_probes(scene, work, Standing::of(next), next.strain_energy_n_mm),
+            probes,
             ..Report::of(scene, next, work.discretization().unknowns.count())
-        }
+        })
     }
 
     /// After an increment of the parameter that found no equilibrium: a smaller one comes next, if there may be one.
@@ -102,7 +108,7 @@ impl Step<'_> {
 
     /// Equilibrium on a refined mesh at the same load.
     pub fn relax(&mut self) -> Result<(State, Report), StageError> {
-        let Self { scene, work, state, observer } = self;
+        let Self { scene, work, state, observer, .. } = self;
         let mut unstable_on_the_way = false;
         let mut watch = |iterate: &Iterate| {
             observer(iterate);
@@ -113,7 +119,7 @@ impl Step<'_> {
         let solved = solved.map_err(|cause| self.not_re_equilibrated(cause))?;
         let released = energy_released(self.state, &solved);
         let mut next = settle(self.state, &solved);
-        let mut report = self.arrived(&next, &solved);
+        let mut report = self.arrived(&next, &solved)?;
         // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
         report.jumped = unstable_on_the_way && is_jump_on_refinement(self.state, released);
         if report.jumped {

@@ -13,6 +13,8 @@ mod replay;
 mod thin;
 mod threads;
 
+#[path = "../verification/elastic_foundation.rs"]
+mod elastic_foundation;
 #[path = "../verification/support.rs"]
 #[allow(dead_code, reason = "shared with the verification tests")]
 mod support;

@@ -1,4 +1,4 @@
-//! An energy of one's own: an elastic foundation, ½ k w² on every mm² of the undeformed shell.
+//! Shells on an elastic foundation, and with other energies of one's own.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -6,70 +6,65 @@ use std::sync::Arc;
 use foldline::equilibrium::{Assembled, Balance, Equilibrium, Standing, Want, Workspace};
 use foldline::model::{At, ModelError, Tables, Tangent, Term, TermSource, starting_mesh};
 use foldline::pipeline::{MemorySink, Record, Run, Stages};
-use foldline::scene::{Scene, parse};
-use foldline::shell::gauss_legendre;
-use foldline::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};
+use foldline::scene::{Scene, Stage, parse};
+use foldline::spline::Mesh;
 use foldline::state::Hash;
 
-/// Of stiffness k, N/mm³, under a plate in the plane z = 0.
-#[derive(Debug)]
-struct Foundation(f64);
+use crate::elastic_foundation::Foundation;
 
-impl TermSource for Foundation {
+/// A spring along x from one end of the first direction to the other, spread evenly over the control points of both ends: evenly
+/// over the edges where these are one element.
+#[derive(Clone, Copy, Debug)]
+struct Tie {
+    /// N/mm.
+    stiffness: f64,
+    /// Whether its tangent holds both ends: only then is that symmetric.
+    at_once: bool,
+}
+
+impl TermSource for Tie {
     fn name(&self) -> &str {
-        "elastic foundation"
+        "tie"
     }
 
     fn hash(&self) -> Hash {
-        blake3::hash(&self.0.to_le_bytes())
+        blake3::hash(&self.stiffness.to_le_bytes())
     }
 
     fn on(&self, _: &Scene, mesh: &Mesh, _: &Tables) -> Result<Box<dyn Term>, ModelError> {
-        let [along, across] = [0, 1].map(|way| {
-            let spans = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds.into_iter();
-            let rule = gauss_legendre(mesh.degree[way] + 1);
-            let in_span = |[from, to]: [f64; 2]| rule.clone().into_iter().map(move |[x, w]| [from, to, x, w]);
-            let point = |[from, to, x, w]: [f64; 4]| (0.5 * (from + to + (to - from) * x), 0.5 * (to - from) * w);
-            spans.flat_map(in_span).map(point).collect::<Vec<_>>()
-        });
-        let pairs = along.iter().flat_map(|one| across.iter().map(move |other| (one, other)));
-        let spring = |((u, one), (v, other)): (&(f64, f64), &(f64, f64))| {
-            let (first, [values, ..]) = evaluate_surface(mesh, [*u, *v]);
-            let [a1, a2, ..] = mid_surface_point(mesh, &[], [*u, *v]).derivatives;
-            let shares = mesh.window(first).zip(values).collect();
-            Spring { shares, stiffness: self.0 * one * other * (a1[0] * a2[1] - a1[1] * a2[0]) }
-        };
-        Ok(Box::new(Bed(pairs.map(spring).collect())))
+        let grid = mesh.grid();
+        let ends: Vec<[usize; 2]> =
+            grid.line(0, 0).zip(grid.line(0, grid.counts[0] - 1)).map(|(a, b)| [a, b]).collect();
+        Ok(Box::new(Ties { stiffness: self.stiffness / ends.len() as f64, ends, at_once: self.at_once }))
     }
 }
 
-/// The foundation on a mesh.
 #[derive(Debug)]
-struct Bed(Vec<Spring>);
-
-#[derive(Debug)]
-struct Spring {
-    /// Control points with their functions.
-    shares: Vec<(usize, f64)>,
-    /// N/mm.
+struct Ties {
+    ends: Vec<[usize; 2]>,
     stiffness: f64,
+    at_once: bool,
 }
 
-impl Spring {
-    fn deflection(&self, at: At) -> f64 {
-        self.shares.iter().map(|(point, share)| share * at.displacement[*point][2]).sum()
+impl Ties {
+    fn stretches(&self, at: At) -> impl Iterator<Item = ([usize; 2], f64)> {
+        self.ends.iter().map(move |[a, b]| ([*a, *b], at.displacement[*b][0] - at.displacement[*a][0]))
     }
 }
 
-impl Term for Bed {
+impl Term for Ties {
+    fn pairs(&self) -> Vec<[usize; 2]> {
+        self.ends.clone()
+    }
+
     fn energy(&self, at: At) -> f64 {
-        self.0.iter().map(|spring| 0.5 * spring.stiffness * spring.deflection(at).powi(2)).sum()
+        self.stretches(at).map(|(_, stretch)| 0.5 * self.stiffness * stretch * stretch).sum()
     }
 
     fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
-        for spring in &self.0 {
-            let force = spring.stiffness * spring.deflection(at);
-            spring.shares.iter().for_each(|(point, share)| forces[*point][2] -= share * force);
+        for ([a, b], stretch) in self.stretches(at) {
+            forces[a][0] += self.stiffness * stretch;
+            forces[b][0] -= self.stiffness * stretch;
         }
     }
 
@@ -78,11 +73,13 @@ impl Term for Bed {
     }
 
     fn add_tangent(&self, _: At, tangent: &mut Tangent) {
-        for Spring { shares, stiffness } in &self.0 {
-            for (i, one) in shares {
-                for (j, other) in shares {
-                    tangent.add([*i, *j], [[0.0; 3], [0.0; 3], [0.0, 0.0, -stiffness * one * other]]);
-                }
+        let slope = |value: f64| [[value, 0.0, 0.0], [0.0; 3], [0.0; 3]];
+        for [a, b] in self.ends.iter().copied() {
+            tangent.add([a, a], slope(-self.stiffness));
+            tangent.add([a, b], slope(self.stiffness));
+            if self.at_once {
+                tangent.add([b, a], slope(self.stiffness));
+                tangent.add([b, b], slope(-self.stiffness));
             }
         }
     }
@@ -108,7 +105,11 @@ fn strip(length: f64, elements: usize, rest: &str) -> Scene {
 }
 
 fn run_on(foundation: f64, scene: Scene) -> Vec<Record> {
-    let mut stages = Stages::with_terms(scene, vec![Arc::new(Foundation(foundation))]);
+    run_with(vec![Arc::new(Foundation { stiffness: foundation, rise: 0.0 })], scene)
+}
+
+fn run_with(own: Vec<Arc<dyn TermSource>>, scene: Scene) -> Vec<Record> {
+    let mut stages = Stages::with_terms(scene, own);
     let start = stages.start().unwrap();
     let mut sink = MemorySink::default();
     Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();
@@ -132,16 +133,69 @@ fn a_beam_on_it_has_the_deflection_of_the_closed_form() {
                 {{ on = "u-end", kind = "fixed", hold = ["y", "z"] }},
             ]
             action = [{{ kind = "line-force", on = "u-start", force_n_per_mm = [0, 0, {}] }}]
-            probe = [{{ name = "w", kind = "displacement", on = [0.0, 0.5], component = "z" }}]
+            probe = [
+                {{ name = "w", kind = "displacement", on = [0.0, 0.5], component = "z" }},
+                {{ name = "m", kind = "section-moment", on = "u=0.05", component = "y" }},
+                {{ name = "n", kind = "section-moment", on = "u=0.15", component = "y" }},
+            ]
             "#,
             0.5 * force / WIDTH
         ),
     );
     let records = run_on(k, scene);
     let report = &records.last().unwrap().report;
+    let [deflection, moments @ ..] = &report.probes[..] else { panic!("{report:?}") };
     let expected = force * beta / (2.0 * k * WIDTH);
-    assert!((report.probes[0].value / expected - 1.0).abs() < 1e-3, "{} {expected}", report.probes[0].value);
+    assert!((deflection.value / expected - 1.0).abs() < 1e-3, "{} {expected}", deflection.value);
+    // P/(4 β) e^(−β x) (cos β x − sin β x).
+    for (moment, x) in moments.iter().zip([0.6_f64, 1.8]) {
+        let expected = force / (4.0 * beta) * (-x).exp() * (x.cos() - x.sin());
+        assert!((moment.value.abs() - expected.abs()).abs() < 1e-3 * force / (4.0 * beta), "{moment:?} {expected}");
+    }
     assert!((report.work_n_mm / report.strain_energy_n_mm - 1.0).abs() < 1e-3, "{report:?}");
+}
+
+/// A plate that only a foundation holds against a load sinks as a whole, by p/k, and carries nothing. Nothing but points hold it
+/// in its plane.
+#[test]
+fn a_plate_may_lie_on_it_alone() {
+    let scene = |pressure: f64, support: &str| {
+        strip(
+            10.0,
+            3,
+            &format!(
+                r#"
+                load = {{ kind = "steps", increment = 1 }}
+                support = [{support}]
+                action = [{{ kind = "area-force", force_n_per_mm2 = [0, 0, {pressure}] }}]
+                probe = [{{ name = "w", kind = "displacement", on = [1.0, 0.0], component = "z" }}]
+                "#
+            ),
+        )
+    };
+    let in_plane =
+        r#"{ on = [0, 0], kind = "fixed", hold = ["x", "y"] }, { on = [1, 0], kind = "fixed", hold = ["y"] }"#;
+    let report = run_on(3.0, scene(0.06, in_plane)).pop().unwrap().report;
+    assert!((report.probes[0].value - 0.02).abs() < 1e-9, "{report:?}");
+    assert!((report.work_n_mm / report.strain_energy_n_mm - 1.0).abs() < 1e-9);
+    let start = |scene: Scene| {
+        let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation { stiffness: 3.0, rise: 0.0 })];
+        Stages::with_terms(scene, own).start().unwrap_err()
+    };
+    let refused = |pressure: f64, support: &str| start(scene(pressure, support));
+    // What neither holds is refused, and what both do.
+    let mut alone = scene(0.06, in_plane);
+    alone.supports.clear();
+    assert!(matches!(start(alone), ModelError::FreeMotion { .. }));
+    let one = refused(0.06, r#"{ on = [0, 0], kind = "fixed", hold = ["x", "y"] }"#);
+    assert!(
+        matches!(&one, ModelError::FreeMotion { motion } if motion.contains("turn about an axis along z")),
+        "{one}"
+    );
+    let both = format!(r#"{in_plane}, {{ kind = "rigid-motions", name = "mean" }}"#);
+    assert!(matches!(refused(0.06, &both), ModelError::Unbalanced { .. }));
+    let error = refused(0.0, &both);
+    assert!(matches!(&error, ModelError::HeldByTerms { support, .. } if support == "mean"), "{error}");
 }
 
 /// A hinged strip under a thrust buckles in m half waves at the least of E I a² + k b/a², a = m π/L (Timoshenko & Gere, section
@@ -178,6 +232,98 @@ fn a_strip_on_it_buckles_at_the_load_of_the_closed_form() {
     assert!((critical.report.parameter - 1.0).abs() < 5e-3, "{}", critical.report.parameter);
 }
 
+/// A cantilever that a rising ground bends: all that shell and ground store, the ground put in. Step by step, and along the path.
+#[test]
+fn what_the_parameter_puts_in_is_work() {
+    for path in ["", r#"continuation = { control = "arc-length" }"#] {
+        let scene = strip(
+            10.0,
+            3,
+            &format!(
+                r#"load = {{ kind = "steps", increment = 0.25 }}
+                support = [{{ on = "u-start", kind = "clamped" }}]
+                action = [{{ kind = "line-force", on = "u-end", force_n_per_mm = [0, 0, 0.01] }}]
+                {path}"#
+            ),
+        );
+        let mut stages = Stages::with_terms(scene, vec![Arc::new(Foundation { stiffness: 3.0, rise: 0.01 })]);
+        let start = stages.start().unwrap();
+        let mut sink = MemorySink::default();
+        Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();
+        let reports = || sink.stages.iter().map(|(_, record)| &record.report);
+        let work: f64 = reports().map(|report| report.work_n_mm).sum();
+        let stored = reports().last().unwrap().strain_energy_n_mm;
+        assert!(stored > 1e-4 && (work / stored - 1.0).abs() < 1e-4, "{work} {stored}");
+        assert!(reports().all(|report| !report.jumped && report.negative_pivots == 0));
+    }
+}
+
+/// A bar that two forces pull apart, with a spring from end to end: it grows by P/(E A/L + k).
+#[test]
+fn a_tie_from_end_to_end_bears_its_part() {
+    let (length, force) = (100.0, 0.02);
+    let bar = YOUNGS_MODULUS * WIDTH * THICKNESS / length;
+    let scene = strip(
+        length,
+        24,
+        &format!(
+            r#"load = {{ kind = "steps", increment = 1 }}
+            support = [{{ kind = "rigid-motions" }}]
+            action = [
+                {{ kind = "line-force", on = "u-start", force_n_per_mm = [{}, 0, 0] }},
+                {{ kind = "line-force", on = "u-end", force_n_per_mm = [{}, 0, 0] }},
+            ]
+            probe = [
+                {{ name = "one", kind = "displacement", on = [0, 0.5], component = "x" }},
+                {{ name = "other", kind = "displacement", on = [1, 0.5], component = "x" }},
+            ]"#,
+            -force / WIDTH,
+            force / WIDTH
+        ),
+    );
+    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Tie { stiffness: 2.0 * bar, at_once: true })];
+    let report = run_with(own, scene.clone()).pop().unwrap().report;
+    let found = report.probes[1].value - report.probes[0].value;
+    let expected = force / (3.0 * bar);
+    assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+    assert!(report.iterations <= 3, "{report:?}");
+}
+
+/// A tangent that is not symmetric, and does not say so, does not lose its half in silence.
+#[test]
+#[should_panic(expected = "the tangent of the term \"tie\" is not symmetric, by")]
+fn a_skew_tangent_that_hides_is_refused() {
+    let scene = strip(
+        10.0,
+        3,
+        r#"load = { kind = "steps", increment = 1 }
+        support = [{ on = "u-start", kind = "clamped" }]
+        action = [{ kind = "line-force", on = "u-end", force_n_per_mm = [0, 0, 0.01] }]"#,
+    );
+    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Tie { stiffness: 1.0, at_once: false })];
+    let mesh = Arc::new(starting_mesh(&scene).unwrap());
+    let work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
+    let still = vec![[0.0; 3]; mesh.control_points.len()];
+    Assembled::new(work.discretization()).assemble(work.discretization(), &still, 0.0, Want::Stiffness);
+}
+
+/// A section moment is refused where a term does not say what of it acts on one side.
+#[test]
+fn a_section_moment_asks_every_term_for_its_part() {
+    let scene = strip(
+        10.0,
+        3,
+        r#"load = { kind = "steps", increment = 1 }
+        support = [{ on = "u-start", kind = "clamped" }]
+        action = [{ kind = "line-force", on = "u-end", force_n_per_mm = [0, 0, 0.01] }]
+        probe = [{ name = "m", kind = "section-moment", on = "u=0.5", component = "y" }]"#,
+    );
+    let mut stages = Stages::with_terms(scene, vec![Arc::new(Tie { stiffness: 1.0, at_once: true })]);
+    let start = stages.start().unwrap();
+    let error = stages.run(Stage::Solve, &start, &mut |_| {}).unwrap_err().to_string();
+    assert!(error.contains("step 1, solve: a section moment") && error.contains("the term \"tie\""), "{error}");
+}
+
 /// Energy, forces and stiffness with it are derivatives of each other.
 #[test]
 fn it_stands_in_the_sums() {
@@ -188,7 +334,7 @@ fn it_stands_in_the_sums() {
         support = [{ on = "u-start", kind = "clamped" }]
         action = [{ kind = "force", on = [1, 1], force_n = [0, 0, 1] }]"#,
     );
-    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(3.0))];
+    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation { stiffness: 3.0, rise: 0.0 })];
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
     let mut work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
     let field = |seed: f64| -> Vec<[f64; 3]> {
@@ -230,7 +376,7 @@ fn the_balance_of_a_solve_tells_it_apart() {
         support = [{ on = "u-start", kind = "clamped" }]
         action = [{ kind = "line-force", on = "u-end", force_n_per_mm = [0, 0, 0.01] }]"#,
     );
-    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(3.0))];
+    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation { stiffness: 3.0, rise: 0.0 })];
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
     let mut work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
     let still = vec![[0.0; 3]; mesh.control_points.len()];
@@ -259,7 +405,7 @@ fn it_is_part_of_the_identity() {
         action = [{ kind = "force", on = [1, 1], force_n = [0, 0, 1] }]"#,
         )
     };
-    let with = |k: f64| Stages::with_terms(scene(), vec![Arc::new(Foundation(k))]).hash();
+    let with = |k: f64| Stages::with_terms(scene(), vec![Arc::new(Foundation { stiffness: k, rise: 0.0 })]).hash();
     assert_eq!(Stages::new(scene()).hash(), scene().hash());
     assert_eq!(with(1.0), with(1.0));
     assert!(with(1.0) != with(2.0) && with(1.0) != scene().hash());

@@ -1,6 +1,6 @@
 //! The order of the house: who imports from whom, and what stands where.
 
-use crate::imports::{Import, Sources, circles, imports, sources, tokens};
+use crate::imports::{Import, Sources, Token, circles, imports, sources, tokens};
 
 /// From the bottom of the stack to its top: each folder imports only from those before it.
 const ORDER: [&str; 18] = [
@@ -97,10 +97,11 @@ fn index_arithmetic(text: &str) -> Vec<usize> {
     let tokens = tokens(text);
     let at = |k: usize| tokens.get(k).map_or("", |token| token.0.as_str());
     let is_value = |k: usize| at(k).ends_with(|c: char| c.is_alphanumeric() || matches!(c, ')' | ']' | '_'));
+    let names = names_of_second_count(&tokens);
     let lines = (0..tokens.len()).filter(|&k| {
-        // The names and numbers that n₂ goes by: n2, counts[1], control_counts()[1].
+        // What n₂ goes by: a name that the file gives it, counts[1], control_counts()[1].
         let end = match at(k) {
-            "n2" => k + 1,
+            name if name == "n2" || names.contains(&name) => k + 1,
             word if word.ends_with("counts") && at(k + 1) == "[" && at(k + 2) == "1" => k + 4,
             word if word.ends_with("counts") && at(k + 1) == "(" && at(k + 4) == "1" => k + 6,
             "x" => return at(k + 1) == "/" && at(k + 2) == "w" && at(k + 5) == "/" && at(k + 6) == "w",
@@ -119,6 +120,26 @@ fn index_arithmetic(text: &str) -> Vec<usize> {
     lines.map(|k| tokens[k].1).collect()
 }
 
+/// The names that a file gives n₂: `let [_, name] = grid.counts;` and `let name = mesh.control_counts()[1];`.
+fn names_of_second_count(tokens: &[Token]) -> Vec<&str> {
+    let at = |k: usize| tokens.get(k).map_or("", |token| token.0.as_str());
+    let before = |end: usize, back: usize| at(end.wrapping_sub(back));
+    let counts_end = |end: usize| match before(end, 1) {
+        ")" => before(end, 2) == "(" && before(end, 3).ends_with("counts"),
+        word => word.ends_with("counts"),
+    };
+    let named = |k: usize| {
+        let end = (k..tokens.len()).find(|end| at(*end) == ";")?;
+        let is_pair = at(k + 1) == "[" && at(k + 3) == "," && at(k + 5) == "]";
+        let is_second = [3, 2, 1].map(|back| before(end, back)) == ["[", "1", "]"];
+        match is_pair {
+            true => counts_end(end).then(|| at(k + 4)),
+            false => (at(k + 2) == "=" && is_second && counts_end(end - 3)).then(|| at(k + 1)),
+        }
+    };
+    (0..tokens.len()).filter(|k| at(*k) == "let").filter_map(named).collect()
+}
+
 #[test]
 fn index_arithmetic_is_seen() {
     for wrong in [
@@ -127,13 +148,20 @@ fn index_arithmetic_is_seen() {
         "points.chunks(n2)",
         "n2 * (i + 1)",
         "k / mesh.control_counts()[1]",
+        "let [rows, columns] = mesh.control_counts();\ni * columns + j",
+        "let width = self.grid.counts[1];\npoints.chunks(width)",
         "let [x, y, z, w] = p;\n[x / w, y / w, z / w]",
     ] {
         assert!(!index_arithmetic(wrong).is_empty(), "{wrong}");
     }
-    for right in
-        ["let [n1, n2] = counts;", "f(*n2)", "counts[1] - 1", "a * counts[1][e]", "format!(\"i * n2\") // i * n2"]
-    {
+    for right in [
+        "let [n1, n2] = counts;",
+        "f(*n2)",
+        "let [a, b] = grid.counts;\na * c",
+        "counts[1] - 1",
+        "a * counts[1][e]",
+        "format!(\"i * n2\") // i * n2",
+    ] {
         assert!(index_arithmetic(right).is_empty(), "{right}");
     }
 }

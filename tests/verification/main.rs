@@ -9,6 +9,7 @@ mod buckling;
 mod coarse;
 mod connectivity;
 mod cured_plate;
+mod elastic_foundation;
 mod extreme;
 mod foundation;
 mod free_strain;

@@ -78,23 +78,24 @@ impl SparseSolver {
         }
     }
 
-    /// Where the values hold the entry of two unknowns, which is the same both ways round. Of unknowns that do not meet it
-    /// is `None`, or a place within the envelope that nothing else uses.
-    pub fn place(&self, a: usize, b: usize) -> Option<usize> {
-        match self {
+    /// Where the values hold the entry of two unknowns, which is the same both ways round. Of unknowns that do not meet, but lie
+    /// within the envelope, it is a place that nothing else uses.
+    ///
+    /// # Panics
+    /// Where there is no such place: what is filled in and the structure come from one pattern, and nothing is left out in silence.
+    pub fn place(&self, a: usize, b: usize) -> usize {
+        let place = match self {
             Self::Strips(solver) => solver.place(a, b),
             Self::Supernodal(solver) => solver.place(a, b),
-        }
+        };
+        place.unwrap_or_else(|| unreachable!("unknowns {a} and {b} do not meet in the matrix"))
     }
 
     /// Adds terms (unknown, unknown, value) to the matrix, each pair one way round.
     pub fn add(&mut self, terms: &[(usize, usize, f64)]) {
         for (a, b, value) in terms {
             let place = self.place(*a, *b);
-            debug_assert!(place.is_some(), "unknowns {a} and {b} do not meet");
-            if let Some(place) = place {
-                self.matrix_mut()[place] += value;
-            }
+            self.matrix_mut()[place] += value;
         }
     }
 

@@ -12,14 +12,12 @@ mod following;
 mod points;
 mod strokes;
 
-use std::sync::Arc;
-
 use self::dead::{Dead, DeadLoads, dead_forces};
 use self::following::{Following, FollowingLoads, Kind};
 use self::points::{LoadPoint, area_points, edge_points, line_points};
 use crate::model::direction::direction_at;
 use crate::model::place::parameters_of;
-use crate::model::{ModelError, Tables, TermSource, Terms};
+use crate::model::{ModelError, Terms};
 use crate::scene::{Action, ActionKind, ForceVector, History, LoadedArea, Place, Scene};
 use crate::shell::{cross, scaled};
 use crate::spline::Mesh;
@@ -28,18 +26,6 @@ use crate::spline::Mesh;
 const EVERYWHERE: [f64; 2] = [f64::INFINITY; 2];
 
 impl Terms {
-    /// The actions of a scene, and terms of the caller's own.
-    ///
-    /// # Errors
-    /// Where one of them does not fit the mesh.
-    pub fn new(scene: &Scene, mesh: &Mesh, tables: &Tables, own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
-        let mut terms = Self::of_actions(scene, mesh)?;
-        for source in own {
-            terms.list.push(source.on(scene, mesh, tables)?);
-        }
-        Ok(terms)
-    }
-
     /// The actions of a scene on a mesh.
     ///
     /// # Errors
@@ -59,10 +45,10 @@ impl Terms {
         }
         let mut terms = Self::default();
         if !loads.dead.0.is_empty() {
-            terms.list.push(Box::new(loads.dead));
+            terms.push("dead loads", Box::new(loads.dead));
         }
         if !loads.following.0.is_empty() {
-            terms.list.push(Box::new(loads.following));
+            terms.push("loads that follow", Box::new(loads.following));
         }
         Ok(terms)
     }
