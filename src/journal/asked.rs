@@ -15,7 +15,7 @@ const STAGES_AT_ONCE: usize = 512;
 /// A log that is asked for some of its stages.
 #[derive(Debug)]
 pub enum AskedLog {
-    /// One that was read whole: it is short, thinned, or damaged before its end.
+    /// One that was read whole: it is short, or damaged before its end.
     Whole(Arc<Log>),
     /// One of which only the end was read, and where the rest lies.
     Long(Box<LongLog>),

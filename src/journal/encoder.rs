@@ -273,8 +273,9 @@ impl Encoder {
             patterns: self.ledger.patterns.clone(),
             metadata: self.ledger.metadata.clone(),
             described_at: self.ledger.described_at.clone(),
-            mesh: piece(mesh)?,
+            mesh: Some(piece(mesh)?),
             fields: fields.iter().map(|field| piece(field.hash)).collect::<Option<_>>()?,
+            kept_before: last.ordinal.checked_sub(1),
         })
     }
 

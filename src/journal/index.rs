@@ -13,13 +13,14 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::checkpoint::Checkpoint;
-use super::format::{MANIFEST, library};
+use super::format::{MANIFEST, THINNED, library};
 use super::frame;
 use super::ledger::{ChunkPlace, Ledger, Pattern};
 use super::manifest::Manifest;
 use super::message::HexHash;
 use super::reader::read_at;
 use super::stretch::Stretches;
+use super::thin::kept_as;
 use crate::pipeline::{Record, Report, as_number, fields_of};
 use crate::state::Hash;
 
@@ -63,8 +64,11 @@ pub(super) struct Mark {
     pub patterns: Vec<Pattern>,
     pub metadata: Vec<(u64, u64, String)>,
     pub described_at: Vec<u64>,
-    pub mesh: Piece,
+    /// The mesh and the fields of its state, as far as a log that was thinned has them.
+    pub mesh: Option<Piece>,
     pub fields: Vec<Piece>,
+    /// The last commit before it that has its state.
+    pub kept_before: Option<u64>,
 }
 
 /// A message of the log.
@@ -273,7 +277,7 @@ impl Index {
             }
         }
         let Some(here) = ledger.chunks.pop() else { return Ok(None) };
-        let Mark { chain_hash, metadata, described_at, mesh, fields, .. } = &last.mark;
+        let Mark { chain_hash, metadata, described_at, mesh, fields, kept_before, .. } = &last.mark;
         let piece = |piece: &Piece| -> io::Result<(Hash, u64, Vec<u8>)> {
             let mut bytes = Vec::new();
             let length = (piece.place[1] as usize).min(super::format::CHUNK_BYTES_LIMIT);
@@ -285,10 +289,10 @@ impl Index {
                 ledger.describe(*at, &bytes, &chunk);
             }
         }
-        let mut stretches = Stretches::default();
+        let (mut stretches, mut thinned) = (Stretches::default(), None);
         for (at, bytes, name) in metadata {
             ledger.metadata.push((*at, *bytes, name.clone()));
-            if name != MANIFEST {
+            if name != MANIFEST && name != THINNED {
                 continue;
             }
             let Some((bytes, record)) = record_at(log, *at)?.filter(|(found, _)| found.len() as u64 == *bytes) else {
@@ -298,6 +302,10 @@ impl Index {
             else {
                 return Ok(None);
             };
+            if name == THINNED {
+                thinned = Some(kept_as(&parsed));
+                continue;
+            }
             let Ok((manifest, hash)) = Manifest::from_record(&parsed) else { return Ok(None) };
             stretches.begin(manifest, hash);
         }
@@ -308,11 +316,10 @@ impl Index {
             library: library(),
             channels: ledger.channels_described(),
             stretches,
-            mesh: Some(piece(mesh)?),
+            mesh: mesh.as_ref().map(piece).transpose()?,
             fields: fields.iter().map(piece).collect::<io::Result<_>>()?,
-            // A thinned log has no index.
-            thinned: None,
-            kept_before: None,
+            thinned,
+            kept_before: kept_before.map(|ordinal| ordinal as usize),
         };
         Ok(Some((checkpoint, ledger)))
     }

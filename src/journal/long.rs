@@ -56,7 +56,7 @@ pub struct LongLog {
 
 impl LongLog {
     /// Opens a log that is long enough to have an index; `None` for a shorter one, and for one that is damaged before its
-    /// end or was thinned, which has to be read whole. Where the index is missing or does not fit, the log is read through, part by part.
+    /// end, which has to be read whole. Where the index is missing or does not fit, the log is read through, part by part.
     ///
     /// # Errors
     /// Where the log cannot be read.
@@ -94,8 +94,7 @@ impl LongLog {
         };
         let mut builder = Builder::at(index.as_ref().map_or(0, Index::commits));
         let mut rewritten: Option<Rewritten> = None;
-        let is_thinned = |log: &Log| log.thinned().is_some();
-        let tail = read_in_parts(&file, from, &mut ledger, is_thinned, |log, ledger| {
+        let tail = read_in_parts(&file, from, &mut ledger, |log, ledger| {
             for entry in log.entries().iter().skip((builder.next() as usize).saturating_sub(log.first())) {
                 let Some(place) = ledger.chunks.get(builder.next() as usize) else { break };
                 if let Some((head, block)) = builder.push(*place, &entry.record, || mark(log, ledger, entry)) {
@@ -105,7 +104,7 @@ impl LongLog {
             }
             Ok(())
         })?;
-        if tail.entries.is_empty() || !(tail.closed || tail.reaches_end()) || is_thinned(&tail) {
+        if tail.entries.is_empty() || !(tail.closed || tail.reaches_end()) {
             return Ok(None);
         }
         let index = rewritten.map_or(index, |rewritten| Some(rewritten.done(index_path)));
@@ -144,19 +143,26 @@ impl LongLog {
     }
 
     /// A part of the log with these stages and the one before them, from the last commit before them that a block of the index
-    /// marks.
+    /// marks, and that has its state or stands behind one that has: a log that was thinned may have few.
     ///
     /// # Errors
     /// Where it cannot be read, or they are not what they were.
     pub fn part(&self, stages: Range<usize>) -> Result<Log, LongLogError> {
         let first = stages.start.saturating_sub(1);
-        let (from, _) = match &self.index {
-            Some(index) => index.checkpoint_before(&self.file, first)?.unzip(),
-            None => (None, None),
-        };
         let end = self.ledger.chunks.get(stages.end).map(|place| place.at);
         let end = end.unwrap_or(self.tail.base + self.tail.walked as u64);
-        let log = Log::read_on(&self.file, end, from.as_ref(), usize::MAX)?;
+        let mut from = first;
+        let log = loop {
+            let (checkpoint, _) = match &self.index {
+                Some(index) => index.checkpoint_before(&self.file, from)?.unzip(),
+                None => (None, None),
+            };
+            let log = Log::read_on(&self.file, end, checkpoint.as_ref(), usize::MAX)?;
+            match log.kept_before(first + 1) {
+                kept if kept.unwrap_or(0) < log.first() => from = kept.unwrap_or(0),
+                _ => break log,
+            }
+        };
         match (first..stages.end).find(|ordinal| log.entry(*ordinal).is_none()) {
             None => Ok(log),
             Some(ordinal) if ordinal >= self.commits() => {
@@ -201,12 +207,18 @@ pub(super) fn mark(log: &Log, ledger: &Ledger, entry: &Entry) -> Option<Mark> {
         let place = places.get(&hash)?;
         Some(Piece { hash: HexHash(hash), place: [log.place_of(place)?, place.len() as u64] })
     };
+    let mesh = piece(&log.meshes, entry.mesh_hash);
+    let fields: Vec<Piece> = entry.fields.iter().filter_map(|hash| piece(&log.fields, *hash)).collect();
+    if entry.state.is_some() && (mesh.is_none() || fields.len() < entry.fields.len()) {
+        return None;
+    }
     Some(Mark {
         chain_hash: HexHash(entry.record.commit.chain_hash),
         patterns: ledger.patterns.clone(),
         metadata: ledger.metadata.iter().filter(|(place, ..)| *place < at).cloned().collect(),
         described_at: ledger.described_at.iter().copied().filter(|place| *place <= at).collect(),
-        mesh: piece(&log.meshes, entry.mesh_hash)?,
-        fields: entry.fields.iter().map(|hash| piece(&log.fields, *hash)).collect::<Option<_>>()?,
+        mesh,
+        fields,
+        kept_before: log.kept_before(entry.record.commit.ordinal as usize).map(|ordinal| ordinal as u64),
     })
 }

@@ -17,19 +17,17 @@ pub(super) const PART_BYTES: usize = 56 << 20;
 const _: () = assert!(PART_BYTES > CHUNK_BYTES_LIMIT + (1 << 20));
 
 /// Reads a long log in parts, from a checkpoint or from its start, and shows each to `see` with a ledger of all chunks before
-/// its last commit; stops at its end, where `ends` says so, or at the first thing that is not as it was written. Gives back the
-/// last part.
+/// its last commit; stops at its end, or at the first thing that is not as it was written. Gives back the last part.
 pub(super) fn read_in_parts(
     file: &File,
     mut from: Option<Checkpoint>,
     ledger: &mut Ledger,
-    ends: impl Fn(&Log) -> bool,
     mut see: impl FnMut(&Log, &mut Ledger) -> io::Result<()>,
 ) -> io::Result<Log> {
     let length = file.metadata()?.len();
     let mut at_most = &[FIRST_PART_BYTES, PART_BYTES][..];
     loop {
-        let ends = |log: &Log| log.closed || log.reaches_end() || ends(log);
+        let ends = |log: &Log| log.closed || log.reaches_end();
         let (log, next) = read_part(file, length, from.as_ref(), ledger, at_most, ends)?;
         see(&log, ledger)?;
         match next {

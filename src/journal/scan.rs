@@ -14,6 +14,7 @@ use super::log::{Entry, Kept, Note, Part};
 use super::manifest::{LIBRARY, Manifest};
 use super::message::{FinishedMessage, in_brief};
 use super::stretch::Stretches;
+use super::thin::kept_as;
 use crate::pipeline::{Commit, Record};
 use crate::state::Hash;
 
@@ -252,7 +253,7 @@ impl Scan {
             }
             Err(_) if record.name == THINNED => {
                 self.parts.push(Part { at: frame.at, end: frame.body.end, kept: Kept::Marker });
-                self.thinned = Some(in_brief(record.metadata.get("kept").cloned().unwrap_or_default()));
+                self.thinned = Some(kept_as(record));
             }
             Err(error) if record.name == MANIFEST => {
                 self.stretches.suspect_alone(self.place(frame.at));

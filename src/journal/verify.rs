@@ -67,8 +67,7 @@ fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
     let mut ledger = Ledger::default();
     let (mut found, mut kept) = (Vec::new(), 0);
     let mut rewriting: Option<Rewriting<_>> = None;
-    let to_its_end = |_: &Log| false;
-    let tail = read_in_parts(&file, None, &mut ledger, to_its_end, |part, _| {
+    let tail = read_in_parts(&file, None, &mut ledger, |part, _| {
         let last = part.entries.len().saturating_sub(1);
         // The last commit of a part is the first of the next.
         found.extend(states(part, 0..last));

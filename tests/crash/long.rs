@@ -198,6 +198,38 @@ fn a_part_of_a_long_log_is_as_good_as_all_of_it() {
     place.foldline("stability long.mcap --step 5001").ends(1).says(&["commit 5000", "foldline verify"]);
 }
 
+/// The same of a log that was thinned, whose states lie far apart.
+#[test]
+fn a_thinned_long_log_has_an_index_too() {
+    const COMMITS: u64 = 8000;
+    let place = Place::new();
+    write_long(&place.file("long.mcap"), COMMITS);
+    place.foldline("thin long.mcap --keep 100,every=3000 -o thin.mcap").ends(0);
+    let path = place.file("thin.mcap");
+    let whole = Log::read(&path).unwrap();
+    let asked = AskedLog::Long(Box::new(LongLog::read_through(&path).unwrap().unwrap()));
+    assert!(place.logs().contains(&"thin.mcap.index".to_owned()));
+    assert!(matches!(AskedLog::open(&path).unwrap(), AskedLog::Long(_)), "by its index");
+    assert_eq!(asked.end().thinned(), whole.thinned());
+    // What is asked for stands behind a state, or at the start of the run.
+    for (ordinal, kept) in [(50, None), (99, Some(99)), (1024, Some(99)), (2999, Some(2999)), (4500, Some(2999))] {
+        let part = asked.part(ordinal + 1..ordinal + 2).unwrap();
+        let last = (part.first()..=ordinal).rev().find(|index| part.keeps_state(*index));
+        assert_eq!(last, kept, "{ordinal}");
+        assert!(kept.is_some() || part.first() == 0);
+        if let Some(kept) = kept {
+            assert_eq!(part.state(kept).unwrap().hash(), whole.state(kept).unwrap().hash());
+        }
+        assert_eq!(part.entry(ordinal).unwrap().record, whole.entry(ordinal).unwrap().record);
+    }
+    let of_index = place.foldline("inspect thin.mcap --step 5000 --json").ends(0).out;
+    place.foldline("resume thin.mcap --until 0.06 --quiet").ends(0);
+    assert!(place.log("thin.mcap").entries().len() as u64 >= COMMITS + 2);
+    assert_eq!(place.foldline("inspect thin.mcap --step 5000 --json").ends(0).out, of_index);
+    fs::remove_file(place.file("thin.mcap.index")).unwrap();
+    assert_eq!(place.foldline("inspect thin.mcap --step 5000 --json").ends(0).out, of_index);
+}
+
 /// A long log is gone on with from its end, in place, with the index or without; its index grows with it.
 #[test]
 fn a_long_log_goes_on() {
