@@ -37,7 +37,7 @@ impl Arguments {
                 hint = "; --remake may run that again";
                 return None;
             }
-            let (mended, count) = mended(log)?;
+            let (mended, count) = mended(log, &[])?;
             made += count;
             Some(mended)
         };

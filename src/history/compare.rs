@@ -96,7 +96,7 @@ impl Found<'_> {
         if let Some((x, y)) = self.both("a finer mesh waiting", refined, &b.refined) {
             self.meshes(["knots of the finer mesh", "control points of the finer mesh"], x, y);
         }
-        self.number("rotation_deg", *parameter, b.parameter);
+        self.number("rotation or load factor", *parameter, b.parameter);
         self.number("moment_n_mm", *moment_n_mm, b.moment_n_mm);
         self.number("strain_energy_n_mm", *strain_energy_n_mm, b.strain_energy_n_mm);
         self.number("largest_force_n", *largest_force_n, b.largest_force_n);
@@ -125,7 +125,7 @@ impl Found<'_> {
             (Course::Unknown, Course::Unknown) => {}
             (Course::Load(Previous { displacement, parameter }), Course::Load(y)) => {
                 self.vectors("displacement before", displacement, &y.displacement);
-                self.number("rotation before", *parameter, y.parameter);
+                self.number("rotation or load factor before", *parameter, y.parameter);
             }
             (Course::Path(x), Course::Path(y)) => self.paths(x, y, parameter),
             (Course::Unknown | Course::Load(_) | Course::Path(_), _) => {
@@ -343,7 +343,7 @@ mod tests {
             }),
             ("displacement", |s, f| f(&mut s.displacement[5][2])),
             ("marked knots", |s, f| f(&mut s.marked[0][0])),
-            ("rotation_deg", |s, f| f(&mut s.parameter)),
+            ("rotation or load factor", |s, f| f(&mut s.parameter)),
             ("turns", |s, f| f(&mut s.turns[0][2])),
             ("moment_n_mm", |s, f| f(&mut s.moment_n_mm)),
             ("strain_energy_n_mm", |s, f| f(&mut s.strain_energy_n_mm)),
@@ -357,7 +357,7 @@ mod tests {
             ("length to the critical point", |s, f| f(&mut path(s).critical_ahead.as_mut().unwrap().within_mm)),
             ("rate beyond the critical point", |s, f| f(&mut path(s).critical_ahead.as_mut().unwrap().rate_beyond)),
             ("displacement before", |s, f| f(&mut previous(s).displacement[9][1])),
-            ("rotation before", |s, f| f(&mut previous(s).parameter)),
+            ("rotation or load factor before", |s, f| f(&mut previous(s).parameter)),
             ("energy that refining was to change", |s, f| {
                 f(s.refinement.as_mut().unwrap().expected_n_mm.as_mut().unwrap())
             }),

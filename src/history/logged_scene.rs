@@ -64,9 +64,9 @@ pub fn logged_scene(
     let lost = LoggedSceneError::Lost { ordinal: index };
     let Some(entry) = log.entry(index) else { return Err(lost) };
     let expected = entry.record.commit.scene_hash;
+    check_terms(log, index, own)?;
     let terms: Vec<(&str, Hash)> = own.iter().map(|source| (source.name(), source.hash())).collect();
     for manifest in log.manifests_of(index) {
-        check_terms(index, &manifest.own_terms, &terms)?;
         for chosen in 0..1 << DEFAULTS_BEFORE.len() {
             let is_chosen = |index: usize| chosen >> index & 1 == 1;
             let defaults = DEFAULTS_BEFORE.iter().enumerate().filter(|(index, _)| is_chosen(*index));
@@ -79,24 +79,29 @@ pub fn logged_scene(
     Err(lost)
 }
 
-/// Refuses terms of the caller's own that are not those, by name and hash, that a stage was run with.
-fn check_terms(ordinal: usize, logged: &[(String, String)], here: &[(&str, Hash)]) -> Result<(), LoggedSceneError> {
-    let is_same =
-        |((name, hash), (this, other)): (&(String, String), &(&str, Hash))| name == this && *hash == other.to_string();
-    if logged.len() == here.len() && logged.iter().zip(here).all(is_same) {
+/// Refuses terms of the caller's own that are not those that stage `index` was run with, by name, hash and order.
+///
+/// # Errors
+/// Which differ, and how.
+pub(super) fn check_terms(log: &Log, index: usize, own: &[Arc<dyn TermSource>]) -> Result<(), LoggedSceneError> {
+    let here: Vec<(String, String)> =
+        own.iter().map(|source| (source.name().to_owned(), source.hash().to_string())).collect();
+    let Some(logged) = log.manifests_of(index).map(|manifest| &manifest.own_terms).find(|terms| **terms != here) else {
         return Ok(());
-    }
-    let missing = logged.iter().filter(|(name, _)| here.iter().all(|(this, _)| this != name));
+    };
+    let of_name = |terms: &[(String, String)], name: &str| terms.iter().find(|(known, _)| known == name).cloned();
+    let missing = logged.iter().filter(|(name, _)| of_name(&here, name).is_none());
     let names: Vec<&str> = missing.map(|(name, _)| &name[..]).collect();
     if !names.is_empty() {
-        return Err(LoggedSceneError::OwnTerms { ordinal, names: names.join(", ") });
+        return Err(LoggedSceneError::OwnTerms { ordinal: index, names: names.join(", ") });
     }
-    let differences = here.iter().filter_map(|(name, hash)| match logged.iter().find(|(known, _)| known == name) {
-        None => Some(format!("\"{name}\" was not there")),
-        Some((_, known)) => (*known != hash.to_string()).then(|| format!("\"{name}\" had other parameters")),
+    let differences = here.iter().filter_map(|term| match of_name(logged, &term.0) {
+        None => Some(format!("\"{}\" was not there", term.0)),
+        Some(known) => (known != *term).then(|| format!("\"{}\" had other parameters", term.0)),
     });
-    let differences: Vec<String> = differences.collect();
-    let differences =
-        if differences.is_empty() { "they stood in another order".into() } else { differences.join(", ") };
-    Err(LoggedSceneError::OtherTerms { ordinal, differences })
+    let mut differences: Vec<String> = differences.collect();
+    if differences.is_empty() {
+        differences.push("they stood in another order".to_owned());
+    }
+    Err(LoggedSceneError::OtherTerms { ordinal: index, differences: differences.join(", ") })
 }

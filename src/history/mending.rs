@@ -1,29 +1,35 @@
 //! A damaged log whose lost stages are run again, so that the whole ones behind them are lost no more.
 
+use std::sync::Arc;
+
 use crate::history::logged_scene::logged_scene;
 use crate::history::states::States;
 use crate::journal::Log;
+use crate::model::TermSource;
 use crate::pipeline::{MemorySink, Run, Stages};
 
 /// The log with every lost stage run again on which whole ones follow, as their hashes tell, and how many these are; `None` where
-/// there is none.
-pub fn mended(log: &Log) -> Option<(Log, usize)> {
+/// there is none, or the run had other terms of the caller's own than these.
+pub fn mended(log: &Log, own: &[Arc<dyn TermSource>]) -> Option<(Log, usize)> {
     let mut mended: Option<(Log, usize)> = None;
     loop {
         let (log, made) = mended.as_ref().map_or((log, 0), |(log, made)| (log, *made));
-        let Some((more, count)) = with_lost_stages(log) else { return mended };
+        let Some((more, count)) = with_lost_stages(log, own) else { return mended };
         mended = Some((more, made + count));
     }
 }
 
 /// The log with the stages between its good part and the next whole one.
-fn with_lost_stages(log: &Log) -> Option<(Log, usize)> {
+fn with_lost_stages(log: &Log, own: &[Arc<dyn TermSource>]) -> Option<(Log, usize)> {
     let next = log.later_commits().iter().map(|commit| commit.ordinal).min()?;
     let lost = (next as usize).checked_sub(log.commits()).filter(|lost| *lost > 0)?;
     let (stages, state) = match log.commits().checked_sub(1) {
-        Some(last) => (Stages::new(logged_scene(log, last, &[], &[]).ok()?), States::of(log).at(last).ok()?),
+        Some(last) => {
+            let scene = logged_scene(log, last, &[], own).ok()?;
+            (Stages::with_terms(scene, own.to_vec()), States::of(log).with_terms(own).at(last).ok()?)
+        }
         None => {
-            let mut stages = Stages::new(log.manifests().last()?.scene(&[]).ok()?);
+            let mut stages = Stages::with_terms(log.manifests().last()?.scene(&[]).ok()?, own.to_vec());
             let start = stages.start().ok()?;
             (stages, start)
         }

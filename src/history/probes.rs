@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::history::logged_scene::{LoggedSceneError, check_terms};
 use crate::history::states::{RemakeError, States};
 use crate::journal::{Log, Manifest};
 use crate::pipeline::{Outcome, Record, StageError, Stages};
@@ -14,6 +15,9 @@ pub enum ProbeError {
     /// The state cannot be had.
     #[error(transparent)]
     State(#[from] RemakeError),
+    /// The stages were run with other terms of the caller's own.
+    #[error(transparent)]
+    Terms(#[from] LoggedSceneError),
     /// The scene cannot be made discrete on its mesh.
     #[error("the probes cannot be read on the states of the log")]
     Stage(#[from] StageError),
@@ -23,11 +27,12 @@ pub enum ProbeError {
 /// into their records, of which there is one for each of these stages. The log itself keeps what it has.
 ///
 /// # Errors
-/// Where a state cannot be read.
+/// Where a state cannot be read, or was made with other terms of the caller's own.
 pub fn read_probes(log: &Log, stages: &mut Stages, records: &mut [Record]) -> Result<(), ProbeError> {
     let mut states = States::of(log).with_terms(stages.own_terms());
     for (index, Record { report, .. }) in records.iter_mut().enumerate() {
         if report.outcome == Outcome::Done && report.stage.finds_equilibrium() {
+            check_terms(log, index, stages.own_terms())?;
             report.probes = stages.read_probes(&states.at(index)?)?;
         }
     }

@@ -1,16 +1,15 @@
 //! From a log to the state that a run goes on from, and what a changed scene does to it.
 
+use std::cmp::Ordering;
+
 use crate::journal::{Log, StateError};
 use crate::model::ModelError;
-use crate::pipeline::{Commit, Outcome, Stages, next_attempt, next_stage};
+use crate::pipeline::{Commit, Outcome, Report, Stages, next_attempt, next_stage};
 use crate::scene::{Difference, Drive, Reach, Scene, Stage};
 use crate::state::State;
 
 /// The key of the rotation at which a run stops.
 const TARGETS: [&str; 2] = ["load.rotation_deg", "load.factor"];
-
-/// Keys of what a log holds beside its states.
-const STARTS_HERE: [&str; 2] = ["probes", "output.mesh_history"];
 
 /// Targets that differ by less than this, relatively, are one.
 const TARGET_ROUNDING: f64 = 1e-12;
@@ -65,60 +64,102 @@ pub struct NothingStands {
 
 /// What stands of a log written for `old` when it goes on with `new`.
 ///
-/// Output may change freely. The target may: what was cut short at the old target goes, and what lies beyond a nearer
-/// one. A change of what steps are made with keeps every complete step and drops a step in hand. A change of geometry,
-/// material, mesh, symmetry or sense keeps nothing.
+/// Output, probes and names may change freely. The target may: what was cut short at the old target goes, and what lies beyond a
+/// nearer one. A change of what steps are made with keeps every complete step and drops a step in hand; one of a history keeps what
+/// lies before the load where it sets in. A change of geometry, material, mesh, symmetry or sense keeps nothing.
 ///
 /// # Errors
 /// [`NothingStands`] in the last case; [`StateError`] where a state that decides it cannot be read.
 pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, NothingStands>, StateError> {
     let differences = old.differences(new);
-    let shown = |difference: &Difference| {
-        let [from, to] = difference.values();
-        format!("{} changed ({from} → {to})", difference.path)
+    let has = |reach: Reach| differences.iter().any(|difference| difference.reach == reach);
+    let mut keep = match has(Reach::LaterLoads) {
+        true => before_histories_part(log, old, new),
+        false => log.commits(),
     };
-    let fatal = differences.iter().filter(|difference| difference.reach == Reach::Everything).map(|difference| {
-        let [from, to] = difference.values();
-        format!("{} changed ({from} in the log, {to} now)", difference.path)
+    let fatal = differences.iter().filter(|difference| match difference.reach {
+        Reach::Everything => true,
+        Reach::LaterLoads => keep == 0,
+        Reach::Free | Reach::Steps | Reach::Names => false,
     });
-    let fatal: Vec<String> = fatal.collect();
+    let fatal: Vec<String> = fatal.map(|difference| why_nothing_stands(difference, old, new)).collect();
     if !fatal.is_empty() {
         return Ok(Err(NothingStands { changes: fatal }));
     }
-    let mut keep = log.commits();
-    let mut changes = Vec::new();
     if old.load.target() != new.load.target() {
         keep = keep.min(before_clipped_step(log, old, new)?);
     }
-    let steps: Vec<&Difference> = differences.iter().filter(|difference| difference.reach == Reach::Steps).collect();
-    if !steps.is_empty() {
+    if has(Reach::Steps) {
         keep = complete_steps(log, keep, old)?;
     }
     while keep > 0 && !log.keeps_state(keep - 1) {
         keep -= 1;
     }
+    let changes = differences.iter().map(|difference| {
+        let [from, to] = difference.values();
+        format!("{} changed ({from} → {to}): {}", difference.path, what_stands(log, keep, difference))
+    });
+    Ok(Ok(ResumePlan { keep, changes: changes.collect() }))
+}
+
+/// What a change leaves of a log of which the first `keep` stages stand.
+fn what_stands(log: &Log, keep: usize, difference: &Difference) -> String {
+    let Difference { path, reach, .. } = difference;
+    let changes_stages = match reach {
+        Reach::Free => TARGETS.contains(&path.as_str()),
+        Reach::Names => false,
+        Reach::Steps | Reach::LaterLoads | Reach::Everything => true,
+    };
+    // What is written beside the states is as it was up to here.
+    if path == "output.mesh_history" || path.starts_with("probe") {
+        return format!("every stage stands, and the {keep} in the log keep what they were written with");
+    }
+    if !changes_stages || (keep == log.commits() && *reach != Reach::Steps) {
+        return "every stage stands".to_owned();
+    }
     let kept = log.entries().iter().take(keep.saturating_sub(log.first()));
     let done = kept.map(|entry| &entry.record.report).filter(|it| it.outcome == Outcome::Done);
-    let last_step = done.map(|report| report.step).max().unwrap_or(0);
-    for difference in &differences {
-        let what = shown(difference);
-        changes.push(match difference.reach {
-            // What is written beside the states is as it was up to here.
-            Reach::Free if STARTS_HERE.contains(&difference.path.as_str()) => {
-                format!("{what}: every stage stands, and the {keep} in the log keep what they were written with")
-            }
-            Reach::Free if keep == log.commits() || !TARGETS.contains(&difference.path.as_str()) => {
-                format!("{what}: every stage stands")
-            }
-            _ if last_step == 0 => format!("{what}: no complete step stands"),
-            Reach::Steps => {
-                let next = last_step + 1;
-                format!("{what}: steps 1 to {last_step} stand, {next} on is new: the log is mixed from there on")
-            }
-            _ => format!("{what}: steps 1 to {last_step} stand, {} on is new", last_step + 1),
-        });
+    match done.map(|report| report.step).max().unwrap_or(0) {
+        0 => "no complete step stands".to_owned(),
+        last => {
+            let mixed = if *reach == Reach::Steps { ": the log is mixed from there on" } else { "" };
+            format!("steps 1 to {last} stand, {} on is new{mixed}", last + 1)
+        }
     }
-    Ok(Ok(ResumePlan { keep, changes }))
+}
+
+/// A change that no state survives.
+fn why_nothing_stands(difference: &Difference, old: &Scene, new: &Scene) -> String {
+    let [from, to] = difference.values();
+    let why = match (difference.reach, old.histories_part_at(new)) {
+        (Reach::LaterLoads, _) if Drive::of(old).follows_path() => {
+            ": a step by arc length looks beyond the load at which it ends".to_owned()
+        }
+        (Reach::LaterLoads, at) if at.is_finite() => format!(": the histories part at load factor {at}"),
+        (Reach::LaterLoads, _) => ": the histories do not begin with the same points".to_owned(),
+        _ => String::new(),
+    };
+    format!("{} changed ({from} in the log, {to} now){why}", difference.path)
+}
+
+/// Number of stages before the first that may have looked at loads where the histories of two scenes differ. At the load where
+/// they part they differ by their rates, which only a run along an unstable path asks for.
+fn before_histories_part(log: &Log, old: &Scene, new: &Scene) -> usize {
+    if Drive::of(old).follows_path() {
+        return 0;
+    }
+    let part_at = old.histories_part_at(new);
+    let reports: Vec<&Report> = log.entries().iter().map(|entry| &entry.record.report).collect();
+    let asks_for_rates = |index: usize| {
+        let ends_stable = |report: &&Report| report.outcome == Outcome::Done && report.negative_pivots == 0;
+        !reports[index.saturating_sub(1)..=index].iter().all(ends_stable)
+    };
+    let looks_beyond = |index: &usize| match reports[*index].attempted_parameter.partial_cmp(&part_at) {
+        Some(Ordering::Less) => false,
+        Some(Ordering::Equal) => asks_for_rates(*index),
+        _ => true,
+    };
+    (0..reports.len()).find(looks_beyond).unwrap_or(log.commits())
 }
 
 /// Number of stages before the first solve that the new target would not try: the old one cut it short, or the new one

@@ -214,7 +214,7 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
         Course::Load(Previous { displacement, parameter }) => {
             fits("displacements before", displacement.len())?;
             finite("displacement component before", displacement.as_flattened().iter().copied())?;
-            finite("rotation before", [*parameter])?;
+            finite("rotation or load factor before", [*parameter])?;
         }
         Course::Path(PathMemory {
             heading,

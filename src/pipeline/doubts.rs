@@ -110,7 +110,8 @@ impl Doubts<'_> {
     }
 
     /// A probe that reads otherwise at the equilibrium of the halved mesh. To first order is not enough: what is left out of
-    /// balance are membrane forces, and reactions would be off by multiples where the reading is right.
+    /// balance are membrane forces, and reactions would be off by multiples where the reading is right. What cannot be read, or not
+    /// be solved for, on the halved mesh is not looked at: on the mesh in hand a stage has read it.
     fn probe_off(&mut self, mut halved: Halved) -> Option<Warning> {
         let Self { scene, work, state, .. } = self;
         let here = read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm).ok()?;

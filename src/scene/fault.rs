@@ -35,6 +35,12 @@ impl Fault {
         self.edits.push((place.clone(), text.into()));
         self
     }
+
+    /// The same, mended together with another fault.
+    pub fn edits_of(mut self: Box<Self>, other: Fault) -> Box<Self> {
+        self.edits.extend(other.edits);
+        self
+    }
 }
 
 pub(super) type Checked<T> = Result<T, Box<Fault>>;

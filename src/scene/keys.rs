@@ -64,6 +64,10 @@ pub enum Reach {
     Free,
     /// The steps taken change, not the problem solved: a state of one run can start the other.
     Steps,
+    /// What supports and actions are called: no state changes, though the scene is another.
+    Names,
+    /// What acts from a load on: states of loads before it are the same.
+    LaterLoads,
     /// The problem changes: no state of one run means anything in the other.
     Everything,
 }

@@ -21,13 +21,14 @@
 //! | `check`, `structure`, `stage_order`, `nearness` | entries to a scene; what must hold between keys, between supports and actions, between stages, between places |
 //! | `problem`, `fault` | what can be wrong, and where it stands |
 //! | `explain`, `render`, `error` | that in words, with the text underlined, as callers see it |
-//! | `identity` | hash and differences of scenes |
+//! | `identity`, `difference` | hash and differences of scenes; how a difference is shown |
 //! | `write`, `write_general` | a scene as TOML |
 //! | `help` | the help text |
 
 mod actions;
 mod check;
 mod data;
+mod difference;
 mod document;
 mod drive;
 mod entry;
@@ -69,10 +70,10 @@ pub use data::{
     Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe, ProbeKind,
     Quadrature, Reaction, Scene, Seam, Sense, Solver, Stage, Support, SurfaceDirection, Symmetry, SyncPolicy,
 };
+pub use difference::{Difference, shown_values};
 pub use drive::{Drive, Parameter};
 pub use error::SceneError;
 pub use help::help_text;
-pub use identity::{Difference, shown_values};
 pub use key_table::{KEYS, SECTIONS};
 pub use keys::{Choice, Key, Kind, Limit, Limits, Presence, Reach, Section, Unit};
 pub use nurbs::SCENE_BYTES_LIMIT;

@@ -67,7 +67,11 @@ impl<'d, 't> Reader<'d, 't> {
         let Kind::Pair(limits) = &key.kind else { unreachable!("{} is not a pair", key.path()) };
         self.read(key, |entry| match entry.value.get_ref() {
             DeValue::Array(items) if items.len() == 2 => {
-                Ok([whole(key, limits, entry, &items[0])?, whole(key, limits, entry, &items[1])?])
+                match [0, 1].map(|way| whole(key, limits, entry, &items[way])) {
+                    [Ok(first), Ok(second)] => Ok([first, second]),
+                    [Err(first), Err(second)] if !first.edits.is_empty() => Err(first.edits_of(*second)),
+                    [Err(fault), _] | [_, Err(fault)] => Err(fault),
+                }
             }
             DeValue::Array(items) => {
                 Err(Fault::new(Problem::NotAPair { key, found: items.len() }, &entry.value_place()))

@@ -177,7 +177,7 @@ fn types() {
             ("length_mm = 300.0", "length_mm = [300.0]"),
             ("length_mm = 300.0", "length_mm = true"),
             ("length_mm = 300.0", "length_mm = 1979-05-27"),
-            ("elements = [4, 4]", "elements = [4.0, 4]"),
+            ("elements = [4, 4]", "elements = [4.0, 4.0]"),
             ("elements = [4, 4]", "elements = [4, 4.5]"),
             ("elements = [4, 4]", "elements = [4, 4, 4]"),
             ("elements = [4, 4]", "elements = [4, \"4\"]"),

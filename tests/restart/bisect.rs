@@ -147,3 +147,17 @@ fn one_question_at_a_time() {
     place.write("scene.mcap", SMALL);
     place.foldline("bisect run.mcap scene.mcap").ends(1).says(&["this is not a log"]);
 }
+
+/// Fields are called by what they are in every scene: a load factor is no rotation.
+#[test]
+fn a_load_factor_is_not_called_a_rotation() {
+    let roof = include_str!("path.toml").split("[continuation]").next().unwrap();
+    let place = Place::new();
+    place.write("one.toml", roof);
+    place.write("other.toml", roof.replace("increment = 0.2", "increment = 0.125"));
+    for scene in ["one", "other"] {
+        place.foldline(&format!("run {scene}.toml -o {scene}.mcap --until 0.5 --quiet")).ends(0);
+    }
+    let said = place.foldline("bisect one.mcap other.mcap");
+    assert!(!said.out.contains("deg"), "{}", said.out);
+}

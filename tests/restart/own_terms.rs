@@ -98,7 +98,14 @@ fn a_log_with_a_term_that_is_not_there_is_not_gone_on_with() {
     let log = Log::read(&path).unwrap();
     assert_eq!(log.manifests()[0].own_terms, [("a pull".to_owned(), Pull(1e-3).hash().to_string())]);
     place.foldline("inspect own.mcap").ends(0).says(&["made with terms of its program's own (a pull)"]);
-    for command in ["resume own.mcap", "run small.toml -o own.mcap --resume", "replay own.mcap --step 1"] {
+    let commands = [
+        "resume own.mcap",
+        "run small.toml -o own.mcap --resume",
+        "replay own.mcap --step 1",
+        "stability own.mcap --step 1",
+        "inspect own.mcap --probes",
+    ];
+    for command in commands {
         place.foldline(command).ends(1).says(&["terms of its program's own (a pull)"]);
     }
     let refused = |own: &[Arc<dyn TermSource>]| logged_scene(&log, 3, &[], own).unwrap_err();

@@ -252,7 +252,7 @@ fn what_the_parameter_puts_in_is_work() {
         Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();
         let reports = || sink.stages.iter().map(|(_, record)| &record.report);
         let work: f64 = reports().map(|report| report.work_n_mm).sum();
-        let stored = reports().last().unwrap().strain_energy_n_mm;
+        let stored = reports().next_back().unwrap().strain_energy_n_mm;
         assert!(stored > 1e-4 && (work / stored - 1.0).abs() < 1e-4, "{work} {stored}");
         assert!(reports().all(|report| !report.jumped && report.negative_pivots == 0));
     }

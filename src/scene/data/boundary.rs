@@ -295,6 +295,17 @@ impl History {
         }
     }
 
+    /// The load factor up to which two histories are one by the points that they begin with; beyond it, or at it where its rate
+    /// counts, they may differ.
+    pub fn parts_at(&self, other: &Self) -> f64 {
+        let in_common = self.0.iter().zip(&other.0).take_while(|(one, other)| one == other).count();
+        match in_common.checked_sub(1) {
+            _ if self == other => f64::INFINITY,
+            Some(last) => self.0[last][0],
+            None => f64::NEG_INFINITY,
+        }
+    }
+
     /// Load factors at which the factor has a kink.
     pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
         self.0.iter().map(|point| point[0])

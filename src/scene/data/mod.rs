@@ -289,10 +289,18 @@ impl Load {
 impl Scene {
     /// The next load factor at which a history has a point.
     pub fn next_history_point(&self, load_factor: f64) -> Option<f64> {
-        let histories =
-            self.actions.iter().map(|action| &action.history).chain(self.supports.iter().map(|held| &held.history));
-        let points = histories.flat_map(|history| history.0.iter().map(|[at, _]| *at));
-        points.filter(|at| *at > load_factor).reduce(f64::min)
+        self.histories().flat_map(History::kinks).filter(|at| *at > load_factor).reduce(f64::min)
+    }
+
+    /// The load factor up to which two scenes with the same actions and supports ask for the same.
+    pub fn histories_part_at(&self, other: &Scene) -> f64 {
+        self.histories().zip(other.histories()).map(|(one, other)| one.parts_at(other)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Of actions, then of supports.
+    fn histories(&self) -> impl Iterator<Item = &History> {
+        let supports = self.supports.iter().map(|support| &support.history);
+        self.actions.iter().map(|action| &action.history).chain(supports)
     }
 
     /// Whether a load turns with the shell, so that its work may depend on the way.

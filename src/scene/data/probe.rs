@@ -43,7 +43,7 @@ pub enum ProbeKind {
         /// Which component.
         component: Axis,
     },
-    /// Strain energy of the model, N·mm.
+    /// Energy that the whole shell stores, N·mm: strain energy, and what terms of the caller's own store.
     Energy,
     /// Largest magnitude of the physical bending strain along u or v, 1/mm, and where it is.
     BendingStrain,

@@ -30,7 +30,7 @@ pub(super) fn wrong_type(key: &Key, found: ValueType) -> Explanation {
 
 pub(super) fn not_whole(key: &Key, value: f64) -> Explanation {
     if value.fract() == 0.0 {
-        return must_be(key, "written as a number with decimals").fix("as a whole number");
+        return must_be(key, "written as a number with decimals").fix("whole numbers are written without a point");
     }
     must_be(key, "this is not a whole number")
 }
