@@ -12,7 +12,7 @@ use super::replay::place;
 use super::stage_table::stage_table;
 use crate::history::{
     Comparison, Condition, ConditionError, SnapReport, States, find_parting, find_snap, first_loss_of_stability,
-    first_where,
+    first_where, no_jump,
 };
 use crate::journal::{LongLog, LongLogError};
 use crate::pipeline::{Parameter, Record};
@@ -50,7 +50,7 @@ impl Arguments {
         match (&self.other, &self.when) {
             (Some(other), _) => self.part(&Asked::open(&self.log)?, &Asked::open(other)?, other),
             (None, Some(condition)) => self.first(&read_log(&self.log)?, condition),
-            (None, None) => self.jump(&read_log(&self.log)?),
+            (None, None) => self.jump(&Asked::open(&self.log)?),
         }
     }
 
@@ -119,12 +119,25 @@ impl Arguments {
         Ok(0)
     }
 
-    fn jump(&self, read: &ReadLog) -> Result<u8, Failure> {
-        let jump = first_loss_of_stability(&read.log);
-        // The scene of the stretch that jumped; without a jump no scene is needed.
-        let scene = jump.map_or(Ok(read.scene.clone()), |jump| scene_at(&read.log, &self.log, jump, &[]))?;
-        let report = find_snap(&mut States::of(&read.log), &scene, self.tolerance).map_err(Box::new)?;
-        print(&told(&report, Parameter::of(&scene))).map(|()| 0)
+    fn jump(&self, asked: &Asked) -> Result<u8, Failure> {
+        /// Stages before the jump among which the last stable one is looked for.
+        const BEFORE: usize = 500;
+        let every: Vec<usize> = (0..asked.log.commits()).collect();
+        let mut farthest: f64 = 0.0;
+        for part in asked.log.parts(&every) {
+            let (log, _) = part.map_err(asked.changed())?;
+            let Some(jump) = first_loss_of_stability(&log) else {
+                let parameters = log.entries().iter().map(|entry| entry.record.report.parameter);
+                farthest = parameters.fold(farthest, f64::max);
+                continue;
+            };
+            let log = asked.log.part(jump.saturating_sub(BEFORE)..jump + 1).map_err(asked.changed())?;
+            // The scene of the stretch that jumped.
+            let scene = scene_at(&log, &self.log, jump, &[])?;
+            let report = find_snap(&mut States::of(&log), &scene, self.tolerance).map_err(Box::new)?;
+            return print(&told(&report, Parameter::of(&scene))).map(|()| 0);
+        }
+        Err(Box::new(no_jump(&asked.scene, farthest)).into())
     }
 }
 

@@ -37,6 +37,6 @@ pub use part::{Parting, find_parting};
 pub use probes::{ProbeError, Redefined, keep_apart, read_probes, redefined_probes};
 pub use replay::{ReplayError, Replayed, Verdict, replay_stage, verdict};
 pub use resume::{Basis, BasisError, NothingStands, ResumePlan, basis, plan, restored_scene};
-pub use snap::{SnapError, SnapReport, find_snap, first_loss_of_stability};
+pub use snap::{SnapError, SnapReport, find_snap, first_loss_of_stability, no_jump};
 pub use stability::{StabilityError, StabilityReport, stability_at};
 pub use states::{RemakeError, States};

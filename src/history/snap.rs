@@ -81,32 +81,39 @@ pub enum SnapError {
 
 /// The first stage of a log that jumped, or at which the shell stands on an unstable equilibrium.
 pub fn first_loss_of_stability(log: &Log) -> Option<usize> {
-    log.entries().iter().position(|entry| {
+    let place = log.entries().iter().position(|entry| {
         let report = &entry.record.report;
         let found = report.outcome == Outcome::Done && report.stage.finds_equilibrium();
         report.jumped || (found && report.negative_pivots > 0)
-    })
+    })?;
+    Some(log.first() + place)
+}
+
+/// That a log, which was read in parts, holds no jump; `farthest` is the largest value of the parameter in it.
+pub fn no_jump(scene: &Scene, farthest: f64) -> SnapError {
+    SnapError::NoJump { farthest: Parameter::of(scene).shown(farthest) }
 }
 
 /// Locates the first jump or loss of stability of a log to `tolerance_deg`, on the mesh of the last stable state before it;
-/// `states` are those of the log, and know the terms of the caller's own.
+/// `states` are those of the log, or of a part of it that begins before the jump, and know the terms of the caller's own.
 ///
 /// # Errors
 /// Where the log holds no such thing or a solve fails.
 pub fn find_snap(states: &mut States, scene: &Scene, tolerance_deg: f64) -> Result<SnapReport, SnapError> {
     let log = states.log();
-    let entries = log.entries();
     let shown = |value: f64| Parameter::of(scene).shown(value);
     let Some(jump) = first_loss_of_stability(log) else {
-        let farthest = entries.iter().fold(0.0, |most: f64, entry| most.max(entry.record.report.parameter));
-        return Err(SnapError::NoJump { farthest: shown(farthest) });
+        let parameters = log.entries().iter().map(|entry| entry.record.report.parameter);
+        return Err(no_jump(scene, parameters.fold(0.0, f64::max)));
     };
-    let reached = entries[jump].record.report.parameter;
+    let (before, behind) = log.entries().split_at(jump - log.first());
+    let reached = behind[0].record.report.parameter;
     // By arc length the last stable point may lie at a higher load than the first one behind the limit point.
-    let before = (0..jump).rev().find(|index| {
-        let report = &entries[*index].record.report;
+    let before = before.iter().rposition(|entry| {
+        let report = &entry.record.report;
         report.parameter < reached || (report.path_length_mm.is_some() && report.negative_pivots == 0)
     });
+    let before = before.map(|place| log.first() + place);
     let start = states.at(before.ok_or(SnapError::NothingBefore)?)?;
     let mut work = Workspace::with_terms(scene, &start.mesh, states.own_terms())?;
     let mut tries = Tries { scene, work: &mut work, count: 0 };
