@@ -1,6 +1,7 @@
 //! Thin-shell structures that fold, simulated on a mesh that refines itself, as a pipeline of restartable steps.
 
 pub mod adapt;
+#[cfg(feature = "cli")]
 pub mod cli;
 mod digest;
 pub mod equilibrium;

@@ -45,6 +45,7 @@ pub(crate) fn place(point: [f64; 3]) -> String {
 }
 
 /// A component with two digits behind the point that does not read "-0.00".
+#[cfg(feature = "cli")]
 pub(crate) fn unsigned_zero(value: f64) -> f64 {
     if value.abs() < 0.005 { 0.0 } else { value }
 }

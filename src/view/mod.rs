@@ -15,6 +15,7 @@ mod colour;
 mod deformed_surface;
 mod mesh_history;
 mod mesh_picture;
+#[cfg(feature = "pictures")]
 mod plot;
 mod samples;
 mod ticks;
@@ -24,6 +25,7 @@ pub use camera::ViewDirection;
 pub use deformed_surface::deformed_surface;
 pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};
+#[cfg(feature = "pictures")]
 pub use plot::{PlotError, load_probe_plot, moment_rotation_plot};
 pub use samples::{SamplesError, SurfaceSamples};
 pub use vtu::vtu;
