@@ -4,6 +4,7 @@ pub mod adapt;
 #[cfg(feature = "cli")]
 pub mod cli;
 mod digest;
+pub mod energy;
 pub mod equilibrium;
 pub mod history;
 pub mod journal;

@@ -7,8 +7,9 @@
 use std::sync::Arc;
 
 use crate::adapt::project_displacements;
+use crate::energy::TermSource;
 use crate::equilibrium::{LinearBuckling, LinearRelease, Standing, Workspace};
-use crate::model::{MOST_CONTROL_POINTS, TermSource};
+use crate::model::MOST_CONTROL_POINTS;
 use crate::scene::Scene;
 use crate::shell::norm;
 use crate::spline::{Mesh, Spans};

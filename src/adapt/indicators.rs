@@ -5,7 +5,8 @@
 
 use rayon::prelude::*;
 
-use crate::model::{Discretization, Tables};
+use crate::energy::Discretization;
+use crate::model::Tables;
 use crate::scene::{Adapt, Geometry, LengthLimit, Scene};
 use crate::shell::{PointReference, Strains};
 use crate::spline::{Grid, Spans};

@@ -6,7 +6,7 @@
 //! direction that reverses Newton's where the curvature is negative (section 3.4 there, modified factorizations). Of two
 //! points in a row one is, to rounding, as low as any before.
 //!
-//! With loads, what descends is strain energy less the work of the loads along the way that the steps took ([`crate::model::Terms::strokes`]),
+//! With loads, what descends is strain energy less the work of the loads along the way that the steps took ([`crate::energy::Terms::strokes`]),
 //! so that it needs no potential. Where loads that turn with the shell have a skew tangent, the direction solves the whole
 //! system (GMRES on the factor of the symmetric part).
 //!
@@ -31,7 +31,8 @@
 //! Garcea 2017, here C (ε − ½ d,α·d,β) for a step d) save any: with them the same scene took 455 iterations for 344, and
 //! its snap 35 to 72 factorizations for 25 to 37, as the stiffness away from equilibrium was more often indefinite.
 
-use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
+use crate::energy::{At, Discretization, Want, strain_energy};
+use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::iterate::{Effort, Iterate};
@@ -41,7 +42,6 @@ use crate::equilibrium::solved::Ended;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::Workspace;
-use crate::model::{At, Discretization};
 
 /// Share of the predicted decrease that a step must achieve (Nocedal & Wright, section 3.1).
 const SUFFICIENT_DECREASE: f64 = 1e-4;

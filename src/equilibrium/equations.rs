@@ -1,6 +1,7 @@
 //! The equations R(q, λ) = 0 at a point: residual, its rate with the parameter, and the factor of the stiffness.
 
-use crate::equilibrium::assembly::{Assembled, Want};
+use crate::energy::{At, Discretization, Want};
+use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::iterate::{Effort, Iterate};
@@ -8,7 +9,6 @@ use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::solved::Ended;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::equilibrium::workspace::Workspace;
-use crate::model::{At, Discretization};
 use crate::shell::add;
 
 /// The pieces of a workspace that the equations take.

@@ -16,9 +16,9 @@
 //! magnitudes would grow with the number of elements for one and the same stress, which the norm of membrane forces does
 //! not.
 
+use crate::energy::Discretization;
 use crate::equilibrium::assembly::{Assembled, subtract};
 use crate::equilibrium::vector::length;
-use crate::model::Discretization;
 
 /// Share of the forces of the elements that counts.
 const OF_ELEMENTS: f64 = 1e-3;

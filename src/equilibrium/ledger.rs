@@ -1,10 +1,10 @@
 //! The balance of energy of a solve: what the model stored before, and what has been done on it since.
 
-use crate::equilibrium::assembly::strain_energy;
+use crate::energy::{At, Discretization, strain_energy};
 use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::Workspace;
-use crate::model::{At, Discretization, Placement};
+use crate::model::Placement;
 
 /// The start of a solve.
 pub(super) struct Before {

@@ -2,8 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `kernel` | energy, residual and stiffness of an element |
-//! | `assembly` | their sums over elements |
+//! | `assembly` | sums of all terms |
 //! | `symmetry` | how symmetric a stiffness is |
 //! | `pattern` | from blocks on control points to the matrix on free unknowns |
 //! | `sparse` | factor and solution |
@@ -13,7 +12,7 @@
 //! | `workspace` | tables, matrix and factor for one mesh |
 //! | `iterate` | what is known of a solve under way |
 //! | `force_scale` | what a residual is compared with |
-//! | `ledger`, `balance` | the energies of a solve, from its start, and at its end |
+//! | `ledger` | the energies of a solve, from its start |
 //! | `descent` | Newton's method as a descent on the energy |
 //! | `newton` | equilibrium at a value of the parameter |
 //! | `equations`, `continuation` | equilibrium along a path |
@@ -23,7 +22,6 @@
 //! | `timing` | the pieces of an iteration one by one |
 
 mod assembly;
-mod balance;
 mod condition;
 mod configuration;
 mod continuation;
@@ -32,7 +30,6 @@ mod equations;
 mod force_scale;
 mod gmres;
 mod iterate;
-mod kernel;
 mod ledger;
 mod linear_release;
 mod metric;
@@ -48,8 +45,7 @@ mod timing;
 mod vector;
 mod workspace;
 
-pub use assembly::{Assembled, Part, Want, strain_energy};
-pub use balance::Balance;
+pub use assembly::Assembled;
 pub use condition::Condition;
 pub use configuration::{Configuration, Standing};
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};
@@ -65,8 +61,3 @@ pub use stability::{LinearBuckling, SoftMode, soft_mode};
 pub use symmetry::SymmetryError;
 pub use timing::{KernelCost, KernelRun};
 pub use workspace::Workspace;
-
-/// Build of the element kernel that this machine runs.
-pub fn kernel_name() -> &'static str {
-    kernel::Build::detect().name()
-}

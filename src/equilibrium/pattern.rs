@@ -5,8 +5,9 @@
 
 use rayon::prelude::*;
 
+use crate::energy::Discretization;
 use crate::equilibrium::sparse::{Couplings, SparseSolver};
-use crate::model::{BLOCK, Blocks, Discretization, Placement};
+use crate::model::{BLOCK, Blocks, Placement};
 
 /// Numbers of the matrix that a thread fills at a time.
 const SHARE: usize = 1 << 14;
@@ -117,7 +118,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::equilibrium::assembly::{Assembled, Want};
+    use crate::energy::Want;
+    use crate::equilibrium::assembly::Assembled;
     use crate::model::starting_mesh;
     use crate::scene::{Geometry, Symmetry, parse};
 

@@ -1,12 +1,11 @@
 //! What a solve leaves.
 
-use crate::equilibrium::balance::Balance;
+use crate::energy::{At, Balance, Discretization};
 use crate::equilibrium::configuration::Standing;
 use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::ledger::Before;
 use crate::equilibrium::vector::{length, product};
 use crate::equilibrium::workspace::{Factored, Workspace};
-use crate::model::{At, Discretization};
 use crate::scene::Scene;
 
 /// A point of equilibrium.

@@ -7,13 +7,14 @@
 //! iteration (Golub & Van Loan, *Matrix Computations*, 4th ed., section 8.2.2) from a shift below it (0 where the state is
 //! stable) then gives the mode. Of a part of a symmetric shell it is the lowest of the modes that share its symmetry.
 
+use crate::energy::Discretization;
 use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::metric::Metric;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::{Formed, Workspace};
-use crate::model::{Blocks, Discretization, Placement};
+use crate::model::{Blocks, Placement};
 use crate::shell::dot;
 
 /// Inverse iterations at most. Near a critical point the lowest eigenvalue stands far from the next, and a handful

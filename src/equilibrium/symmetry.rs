@@ -5,10 +5,11 @@
 //! |x·(K y) − y·(K x)| shows a Hessian that is not symmetric, and |x·(K y) − x·(K_half y)| an assembled matrix that is not
 //! the sum of the Hessians. Loads that turn with the shell have a tangent of their own and are left out.
 
-use crate::equilibrium::assembly::{Assembled, Want};
+use crate::energy::{Discretization, Want};
+use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::configuration::Standing;
 use crate::equilibrium::workspace::Workspace;
-use crate::model::{Discretization, PointTable, Tables};
+use crate::model::{PointTable, Tables};
 use crate::shell::{Hessian, PointReference, dot};
 
 /// Errors of the stiffness of the shell at a state, relative to |x| |K y|.

@@ -1,12 +1,13 @@
 //! The tangent stiffness on the free unknowns, and its factor.
 
+use crate::energy::Discretization;
 use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::gmres::gmres;
 use crate::equilibrium::iterate::Effort;
 use crate::equilibrium::pattern::{Pattern, couplings};
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::sparse::{FactorError, NegativePivots, SparseSolver};
-use crate::model::{Blocks, Discretization, Placement};
+use crate::model::{Blocks, Placement};
 
 /// Residual of a solution where the tangent has a skew part, relative; Newton's convergence asks for no more.
 const SKEW_TOLERANCE: f64 = 1e-9;
@@ -97,8 +98,9 @@ mod tests {
 
     use super::*;
     use crate::digest::Hash;
-    use crate::equilibrium::{Equilibrium, Standing, Want, Workspace};
-    use crate::model::{At, ModelError, Tables, Tangent, Term, TermSource, starting_mesh};
+    use crate::energy::{At, Tangent, Term, TermSource, Want};
+    use crate::equilibrium::{Equilibrium, Standing, Workspace};
+    use crate::model::{ModelError, Tables, starting_mesh};
     use crate::scene::{Scene, parse};
     use crate::spline::Mesh;
 

@@ -1,6 +1,6 @@
 //! The pieces of a Newton iteration one by one, for timing.
 
-use crate::equilibrium::assembly::Want;
+use crate::energy::Want;
 use crate::equilibrium::configuration::Standing;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::workspace::Workspace;

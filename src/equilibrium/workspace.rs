@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::equilibrium::assembly::{Assembled, Want, strain_energy};
+use crate::energy::{At, Discretization, TermSource, Want, strain_energy};
+use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
 use crate::equilibrium::sparse::FactorError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
-use crate::model::{At, Discretization, TermSource};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 

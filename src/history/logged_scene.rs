@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::energy::TermSource;
 use crate::journal::{Log, SceneInLogError};
-use crate::model::TermSource;
 use crate::pipeline::run_hash;
 use crate::scene::Scene;
 use crate::state::Hash;

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use crate::energy::TermSource;
 use crate::history::logged_scene::logged_scene;
 use crate::history::states::States;
 use crate::journal::Log;
-use crate::model::TermSource;
 use crate::pipeline::{MemorySink, Run, Stages};
 
 /// The log with every lost stage run again on which whole ones follow, as their hashes tell, and how many these are; `None` where

@@ -3,9 +3,10 @@
 
 use std::sync::Arc;
 
+use crate::energy::TermSource;
 use crate::history::logged_scene::{LoggedSceneError, logged_scene};
 use crate::journal::{Log, LongLogError, Manifest, StateError};
-use crate::model::{ModelError, TermSource};
+use crate::model::ModelError;
 use crate::pipeline::{StageError, Stages};
 use crate::state::{Hash, State};
 

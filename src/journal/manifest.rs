@@ -11,7 +11,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::encode_error::EncodeError;
 use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT, SCENE_VALUES_LIMIT, library};
-use crate::model::TermSource;
+use crate::energy::TermSource;
 use crate::pipeline::{NUMERICS_REVISION, run_hash};
 use crate::printable::one_line;
 use crate::scene::{Scene, SceneError, parse_with_settings};
@@ -106,7 +106,7 @@ impl Manifest {
             scene_text: scene_text.to_owned(),
             cpu: std::env::consts::ARCH.to_owned(),
             cpu_features: cpu_features().iter().map(|&name| name.to_owned()).collect(),
-            kernel: crate::equilibrium::kernel_name().to_owned(),
+            kernel: crate::energy::kernel_name().to_owned(),
             numerics: NUMERICS_REVISION,
             threads,
             host: host(),

@@ -70,7 +70,7 @@ impl Mirror {
     }
 
     /// The share of a vector across the plane, where that is more than rounding.
-    pub(super) fn share_across(&self, vector: [f64; 3]) -> Option<f64> {
+    pub(crate) fn share_across(&self, vector: [f64; 3]) -> Option<f64> {
         let share = dot(vector, self.normal);
         (share.abs() > 2.0 * ANGLE * norm(vector)).then_some(share)
     }

@@ -26,20 +26,14 @@
 //! | `connectivity` | control points of each element, and the order of sums |
 //! | `tables` | shape functions at the points |
 //! | `block_pattern`, `blocks` | 3 × 3 blocks of a matrix on control points |
-//! | `term` | energies and loads beside the shell's own |
-//! | `loads` | the actions of a scene as terms |
-//! | `load_balance` | whether they balance where only rigid motions are held |
 //! | `free_strains` | strains without energy over the parameter |
 //! | `reactions` | what supports exert |
-//! | `remarks` | what a scene leaves open, in words |
-//! | `discretization` | all of that for one mesh |
 
 mod block_pattern;
 mod blocks;
 mod body;
 mod connectivity;
 mod direction;
-mod discretization;
 mod edge;
 mod elimination;
 mod error;
@@ -50,8 +44,6 @@ mod hold;
 mod imbalance;
 mod joint;
 mod limits;
-mod load_balance;
-mod loads;
 mod mirror;
 mod mirror_check;
 mod mirror_image;
@@ -61,7 +53,6 @@ mod place;
 mod placement;
 mod quadrature;
 mod reactions;
-mod remarks;
 mod rigid_motion;
 mod rigid_support;
 mod rotation;
@@ -73,7 +64,6 @@ mod supports;
 mod symmetric_line;
 mod symmetry_plane;
 mod tables;
-mod term;
 mod thinness;
 mod ties;
 mod unknowns;
@@ -81,22 +71,24 @@ mod unknowns;
 pub use block_pattern::BlockPattern;
 pub(crate) use blocks::BLOCK;
 pub use blocks::Blocks;
+pub(crate) use body::{Body, FreeMotions};
 pub use connectivity::{Connectivity, Strand};
 pub(crate) use direction::{Site, direction_at};
-pub use discretization::Discretization;
 pub use error::ModelError;
 pub(crate) use expressions::control_expressions;
 pub use free_strains::{FreeStrains, NaturalState};
+pub(crate) use gauss::gauss_points;
 pub use limits::MOST_CONTROL_POINTS;
-pub(crate) use load_balance::check_balance;
+pub(crate) use limits::ROUNDING;
+pub(crate) use mirror::Mirror;
 pub use patch::starting_mesh;
 pub(crate) use place::{line_place, parameters_of};
 pub use placement::Placement;
+pub(crate) use quadrature::PointCounts;
 pub use reactions::{Exerted, PointForces};
-pub(crate) use remarks::remarks;
-pub(crate) use rigid_motion::check_held;
+pub(crate) use rigid_motion::{HELD, free_motions};
 pub use supports::Supports;
 pub(crate) use tables::{BATCH, LANES};
 pub use tables::{PointTable, Tables};
-pub use term::{At, Tangent, Term, TermSource, Terms};
+pub(crate) use thinness::{ERROR_OF_OFFSET, Extent, THICK};
 pub use unknowns::{Entry, Unknowns};

@@ -33,11 +33,11 @@ const SAMPLES: usize = 7;
 const MOST_MORE: usize = 3;
 
 /// Gauss points of each element, `[direction][element]`.
-pub(super) type Counts = [Vec<usize>; 2];
+pub(crate) type Counts = [Vec<usize>; 2];
 
 /// The points of a mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct PointCounts {
+pub(crate) struct PointCounts {
     /// For bending, and for stretching where `stretching` has none of its own.
     pub bending: Counts,
     /// For stretching alone.

@@ -81,7 +81,7 @@ pub struct Supports {
     /// For each constraint, the support that it comes from; `None` for a joint.
     pub(super) owner: Vec<Option<usize>>,
     /// What a support that holds rigid motions alone holds.
-    pub(super) held_motions: Option<HeldMotions>,
+    pub(crate) held_motions: Option<HeldMotions>,
 }
 
 impl Supports {

@@ -69,7 +69,7 @@ pub struct Unknowns {
     /// Laws of the given coordinates.
     given: Vec<Law>,
     /// Undeformed control points, mm.
-    pub(super) points: Vec<[f64; 3]>,
+    pub(crate) points: Vec<[f64; 3]>,
     pub(super) home: Vec<Home>,
 }
 

@@ -1,6 +1,7 @@
 //! Switch-branch: the way from an unstable equilibrium to a stable one at the same load.
 
-use crate::equilibrium::{Balance, Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
+use crate::energy::Balance;
+use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
 use crate::pipeline::step::{Step, out_of_order, settle};
 use crate::pipeline::step_control::{is_jump, known_release};
 use crate::pipeline::{Report, StageError};

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::adapt::{Halved, evaluate_indicators, largest_strain};
+use crate::energy::TermSource;
 use crate::equilibrium::{Equilibrium, LinearBuckling, Solved, Standing, Workspace};
-use crate::model::TermSource;
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step_control::next_stage;
 use crate::pipeline::warning::LARGE;

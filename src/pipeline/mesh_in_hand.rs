@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use crate::energy::{Discretization, TermSource};
 use crate::equilibrium::{Workspace, WorkspaceError};
-use crate::model::{Discretization, ModelError, TermSource, Unknowns};
+use crate::model::{ModelError, Unknowns};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 

@@ -3,10 +3,10 @@
 use std::cell::OnceCell;
 
 use crate::adapt::largest_bending_strain;
+use crate::energy::{At, Discretization};
 use crate::equilibrium::{Configuration, Standing, Workspace};
 use crate::model::{
-    At, Discretization, Exerted, ModelError, Placement, Site, control_expressions, direction_at, line_place,
-    parameters_of,
+    Exerted, ModelError, Placement, Site, control_expressions, direction_at, line_place, parameters_of,
 };
 use crate::pipeline::Reading;
 use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene, SurfaceDirection};

@@ -4,11 +4,9 @@ use std::sync::Arc;
 
 use crate::adapt::{evaluate_indicators, project_displacements};
 use crate::digest::{Feed, Hash};
-use crate::equilibrium::{Iterate, Standing, Workspace, WorkspaceError, strain_energy};
-use crate::model::{
-    At, FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, TermSource, check_balance, check_held, remarks,
-    starting_mesh,
-};
+use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_energy};
+use crate::equilibrium::{Iterate, Standing, Workspace, WorkspaceError};
+use crate::model::{FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, starting_mesh};
 use crate::pipeline::doubts::{Doubts, doubtful};
 use crate::pipeline::load_drive::LoadDrive;
 use crate::pipeline::mesh_in_hand::MeshInHand;

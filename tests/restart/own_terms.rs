@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use foldline::energy::{At, Term, TermSource};
 use foldline::history::{
     LoggedSceneError, States, Verdict, basis, find_snap, logged_scene, plan, replay_stage, restored_scene, verdict,
 };
 use foldline::journal::{JournalWriter, Log, Manifest, Resume};
-use foldline::model::{At, ModelError, Tables, Term, TermSource};
+use foldline::model::{ModelError, Tables};
 use foldline::pipeline::{MemorySink, Run, Stages};
 use foldline::scene::{Scene, SyncPolicy, parse};
 use foldline::spline::Mesh;

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use foldline::equilibrium::{Assembled, Equilibrium, Standing, Want, Workspace, strain_energy};
-use foldline::model::{Discretization, starting_mesh};
+use foldline::energy::{Discretization, Want, strain_energy};
+use foldline::equilibrium::{Assembled, Equilibrium, Standing, Workspace};
+use foldline::model::starting_mesh;
 use foldline::scene::{Geometry, Load, Scene, Sense, Symmetry};
 
 use crate::support::scene;

@@ -1,7 +1,8 @@
 //! Patches that share control points, assembled into one matrix.
 
-use foldline::equilibrium::{Assembled, Part, Want};
-use foldline::model::{BlockPattern, Blocks, Discretization, Tables, starting_mesh};
+use foldline::energy::{Discretization, Part, Want};
+use foldline::equilibrium::Assembled;
+use foldline::model::{BlockPattern, Blocks, Tables, starting_mesh};
 use foldline::scene::{Quadrature, Scene};
 use foldline::spline::Mesh;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! A square cross-ply plate [0/90], cured flat and cooled: a saddle while it is small, and two cylinders once it is large.
 
 use foldline::adapt::element_strains;
-use foldline::model::Discretization;
+use foldline::energy::Discretization;
 use foldline::pipeline::Record;
 use foldline::scene::{Geometry, Load, Scene, Stage};
 use foldline::state::State;

@@ -1,6 +1,7 @@
 //! An energy of one's own: an elastic foundation, ½ k (w − w₀)² on every mm² of the undeformed shell.
 
-use foldline::model::{At, ModelError, Tables, Tangent, Term, TermSource};
+use foldline::energy::{At, Tangent, Term, TermSource};
+use foldline::model::{ModelError, Tables};
 use foldline::scene::Scene;
 use foldline::shell::gauss_legendre;
 use foldline::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};

@@ -3,8 +3,10 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use foldline::equilibrium::{Assembled, Balance, Equilibrium, Standing, Want, Workspace};
-use foldline::model::{At, ModelError, Tables, Tangent, Term, TermSource, starting_mesh};
+use foldline::energy::Balance;
+use foldline::energy::{At, Tangent, Term, TermSource, Want};
+use foldline::equilibrium::{Assembled, Equilibrium, Standing, Workspace};
+use foldline::model::{ModelError, Tables, starting_mesh};
 use foldline::pipeline::{MemorySink, Record, Run, Stages};
 use foldline::scene::{Scene, Stage, parse};
 use foldline::spline::Mesh;

@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use foldline::equilibrium::{Assembled, Want, strain_energy};
-use foldline::model::{Discretization, starting_mesh};
+use foldline::energy::{Discretization, Want, strain_energy};
+use foldline::equilibrium::Assembled;
+use foldline::model::starting_mesh;
 use foldline::pipeline::Report;
 use foldline::scene::{Scene, parse};
 

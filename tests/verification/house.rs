@@ -3,7 +3,7 @@
 use crate::imports::{Import, Sources, Token, circles, imports, sources, tokens};
 
 /// From the bottom of the stack to its top: each folder imports only from those before it.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 19] = [
     "units",
     "printable",
     "digest",
@@ -12,6 +12,7 @@ const ORDER: [&str; 18] = [
     "scene",
     "shell",
     "model",
+    "energy",
     "state",
     "equilibrium",
     "adapt",

@@ -3,8 +3,9 @@
 
 use std::sync::Arc;
 
-use foldline::equilibrium::{Assembled, Want};
-use foldline::model::{Discretization, starting_mesh};
+use foldline::energy::{Discretization, Want};
+use foldline::equilibrium::Assembled;
+use foldline::model::starting_mesh;
 use foldline::scene::{Quadrature, Scene, parse};
 use foldline::spline::Mesh;
 use nalgebra::DMatrix;

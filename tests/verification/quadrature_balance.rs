@@ -4,8 +4,9 @@
 
 use std::sync::Arc;
 
-use foldline::equilibrium::{Assembled, Equilibrium, Standing, Want, Workspace};
-use foldline::model::{Discretization, starting_mesh};
+use foldline::energy::{Discretization, Want};
+use foldline::equilibrium::{Assembled, Equilibrium, Standing, Workspace};
+use foldline::model::starting_mesh;
 use foldline::scene::{Scene, parse};
 use foldline::spline::{Mesh, Spans, mid_surface_point};
 use nalgebra::{DMatrix, DVector};

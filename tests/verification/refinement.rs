@@ -1,6 +1,6 @@
 //! Refinement is exact: the projected state is the same state.
 
-use foldline::equilibrium::strain_energy;
+use foldline::energy::strain_energy;
 use foldline::model::Tables;
 use foldline::scene::Stage;
 

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use foldline::equilibrium::{Assembled, SoftMode, Standing, Want, Workspace, soft_mode};
-use foldline::model::Discretization;
+use foldline::energy::{Discretization, Want};
+use foldline::equilibrium::{Assembled, SoftMode, Standing, Workspace, soft_mode};
 use foldline::pipeline::Outcome;
 use foldline::scene::{Scene, parse};
 use foldline::spline::Mesh;

@@ -21,7 +21,7 @@ mod supernodal;
 pub use structure::{Couplings, FactorError, NegativePivots};
 pub use supernodal::DenseProduct;
 
-use crate::equilibrium::kernel::Build;
+use crate::energy::Build;
 use strips::StripSolver;
 use supernodal::SupernodalSolver;
 

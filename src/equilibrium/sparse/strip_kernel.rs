@@ -10,7 +10,7 @@
 //! Tiles of twelve rows and four columns stay in registers for the whole of that sum.
 
 use super::chain::{Chain, HEIGHT};
-use crate::equilibrium::kernel::Build;
+use crate::energy::Build;
 use crate::shell::lanes::{FourLanes, Portable};
 #[cfg(target_arch = "x86_64")]
 use crate::shell::lanes_x86::{Fma, HasFma};

@@ -10,7 +10,7 @@
 //! Each chain holds its rows of the matrix, and of L, as strips; see [`super::strip_kernel`]. Entries of the matrix
 //! between two unknowns of the separator stand with the head.
 
-use crate::equilibrium::kernel::Build;
+use crate::energy::Build;
 use crate::equilibrium::sparse::chain::{Chain, HEIGHT};
 use crate::equilibrium::sparse::envelope::Envelope;
 use crate::equilibrium::sparse::strip_kernel::{ChainData, Column, SolveData, backward, eliminate, forward};

@@ -1,7 +1,8 @@
 //! Each row of the table, and paths made up with a critical point on them.
 
 use super::*;
-use crate::equilibrium::{Balance, Direction, Effort, Solved};
+use crate::energy::Balance;
+use crate::equilibrium::{Direction, Effort, Solved};
 use crate::scene::{ArcLengthWord, Stage, parse};
 use crate::spline::Mesh;
 

@@ -1,7 +1,7 @@
 //! Loads that do not depend on the displacement.
 
-use crate::model::loads::points::LoadPoint;
-use crate::model::{At, Term};
+use crate::energy::loads::points::LoadPoint;
+use crate::energy::{At, Term};
 use crate::scene::History;
 use crate::shell::{add, dot, scaled, sub};
 use crate::spline::Mesh;

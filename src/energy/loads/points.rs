@@ -1,8 +1,6 @@
 //! Quadrature points of loads on lines and areas of the surface.
 
-use crate::model::direction::Site;
-use crate::model::gauss::gauss_points;
-use crate::model::quadrature::PointCounts;
+use crate::model::{PointCounts, Site, gauss_points};
 use crate::scene::{Edge, ForceVector, LoadedArea, Scene};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::model::{At, BlockPattern, FreeStrains, ModelError, Tables, TermSource, Terms, Unknowns};
+use crate::energy::{At, TermSource, Terms};
+use crate::model::{BlockPattern, FreeStrains, ModelError, Tables, Unknowns};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::model::{At, ModelError, TermSource, Terms, Unknowns};
+use crate::energy::{At, TermSource, Terms};
+use crate::model::{ModelError, Unknowns};
 use crate::scene::Scene;
 use crate::shell::norm;
 use crate::spline::Mesh;

@@ -14,8 +14,8 @@
 //! the edges of the pressed surface are free, the load has no potential, and the strokes are integrals along the very way
 //! that they were summed on.
 
-use crate::model::loads::following::Kind;
-use crate::model::loads::points::LoadPoint;
+use crate::energy::loads::following::Kind;
+use crate::energy::loads::points::LoadPoint;
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
@@ -52,7 +52,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::model::{At, Discretization, starting_mesh};
+    use crate::energy::{At, Discretization};
+    use crate::model::starting_mesh;
     use crate::scene::{Action, ActionKind, History, parse};
 
     /// A plate of 12 × 1 mm with a moment of 52.36 N·mm per mm on the end of its length, and one more action.

@@ -16,8 +16,8 @@
 //! free unknowns where the load has a potential there (pressure on a shell whose edges are held, for instance) and is
 //! otherwise solved for as it is ([`crate::equilibrium`]).
 
-use crate::model::loads::points::LoadPoint;
-use crate::model::{At, Tangent, Term};
+use crate::energy::loads::points::LoadPoint;
+use crate::energy::{At, Tangent, Term};
 use crate::scene::History;
 use crate::shell::{add, cross, dot, norm, scaled};
 use crate::spline::Mesh;
@@ -201,7 +201,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::model::{Blocks, Discretization, starting_mesh};
+    use crate::energy::Discretization;
+    use crate::model::{Blocks, starting_mesh};
     use crate::scene::{Action, ActionKind, Edge, Place, parse};
 
     /// A panel with a follower pressure and an edge moment, displaced at random.

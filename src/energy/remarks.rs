@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::model::limits::ROUNDING;
-use crate::model::mirror::Mirror;
-use crate::model::place::parameters_of;
-use crate::model::thinness::{ERROR_OF_OFFSET, Extent, THICK};
-use crate::model::{At, FreeStrains, ModelError, TermSource, Terms, Unknowns};
+use crate::energy::{At, TermSource, Terms};
+use crate::model::{
+    ERROR_OF_OFFSET, Extent, FreeStrains, Mirror, ModelError, ROUNDING, THICK, Unknowns, parameters_of,
+};
 use crate::scene::{Action, ActionKind, ForceVector, Geometry, History, Scene, SurfaceDirection};
 use crate::shell::{FreeStrain, cross, dot, norm, scaled};
 use crate::spline::{Mesh, Spans, mid_surface_point};

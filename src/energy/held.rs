@@ -1,0 +1,69 @@
+//! Whether supports and terms hold the shell, found before the first solve.
+
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use crate::energy::{At, TermSource, Terms};
+use crate::model::{BlockPattern, Blocks, Body, FreeMotions, HELD, ModelError, Tables, Unknowns, free_motions};
+use crate::scene::Scene;
+use crate::spline::Mesh;
+
+/// Refuses a shell that neither supports nor terms of the caller's own hold.
+///
+/// # Errors
+/// Where a rigid motion is free, or one of the terms does not fit the mesh.
+pub fn check_held(
+    scene: &Scene,
+    mesh: &Mesh,
+    unknowns: &Unknowns,
+    own: &[Arc<dyn TermSource>],
+) -> Result<(), ModelError> {
+    let points = &unknowns.points;
+    let mut free = free_motions(Body::around(points), unknowns.supports(), points);
+    if free.basis.ncols() > 0 && !own.is_empty() {
+        [free, _] = free.parted_by_terms(scene, mesh, own)?;
+    }
+    match free.basis.ncols() {
+        0 => Ok(()),
+        _ => Err(ModelError::FreeMotion { motion: free.body.words(&free.basis) }),
+    }
+}
+
+impl FreeMotions {
+    /// Those that the terms of a scene answer by no force, and those that they hold, at the undeformed shell.
+    ///
+    /// # Errors
+    /// Where one of the terms does not fit the mesh.
+    pub fn parted_by_terms(
+        &self,
+        scene: &Scene,
+        mesh: &Mesh,
+        own: &[Arc<dyn TermSource>],
+    ) -> Result<[Self; 2], ModelError> {
+        let tables = Tables::new(scene, mesh);
+        let terms = Terms::new(scene, mesh, &tables, own)?;
+        let pattern = BlockPattern::new(&[&tables.connectivity], &terms.pairs());
+        let mut stiffness = Blocks::zeros(&pattern);
+        let still = vec![[0.0; 3]; mesh.control_points.len()];
+        terms.add_tangent(At { mesh, displacement: &still, parameter: 0.0 }, &pattern, &mut stiffness);
+        let answers = self.basis.column_iter().map(|motion| {
+            let moved = |point| {
+                let fields = self.body.fields(point);
+                [0, 1, 2].map(|c| (0..6).map(|k| motion[k] * fields[k][c]).sum::<f64>())
+            };
+            let field: Vec<[f64; 3]> = mesh.points().map(moved).collect();
+            stiffness.multiply(&pattern, 1.0, &field).into_flattened()
+        });
+        let answers: Vec<f64> = answers.flatten().collect();
+        let answers = DMatrix::from_vec(3 * still.len(), self.basis.ncols(), answers);
+        let eigen = answers.tr_mul(&answers).symmetric_eigen();
+        let size: f64 = stiffness.diagonal(&pattern).flatten().map(|value| value * value).sum();
+        let are_held = |held: bool| -> Self {
+            let chosen = (0..self.basis.ncols()).filter(|k| (eigen.eigenvalues[*k] > HELD * size) == held);
+            let chosen: Vec<usize> = chosen.collect();
+            Self { body: self.body, basis: &self.basis * eigen.eigenvectors.select_columns(&chosen) }
+        };
+        Ok([false, true].map(are_held))
+    }
+}

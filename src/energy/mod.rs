@@ -1,0 +1,38 @@
+//! What stores energy and what acts: one file a term, and their balance.
+//!
+//! | file | what |
+//! |---|---|
+//! | `term` | a term, and the sum of all on a mesh |
+//! | `kernel`, `shell` | energy, residual and stiffness of an element of the shell; their sums |
+//! | `loads` | the actions of a scene |
+//! | `balance` | what is stored, worked and lost |
+//! | `discretization` | a scene on a mesh, with all its terms |
+//! | `held` | whether supports and terms hold the shell |
+//! | `load_balance` | whether loads balance where only rigid motions are held |
+//! | `remarks` | what a scene leaves open, in words |
+
+mod balance;
+mod discretization;
+mod held;
+mod kernel;
+mod load_balance;
+mod loads;
+mod remarks;
+mod shell;
+mod term;
+
+pub use balance::Balance;
+pub use discretization::Discretization;
+pub(crate) use held::check_held;
+pub(crate) use kernel::Build;
+pub use kernel::Want;
+pub(crate) use load_balance::check_balance;
+pub(crate) use remarks::remarks;
+pub(crate) use shell::with_locked;
+pub use shell::{ElementSums, Part, strain_energy};
+pub use term::{At, Tangent, Term, TermSource, Terms};
+
+/// Build of the element kernel that this machine runs.
+pub fn kernel_name() -> &'static str {
+    Build::detect().name()
+}

@@ -1,0 +1,224 @@
+//! The shell: sums of energy, residual and stiffness over its elements.
+//!
+//! The order of sums is that of the [`Connectivity`](crate::model::Connectivity): threads work on strands of elements, strands of
+//! one colour at once, each on its own slices of the sums, since they share no control point; colours follow each other.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::energy::kernel::{Build, ElementBuffers, Want, integrate_element};
+use crate::model::{BLOCK, BlockPattern, Blocks, NaturalState, Strand, Tables};
+
+/// Strain energy of the model at a displacement of the control points that `tables` act on, N·mm. `natural` is the state
+/// without forces, where that is not the undeformed one. Summed in the order of [`Assembled::assemble`].
+pub fn strain_energy(tables: &Tables, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> f64 {
+    let build = Build::detect();
+    let strands = tables.connectivity.strands();
+    let energies: Vec<f64> = strands
+        .par_iter()
+        .map_init(
+            || buffers_for(tables, natural),
+            |buffers, strand| {
+                let mut energy = 0.0;
+                for element in strand.elements.clone() {
+                    gather(tables, displacement, element, buffers);
+                    integrate_element(tables, element, Want::Energy, build, buffers);
+                    energy += buffers.energy;
+                }
+                energy
+            },
+        )
+        .collect();
+    with_locked(energies.iter().sum(), natural)
+}
+
+fn buffers_for(tables: &Tables, natural: Option<NaturalState>) -> ElementBuffers {
+    let mut buffers = ElementBuffers::new(tables.padded);
+    buffers.free = natural.map(|natural| natural.strain);
+    buffers
+}
+
+/// Energy of the points, and that which layers keep in each other.
+pub(crate) fn with_locked(energy: f64, natural: Option<NaturalState>) -> f64 {
+    natural.map_or(energy, |natural| energy + natural.locked_n_mm)
+}
+
+/// Elements with a part in a matrix on control points that other patches may share.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'a> {
+    /// Its elements.
+    pub tables: &'a Tables,
+    /// The matrix.
+    pub blocks: &'a BlockPattern,
+    /// Which part of that the elements are.
+    pub part: usize,
+    /// The state without forces, where that is not the undeformed one.
+    pub natural: Option<NaturalState>,
+}
+
+impl Part<'_> {
+    /// Adds up residual and stiffness at a displacement of the control points; the latter only where `want` says so.
+    pub fn add(
+        &self,
+        displacement: &[[f64; 3]],
+        want: Want,
+        residual: &mut [[f64; 3]],
+        stiffness: &mut Blocks,
+    ) -> ElementSums {
+        let connectivity = &self.tables.connectivity;
+        let build = Build::detect();
+        let mut totals = vec![ElementSums::default(); connectivity.strands().len()];
+        for colour in connectivity.colours() {
+            let strands: Vec<&Strand> = colour.iter().map(|index| &connectivity.strands()[*index]).collect();
+            let of_blocks = if want == Want::Stiffness { &mut stiffness.values[..] } else { &mut [] };
+            let rows = take_rows(&strands, self.blocks, residual, of_blocks);
+            let sums: Vec<ElementSums> = strands
+                .par_iter()
+                .zip(rows)
+                .map_init(
+                    || buffers_for(self.tables, self.natural),
+                    |buffers, (strand, mut rows)| {
+                        let mut sums = ElementSums::default();
+                        for element in strand.elements.clone() {
+                            gather(self.tables, displacement, element, buffers);
+                            integrate_element(self.tables, element, want, build, buffers);
+                            self.scatter(element, want, buffers, &mut rows, &mut sums);
+                        }
+                        sums
+                    },
+                )
+                .collect();
+            colour.iter().zip(sums).for_each(|(index, sum)| totals[*index] = sum);
+        }
+        ElementSums {
+            energy: totals.iter().map(|strand| strand.energy).sum(),
+            squared_forces: totals.iter().map(|strand| strand.squared_forces).sum(),
+        }
+    }
+
+    /// Adds an element's forces, and its blocks, to the rows of its strand.
+    fn scatter(&self, element: usize, want: Want, buffers: &ElementBuffers, rows: &mut Rows, sums: &mut ElementSums) {
+        let padded = self.tables.padded;
+        sums.energy += buffers.energy;
+        for (a, control) in self.tables.connectivity.controls(element).iter().enumerate() {
+            let row = rows.residual(*control);
+            for c in 0..3 {
+                let force = buffers.residual[c * padded + a];
+                row[c] += force;
+                sums.squared_forces += force * force;
+            }
+        }
+        if want == Want::Stiffness {
+            self.scatter_blocks(element, &buffers.stiffness, rows);
+        }
+    }
+
+    fn scatter_blocks(&self, element: usize, local: &[f64], rows: &mut Rows) {
+        let padded = self.tables.padded;
+        let controls = self.tables.connectivity.controls(element);
+        let mut slots = self.blocks.slots(self.part, element);
+        let ascending = controls.is_sorted();
+        for (a, i) in controls.iter().enumerate() {
+            let (of_this, others) = slots.split_at(controls.len() - a);
+            slots = others;
+            let row = rows.blocks(self.blocks, *i);
+            for (b, slot) in (a..).zip(of_this).filter(|(b, _)| ascending || *i <= controls[*b]) {
+                let block = &mut row[*slot as usize * BLOCK..][..BLOCK];
+                for cd in 0..BLOCK {
+                    block[cd] += local[(b * BLOCK + cd % 3 * 3 + cd / 3) * padded + a];
+                }
+            }
+            // Of the others the mirror image is stored.
+            for (b, slot) in (a..).zip(of_this).filter(|(b, _)| !ascending && *i > controls[*b]) {
+                let block = &mut rows.blocks(self.blocks, controls[b])[*slot as usize * BLOCK..][..BLOCK];
+                for cd in 0..BLOCK {
+                    block[cd] += local[(b * BLOCK + cd) * padded + a];
+                }
+            }
+        }
+    }
+}
+
+/// Sums over elements.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ElementSums {
+    /// Strain energy, N·mm.
+    pub energy: f64,
+    /// Squares of the elements' forces on their control points, N².
+    pub squared_forces: f64,
+}
+
+/// A run of control points with their part of the sums.
+struct Run<'a> {
+    points: Range<usize>,
+    residual: &'a mut [[f64; 3]],
+    /// Their rows of blocks; empty where no stiffness is asked for.
+    stiffness: &'a mut [f64],
+}
+
+/// What the elements of a strand add to: runs with growing numbers.
+#[derive(Default)]
+struct Rows<'a>(Vec<Run<'a>>);
+
+impl<'a> Rows<'a> {
+    fn run(&mut self, point: usize) -> &mut Run<'a> {
+        let index = match self.0.len() {
+            1 => 0,
+            _ => self.0.partition_point(|run| run.points.end <= point),
+        };
+        &mut self.0[index]
+    }
+
+    fn residual(&mut self, point: usize) -> &mut [f64; 3] {
+        let run = self.run(point);
+        &mut run.residual[point - run.points.start]
+    }
+
+    /// Blocks of a control point's row.
+    fn blocks(&mut self, pattern: &BlockPattern, point: usize) -> &mut [f64] {
+        let run = self.run(point);
+        let first = pattern.start(run.points.start);
+        &mut run.stiffness[(pattern.start(point) - first) * BLOCK..(pattern.start(point + 1) - first) * BLOCK]
+    }
+}
+
+/// Disjoint slices for strands that share no control point.
+fn take_rows<'a>(
+    strands: &[&Strand],
+    pattern: &BlockPattern,
+    mut residual: &'a mut [[f64; 3]],
+    mut stiffness: &'a mut [f64],
+) -> Vec<Rows<'a>> {
+    let mut runs: Vec<(usize, Range<usize>)> = strands
+        .iter()
+        .enumerate()
+        .flat_map(|(index, strand)| strand.runs.iter().map(move |run| (index, run.clone())))
+        .collect();
+    runs.sort_unstable_by_key(|(_, run)| run.start);
+    let mut rows: Vec<Rows> = strands.iter().map(|_| Rows::default()).collect();
+    let mut taken = 0;
+    for (index, points) in runs {
+        let (_, rest) = residual.split_at_mut(points.start - taken);
+        let (of_this, rest) = rest.split_at_mut(points.len());
+        residual = rest;
+        let blocks = |from: usize, to: usize| (pattern.start(to) - pattern.start(from)) * BLOCK;
+        let mut of_these: &mut [f64] = &mut [];
+        if !stiffness.is_empty() {
+            let (_, rest) = stiffness.split_at_mut(blocks(taken, points.start));
+            (of_these, stiffness) = rest.split_at_mut(blocks(points.start, points.end));
+        }
+        taken = points.end;
+        rows[index].0.push(Run { points, residual: of_this, stiffness: of_these });
+    }
+    rows
+}
+
+/// Copies the displacement of an element's control points into its buffers.
+fn gather(tables: &Tables, displacement: &[[f64; 3]], element: usize, buffers: &mut ElementBuffers) {
+    for (a, control) in tables.connectivity.controls(element).iter().enumerate() {
+        for c in 0..3 {
+            buffers.displacement[c * tables.padded + a] = displacement[*control][c];
+        }
+    }
+}
