@@ -56,13 +56,13 @@ pub fn evaluate_indicators(
     discretization: &Discretization,
     displacement: &[[f64; 3]],
 ) -> Indicators {
-    let elements = discretization.tables.elements;
+    let elements = discretization.shell.tables.elements;
     let limit = length_limit(scene, discretization, adapt.length_limit);
     let values: Vec<[f64; 2]> = (0..elements.len())
         .into_par_iter()
         .map(|element| element_indicators(discretization, displacement, element))
         .collect();
-    let judged = Judged { adapt, limit, lengths: &discretization.tables.lengths, values: &values };
+    let judged = Judged { adapt, limit, lengths: &discretization.shell.tables.lengths, values: &values };
     let largest = values.iter().fold([0.0_f64; 2], |most, value| [0, 1].map(|axis| most[axis].max(value[axis])));
     let worst = [0, 1].map(|axis| {
         let too_coarse = (0..values.len()).filter(|element| judged.is_too_coarse(*element, axis));
@@ -149,7 +149,7 @@ fn length_limit(scene: &Scene, discretization: &Discretization, rule: LengthLimi
 
 /// The longest line of elements each way, and of these the shorter, mm.
 fn shorter_side(discretization: &Discretization) -> f64 {
-    let Tables { elements, lengths, .. } = &discretization.tables;
+    let Tables { elements, lengths, .. } = &discretization.shell.tables;
     let longest = |way: usize| {
         let of_line = |beside| elements.line(1 - way, beside).map(|element| lengths[element][way]).sum();
         (0..elements.counts[1 - way]).map(of_line).fold(0.0, f64::max)
@@ -159,7 +159,7 @@ fn shorter_side(discretization: &Discretization) -> f64 {
 
 /// Largest principal curvature of the undeformed surface at the quadrature points, 1/mm.
 fn largest_curvature(discretization: &Discretization) -> f64 {
-    discretization.tables.points.references.iter().map(PointReference::largest_curvature).fold(0.0, f64::max)
+    discretization.shell.tables.points.references.iter().map(PointReference::largest_curvature).fold(0.0, f64::max)
 }
 
 /// max|κ_i| h_i over the quadrature points of an element.
@@ -170,7 +170,7 @@ fn element_indicators(discretization: &Discretization, displacement: &[[f64; 3]]
             largest[axis] = largest[axis].max(strains.bending[axis].abs() / (lengths[axis] * lengths[axis]));
         }
     }
-    [0, 1].map(|axis| largest[axis] * discretization.tables.lengths[element][axis])
+    [0, 1].map(|axis| largest[axis] * discretization.shell.tables.lengths[element][axis])
 }
 
 /// Strains at the quadrature points of an element, in the parameter basis, each with |A₁|, |A₂|: physical components
@@ -180,7 +180,7 @@ pub fn element_strains(
     displacement: &[[f64; 3]],
     element: usize,
 ) -> Vec<(Strains, [f64; 2])> {
-    let tables = &discretization.tables;
+    let tables = &discretization.shell.tables;
     let controls = tables.connectivity.controls(element);
     let functions = tables.points.element_functions(element);
     let at_point = |(q, point): (usize, &PointReference)| {
@@ -220,7 +220,7 @@ fn largest_along(
     displacement: &[[f64; 3]],
     of: impl Fn(&Strains, usize) -> f64 + Sync,
 ) -> (f64, [f64; 2]) {
-    let elements = discretization.tables.elements;
+    let elements = discretization.shell.tables.elements;
     let of_element = |element: usize| {
         let points = element_strains(discretization, displacement, element);
         let physical = |(strains, lengths): &(Strains, [f64; 2])| {

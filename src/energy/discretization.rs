@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::energy::{At, TermSource, Terms};
+use crate::energy::{At, Shell, Term, TermSource, Terms};
 use crate::model::{BlockPattern, FreeStrains, ModelError, Tables, Unknowns};
 use crate::scene::Scene;
 use crate::spline::Mesh;
@@ -12,16 +12,14 @@ use crate::spline::Mesh;
 pub struct Discretization {
     /// The mesh that it was built for.
     pub mesh: Arc<Mesh>,
-    /// Shape functions and undeformed shell at the quadrature points.
-    pub tables: Tables,
     /// Which control points meet in a matrix.
-    pub blocks: BlockPattern,
+    pub blocks: Arc<BlockPattern>,
     /// Free unknowns and how control points follow from them.
     pub unknowns: Unknowns,
+    /// The first term.
+    pub shell: Shell,
     /// Loads and energies beside the shell's own.
     pub terms: Terms,
-    /// Strains without energy.
-    pub free_strains: FreeStrains,
 }
 
 impl Discretization {
@@ -53,14 +51,26 @@ impl Discretization {
     ) -> Result<Self, ModelError> {
         let tables = Tables::new(scene, mesh);
         let terms = Terms::new(scene, mesh, &tables, own)?;
-        Ok(Self {
-            mesh: mesh.clone(),
-            blocks: BlockPattern::new(&[&tables.connectivity], &terms.pairs()),
-            tables,
-            unknowns,
-            terms,
-            free_strains: FreeStrains::new(scene, mesh),
-        })
+        let blocks = Arc::new(BlockPattern::new(&[&tables.connectivity], &terms.pairs()));
+        let shell = Shell { tables, free_strains: FreeStrains::new(scene, mesh), blocks: blocks.clone() };
+        Ok(Self { mesh: mesh.clone(), blocks, unknowns, shell, terms })
+    }
+
+    /// All terms, the shell first.
+    pub fn all_terms(&self) -> impl Iterator<Item = &dyn Term> {
+        std::iter::once(&self.shell as &dyn Term).chain(self.terms.iter())
+    }
+
+    /// Energy that the model stores, N·mm.
+    pub fn energy(&self, displacement: &[[f64; 3]], parameter: f64) -> f64 {
+        let at = At { mesh: &self.mesh, displacement, parameter };
+        self.shell.energy(at) + self.terms.energy(at)
+    }
+
+    /// What the model stores more, in N·mm, where it stays at a displacement and the parameter changes.
+    pub fn put_in(&self, displacement: &[[f64; 3]], [from, to]: [f64; 2]) -> f64 {
+        let at = At { mesh: &self.mesh, displacement, parameter: from };
+        self.all_terms().map(|term| term.put_in(at, to)).sum()
     }
 
     /// Forces that loads and other terms exert on the control points, N; empty where there are no terms.

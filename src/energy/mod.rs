@@ -2,8 +2,8 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `term` | a term, and the sum of all on a mesh |
-//! | `kernel`, `shell` | energy, residual and stiffness of an element of the shell; their sums |
+//! | `term` | what a term is, and the sum of those beside the shell |
+//! | `shell`, `kernel` | the shell, and its elements |
 //! | `loads` | the actions of a scene |
 //! | `balance` | what is stored, worked and lost |
 //! | `discretization` | a scene on a mesh, with all its terms |
@@ -29,7 +29,7 @@ pub use kernel::Want;
 pub(crate) use load_balance::check_balance;
 pub(crate) use remarks::remarks;
 pub(crate) use shell::with_locked;
-pub use shell::{ElementSums, Part, strain_energy};
+pub use shell::{ElementSums, Part, Shell, strain_energy};
 pub use term::{At, Tangent, Term, TermSource, Terms};
 
 /// Build of the element kernel that this machine runs.

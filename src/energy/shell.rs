@@ -1,17 +1,82 @@
-//! The shell: sums of energy, residual and stiffness over its elements.
+//! The shell as a term: sums of energy, residual and stiffness over its elements.
 //!
 //! The order of sums is that of the [`Connectivity`](crate::model::Connectivity): threads work on strands of elements, strands of
 //! one colour at once, each on its own slices of the sums, since they share no control point; colours follow each other.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::energy::kernel::{Build, ElementBuffers, Want, integrate_element};
-use crate::model::{BLOCK, BlockPattern, Blocks, NaturalState, Strand, Tables};
+use crate::energy::term::{At, Tangent, Term};
+use crate::model::{BLOCK, BlockPattern, Blocks, FreeStrains, NaturalState, Strand, Tables};
+use crate::shell::sub;
+
+/// The shell on a mesh: strain energy between its natural state and the deformed one.
+///
+/// Energy, forces and tangent share most of their work, so that whoever wants several takes them at once, from
+/// [`Self::part`]; taken one by one they are the same numbers.
+#[derive(Debug)]
+pub struct Shell {
+    /// Shape functions and undeformed shell at the quadrature points.
+    pub tables: Tables,
+    /// Strains without energy.
+    pub free_strains: FreeStrains,
+    /// The matrix that its elements are the first part of.
+    pub blocks: Arc<BlockPattern>,
+}
+
+impl Shell {
+    /// Its elements, where `natural` is the state without forces.
+    pub fn part(&self, natural: Option<NaturalState>) -> Part<'_> {
+        Part { tables: &self.tables, blocks: &self.blocks, part: 0, natural }
+    }
+
+    /// Gradient of the strain energy, N, and what of it is in the elements.
+    fn residual(&self, at: At) -> Vec<[f64; 3]> {
+        let mut residual = vec![[0.0; 3]; at.displacement.len()];
+        let part = self.part(self.free_strains.at(at.parameter));
+        part.add(at.displacement, Want::Residual, &mut residual, &mut Blocks::default());
+        residual
+    }
+}
+
+impl Term for Shell {
+    fn energy(&self, at: At) -> f64 {
+        strain_energy(&self.tables, at.displacement, self.free_strains.at(at.parameter))
+    }
+
+    fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
+        forces.iter_mut().zip(self.residual(at)).for_each(|(sum, force)| *sum = sub(*sum, force));
+    }
+
+    fn has_tangent(&self) -> bool {
+        true
+    }
+
+    fn add_tangent(&self, at: At, tangent: &mut Tangent) {
+        let mut residual = vec![[0.0; 3]; at.displacement.len()];
+        let part = self.part(self.free_strains.at(at.parameter));
+        part.add(at.displacement, Want::Stiffness, &mut residual, tangent.stiffness_of(&self.blocks));
+    }
+
+    fn put_in(&self, from: At, to: f64) -> f64 {
+        // Strain energy changes with its natural state alone.
+        let natural = |parameter: f64| self.free_strains.at(parameter);
+        match (natural(from.parameter), natural(to)) {
+            (None, None) => 0.0,
+            states => {
+                let [before, after] =
+                    <[_; 2]>::from(states).map(|natural| strain_energy(&self.tables, from.displacement, natural));
+                after - before
+            }
+        }
+    }
+}
 
 /// Strain energy of the model at a displacement of the control points that `tables` act on, N·mm. `natural` is the state
-/// without forces, where that is not the undeformed one. Summed in the order of [`Assembled::assemble`].
+/// without forces, where that is not the undeformed one. Summed in the order of [`Part::add`].
 pub fn strain_energy(tables: &Tables, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> f64 {
     let build = Build::detect();
     let strands = tables.connectivity.strands();

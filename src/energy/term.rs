@@ -1,4 +1,4 @@
-//! Energies and loads beside the shell's own, each a [`Term`]; all others see their sum.
+//! Energies and loads, each a [`Term`]; those beside the shell, of which all others see the sum.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -38,6 +38,11 @@ pub trait Term: Debug + Send + Sync {
     /// Energy that it stores in the model, N·mm.
     fn energy(&self, _at: At) -> f64 {
         0.0
+    }
+
+    /// What it stores more, in N·mm, where the parameter changes to `to` and the shell stays where it is.
+    fn put_in(&self, from: At, to: f64) -> f64 {
+        self.energy(At { parameter: to, ..from }) - self.energy(from)
     }
 
     /// Adds the forces that it exerts on the control points, N.
@@ -110,6 +115,15 @@ pub struct Tangent<'a> {
 }
 
 impl Tangent<'_> {
+    /// The symmetric part, N/mm, for terms that fill it in themselves: −∂f/∂u, whose pattern is this.
+    ///
+    /// # Panics
+    /// Where it has another pattern.
+    pub(super) fn stiffness_of(&mut self, pattern: &BlockPattern) -> &mut Blocks {
+        assert!(std::ptr::eq(self.pattern, pattern), "a stiffness of another pattern");
+        self.stiffness
+    }
+
     /// Takes ∂f_i/∂u_j, N/mm.
     ///
     /// # Panics
@@ -222,7 +236,8 @@ impl Terms {
         self.list.push(Named { name: name.to_owned(), term });
     }
 
-    fn iter(&self) -> impl Iterator<Item = &dyn Term> {
+    /// Each of them.
+    pub fn iter(&self) -> impl Iterator<Item = &dyn Term> {
         self.list.iter().map(|named| &*named.term)
     }
 

@@ -37,7 +37,7 @@ impl Assembled {
     /// Assembles residual and energy, and the stiffness where `want` says so, at a displacement of the control points and a
     /// value of the scene's parameter.
     pub fn assemble(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64, want: Want) {
-        let natural = discretization.free_strains.at(parameter);
+        let natural = discretization.shell.free_strains.at(parameter);
         self.assemble_shell(discretization, displacement, natural, want);
         self.add_terms(discretization, displacement, parameter, want);
         self.free_strain_forces = match natural {
@@ -86,7 +86,7 @@ impl Assembled {
         if want == Want::Stiffness {
             self.stiffness.clear();
         }
-        let part = Part { tables: &discretization.tables, blocks: &discretization.blocks, part: 0, natural };
+        let part = discretization.shell.part(natural);
         let sums = part.add(displacement, want, &mut self.residual, &mut self.stiffness);
         self.energy = with_locked(sums.energy, natural);
         self.element_forces = sums.squared_forces.sqrt();

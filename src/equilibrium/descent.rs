@@ -284,11 +284,10 @@ impl<'a> Descent<'a> {
 
     /// Strain energy less work of the loads.
     fn energy_at(&self, from: &Start, length: f64) -> f64 {
-        let Discretization { mesh, tables, unknowns, terms, free_strains, .. } = self.discretization;
+        let Discretization { unknowns, terms, .. } = self.discretization;
         let parameter = self.here.parameter;
         let displacement = &unknowns.place(&from.moved(length), parameter).displacement();
-        let energy = strain_energy(tables, displacement, free_strains.at(parameter))
-            + terms.energy(At { mesh, displacement, parameter });
+        let energy = self.discretization.energy(displacement, parameter);
         energy - terms.work(&self.strokes_to(from, displacement), parameter)
     }
 

@@ -91,7 +91,7 @@ impl<'w> Equations<'w> {
         for (point, rate) in force_rates.iter_mut().enumerate() {
             (0..3).for_each(|c| rate[c] += skew[point][c] - loads[point][c]);
         }
-        if let Some(natural) = discretization.free_strains.beyond(parameter) {
+        if let Some(natural) = discretization.shell.free_strains.beyond(parameter) {
             let freed = self.assembled.change_of_forces(discretization, displacement, Some(natural));
             force_rates.iter_mut().zip(freed).for_each(|(sum, rate)| *sum = add(*sum, rate));
         }

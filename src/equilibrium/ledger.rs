@@ -1,6 +1,6 @@
 //! The balance of energy of a solve: what the model stored before, and what has been done on it since.
 
-use crate::energy::{At, Discretization, strain_energy};
+use crate::energy::Discretization;
 use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::Workspace;
@@ -65,13 +65,6 @@ impl Before {
         if parameter == self.parameter {
             return 0.0;
         }
-        let Discretization { mesh, tables, free_strains, terms, .. } = discretization;
-        let [after, before] = [parameter, self.parameter].map(|parameter| {
-            // Strain energy changes with its natural state alone.
-            let natural = free_strains.at(parameter);
-            natural.map_or(0.0, |natural| strain_energy(tables, displacement, Some(natural)))
-                + terms.energy(At { mesh, displacement, parameter })
-        });
-        after - before
+        discretization.put_in(displacement, [self.parameter, parameter])
     }
 }

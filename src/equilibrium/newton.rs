@@ -105,7 +105,7 @@ impl<'a> Equilibrium<'a> {
         let stiff = assembled.multiply(discretization, &placement.velocity(&[], &motion));
         let more = discretization.external_forces(from.displacement, to);
         let mut change = subtract(&subtract(&stiff, &more), &negated(&assembled.external));
-        if let Some(natural) = discretization.free_strains.at(to) {
+        if let Some(natural) = discretization.shell.free_strains.at(to) {
             let freed = assembled.change_of_forces(discretization, from.displacement, Some(natural));
             change.iter_mut().zip(freed).for_each(|(sum, force)| *sum = add(*sum, force));
         }

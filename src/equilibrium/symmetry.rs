@@ -25,7 +25,7 @@ impl SymmetryError {
     /// At a state.
     pub fn at(work: &mut Workspace, at: Standing) -> Self {
         let mut half = Assembled::new(&work.discretization);
-        let natural = work.discretization.free_strains.at(at.parameter);
+        let natural = work.discretization.shell.free_strains.at(at.parameter);
         half.assemble_shell(&work.discretization, at.displacement, natural, Want::Stiffness);
         measure(&work.discretization, at.displacement, &half, |point, u, hessian| {
             natural.map_or(*point, |natural| point.under(&natural.strain)).hessian(u, hessian);
@@ -50,7 +50,7 @@ fn measure(
 ) -> SymmetryError {
     let count = displacement.len();
     let (x, y) = (field(count, 0.618_033_988_75), field(count, 0.414_213_562_37));
-    let tables = &discretization.tables;
+    let tables = &discretization.shell.tables;
     let fields = [displacement, &x[..], &y[..]];
     let [mut forward, mut backward] = forms(discretization, &tables.points, fields, &hessian_of);
     if let Some(stretching) = &tables.stretching {
@@ -71,7 +71,7 @@ fn forms<Batch, const ROWS: usize>(
     [displacement, x, y]: [&[[f64; 3]]; 3],
     hessian_of: &impl Fn(&PointReference, &Derivatives, &mut Hessian),
 ) -> [f64; 2] {
-    let Tables { padded, ref connectivity, .. } = discretization.tables;
+    let Tables { padded, ref connectivity, .. } = discretization.shell.tables;
     let mut hessian: Hessian = [[0.0; 16]; 15];
     let mut forms = [0.0; 2];
     for element in 0..connectivity.elements() {

@@ -45,7 +45,7 @@ impl<'a> KernelRun<'a> {
 
     /// Cost of the pieces.
     pub fn cost(&self) -> KernelCost {
-        let tables = &self.work.discretization.tables;
+        let tables = &self.work.discretization.shell.tables;
         let [p1, p2] = self.work.discretization.mesh.degree;
         let functions = (p1 + 1) * (p2 + 1);
         // For each function a, with r derivatives: 9 r² products for P, and 9 r with each function b ≥ a.

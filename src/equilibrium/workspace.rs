@@ -70,9 +70,7 @@ impl Workspace {
 
     /// Energy that the model stores at a displacement and a value of the parameter, N·mm.
     pub fn energy(&self, displacement: &[[f64; 3]], parameter: f64) -> f64 {
-        let Discretization { mesh, tables, free_strains, terms, .. } = &self.discretization;
-        strain_energy(tables, displacement, free_strains.at(parameter))
-            + terms.energy(At { mesh, displacement, parameter })
+        self.discretization.energy(displacement, parameter)
     }
 
     /// Internal forces less loads on the control points, N: at equilibrium, the reactions of the supports.

@@ -119,13 +119,13 @@ impl Reader<'_> {
     /// Terms are summed up over just that side. Where supports hold within one element of the line, their forces are shared out
     /// between the sides as the functions of the control points are.
     fn section_moment(&self, probe: &str, on: Place, component: Axis) -> Result<f64, ModelError> {
-        let Discretization { mesh, tables, terms, .. } = self.discretization;
+        let Discretization { mesh, shell, terms, .. } = self.discretization;
         let Some(line) = line_place(self.scene, mesh, on) else {
             return Err(ModelError::NotASection { probe: probe.to_owned() });
         };
         let mut limits = [f64::INFINITY; 2];
         limits[line.way] = line.parameter;
-        let terms = terms.below(self.scene, mesh, tables, limits)?;
+        let terms = terms.below(self.scene, mesh, &shell.tables, limits)?;
         let at = At { mesh, displacement: self.at.displacement, parameter: self.at.parameter };
         let exerted = terms.forces(at);
         let places = control_expressions(self.scene, mesh, on)?;

@@ -57,7 +57,7 @@ fn residual_and_stiffness_are_derivatives_of_the_energy() {
         let moved = |q: &[f64]| discretization.unknowns.place(q, 8.5).displacement();
         let direction = &noise(2 * count)[count..];
         let at = |step: f64| -> Vec<f64> { point.iter().zip(direction).map(|(q, d)| q + step * d).collect() };
-        let energy = |step: f64| strain_energy(&discretization.tables, &moved(&at(step)), None);
+        let energy = |step: f64| strain_energy(&discretization.shell.tables, &moved(&at(step)), None);
         let mut assembled = Assembled::new(&discretization);
         let mut gradient = |step: f64| {
             assembled.assemble(&discretization, &moved(&at(step)), 8.5, Want::Residual);
@@ -99,7 +99,7 @@ fn rigid_motions_give_no_strain() {
                 [0, 1, 2].map(|c| moved[c] - point[c])
             })
             .collect();
-        for element in 0..discretization.tables.elements.len() {
+        for element in 0..discretization.shell.tables.elements.len() {
             let strains = foldline::adapt::element_strains(&discretization, &displacement, element);
             for strain in strains {
                 // Physical strains: in units of the tangents.

@@ -32,7 +32,7 @@ fn closed_form() -> [f64; 2] {
 /// κ₁₁ and κ₂₂ at the quadrature points of the elements that are at least this far from all edges.
 fn curvatures(scene: &Scene, state: &State, margin: f64) -> Vec<[f64; 2]> {
     let discretization = Discretization::new(scene, &state.mesh).unwrap();
-    let elements = discretization.tables.elements;
+    let elements = discretization.shell.tables.elements;
     let Geometry::Plate { length_mm, .. } = scene.geometry else { panic!() };
     let inside = |index: usize, count: usize| {
         let size = length_mm / count as f64;

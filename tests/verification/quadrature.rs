@@ -159,9 +159,9 @@ fn too_few_points_would_show() {
     let still = vec![[0.0; 3]; mesh.control_points.len()];
     let mut poor = Discretization::new(&scene, &mesh).unwrap();
     // All points of the elements next to one edge lose their stiffness, as if none were there.
-    let elements = poor.tables.elements.counts[1];
-    let lost: usize = (0..elements).map(|element| poor.tables.points.element_points(element).len()).sum();
-    poor.tables.points.functions[..lost * 5 * poor.tables.padded].fill(0.0);
+    let elements = poor.shell.tables.elements.counts[1];
+    let lost: usize = (0..elements).map(|element| poor.shell.tables.points.element_points(element).len()).sum();
+    poor.shell.tables.points.functions[..lost * 5 * poor.shell.tables.padded].fill(0.0);
     let mut assembled = Assembled::new(&poor);
     assembled.assemble(&poor, &still, 0.0, Want::Stiffness);
     let mut corner = still.clone();
