@@ -5,6 +5,7 @@ use crate::equilibrium::{
     Continuation, Equilibrium, Iterate, Observer, Sense, SoftMode, SolveError, Standing, Workspace, WorkspaceError,
 };
 use crate::history::bisection::LoadBisection;
+use crate::history::logged_scene::{LoggedSceneError, check_terms};
 use crate::history::stability::mode_of;
 use crate::history::states::{RemakeError, States};
 use crate::journal::Log;
@@ -48,6 +49,9 @@ pub enum SnapError {
     /// A state of the log cannot be had.
     #[error(transparent)]
     State(#[from] RemakeError),
+    /// It was made with other terms of the caller's own.
+    #[error(transparent)]
+    Terms(#[from] LoggedSceneError),
     /// The jump is in the first step: there is no stable state before it.
     #[error(
         "the run jumps or loses its stability in its first step: there is no stable state in the log to go back to; run it with a smaller increment"
@@ -95,10 +99,11 @@ pub fn no_jump(scene: &Scene, farthest: f64) -> SnapError {
 }
 
 /// Locates the first jump or loss of stability of a log to `tolerance_deg`, on the mesh of the last stable state before it;
-/// `states` are those of the log, or of a part of it that begins before the jump, and know the terms of the caller's own.
+/// `states` are those of the log, or of a part of it that begins before the jump, with the terms of the caller's own that it was
+/// made with.
 ///
 /// # Errors
-/// Where the log holds no such thing or a solve fails.
+/// Where the log holds no such thing, was made with other terms, or a solve fails.
 pub fn find_snap(states: &mut States, scene: &Scene, tolerance_deg: f64) -> Result<SnapReport, SnapError> {
     let log = states.log();
     let shown = |value: f64| Parameter::of(scene).shown(value);
@@ -106,6 +111,7 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance_deg: f64) -> Resu
         let parameters = log.entries().iter().map(|entry| entry.record.report.parameter);
         return Err(no_jump(scene, parameters.fold(0.0, f64::max)));
     };
+    check_terms(log, jump, states.own_terms())?;
     let (before, behind) = log.entries().split_at(jump - log.first());
     let reached = behind[0].record.report.parameter;
     // By arc length the last stable point may lie at a higher load than the first one behind the limit point.

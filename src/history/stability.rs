@@ -1,6 +1,7 @@
 //! How stable the states of a log are.
 
 use crate::equilibrium::{SoftMode, SolveError, Standing, Workspace, WorkspaceError, soft_mode};
+use crate::history::logged_scene::{LoggedSceneError, check_terms};
 use crate::history::states::{RemakeError, States};
 use crate::scene::Scene;
 use crate::state::State;
@@ -22,6 +23,9 @@ pub enum StabilityError {
     /// The state cannot be had.
     #[error(transparent)]
     State(#[from] RemakeError),
+    /// It was made with other terms of the caller's own.
+    #[error(transparent)]
+    Terms(#[from] LoggedSceneError),
     /// The equations do not fit in memory, or the scene not the mesh.
     #[error(transparent)]
     Workspace(#[from] WorkspaceError),
@@ -33,8 +37,9 @@ pub enum StabilityError {
 /// The softest mode of the state that stage `index` made.
 ///
 /// # Errors
-/// Where the state cannot be had, or its stiffness has no factor.
+/// Where the state cannot be had, was made with other terms, or its stiffness has no factor.
 pub fn stability_at(states: &mut States, index: usize, scene: &Scene) -> Result<StabilityReport, StabilityError> {
+    check_terms(states.log(), index, states.own_terms())?;
     let state = states.at(index)?;
     let mut work = Workspace::with_terms(scene, &state.mesh, states.own_terms())?;
     let (mode, mode_at) = mode_of(scene, &mut work, &state)?;

@@ -127,7 +127,7 @@ impl Reader<'_> {
         limits[line.way] = line.parameter;
         let terms = terms.below(self.scene, mesh, &shell.tables, limits)?;
         let at = At { mesh, displacement: self.at.displacement, parameter: self.at.parameter };
-        let exerted = terms.forces(at);
+        let acting = terms.forces(at);
         let places = control_expressions(self.scene, mesh, on)?;
         let count = places.len() as f64;
         let middle = places
@@ -142,7 +142,7 @@ impl Reader<'_> {
             let joint = by_joints.get(&point).copied().unwrap_or_default();
             (point, sub(self.forces[point], joint))
         });
-        let [_, moment] = self.resultant(held.chain(exerted.into_iter().enumerate()), middle);
+        let [_, moment] = self.resultant(held.chain(acting.into_iter().enumerate()), middle);
         Ok(-match component {
             Axis::X => moment[0],
             Axis::Y => moment[1],

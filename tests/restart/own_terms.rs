@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use foldline::energy::{At, Term, TermSource};
 use foldline::history::{
-    LoggedSceneError, States, Verdict, basis, find_snap, logged_scene, plan, replay_stage, restored_scene, verdict,
+    LoggedSceneError, SnapError, States, Verdict, basis, find_snap, logged_scene, plan, replay_stage, restored_scene,
+    verdict,
 };
 use foldline::journal::{JournalWriter, Log, Manifest, Resume};
 use foldline::model::{ModelError, Tables};
@@ -113,7 +114,7 @@ fn a_log_with_a_term_that_is_not_there_is_not_gone_on_with() {
     assert!(matches!(refused(&[]), LoggedSceneError::OwnTerms { names, .. } if names == "a pull"));
     let other = refused(&pull(2e-3)).to_string();
     assert!(other.contains("\"a pull\" had other parameters"), "{other}");
-    let more = refused(&[pull(1e-3), vec![Arc::new(Foundation { stiffness: 1.0, rise: 0.0 })]].concat()).to_string();
+    let more = refused(&[pull(1e-3), vec![Arc::new(Foundation(1.0))]].concat()).to_string();
     assert!(more.contains("\"elastic foundation\" was not there"), "{more}");
 }
 
@@ -132,6 +133,7 @@ fn a_log_is_gone_on_with_by_who_has_its_terms() {
         let replayed = replay_stage(&mut states, index, &mut stages, &mut |_, _| {}).unwrap();
         assert_eq!(verdict(&replayed.comparison), Verdict::BitIdentical, "stage {index}");
     }
+    assert!(matches!(find_snap(&mut States::of(&log), &scene, 0.01), Err(SnapError::Terms(_))));
     let jump = log.entries().iter().map(|entry| &entry.record.report).find(|report| report.jumped).unwrap();
     let [low, high] = find_snap(&mut states, &scene, 0.01).unwrap().bracket_deg;
     assert!(high - low <= 0.01 && high <= jump.parameter && low > jump.parameter - 2.0, "{low} {high}");
@@ -142,7 +144,7 @@ fn a_log_is_gone_on_with_by_who_has_its_terms() {
 fn a_path_on_a_foundation_is_gone_on_with() {
     let text = include_str!("column.toml").replace("[-1.43932, 0.0, 0.0]", "[-4.0, 0.0, 0.004]");
     let scene = parse(&text, "column.toml").unwrap();
-    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation { stiffness: 0.002, rise: 0.0 })];
+    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(0.002))];
     let whole = straight(&scene, &own);
     assert!(whole.len() > 4, "{} stages", whole.len());
     for count in [1, whole.len() / 2, whole.len() - 1] {

@@ -1,4 +1,4 @@
-//! An energy of one's own: an elastic foundation, ½ k (w − w₀)² on every mm² of the undeformed shell.
+//! An energy of one's own: an elastic foundation, ½ k w² on every mm² of the undeformed shell.
 
 use foldline::energy::{At, Tangent, Term, TermSource};
 use foldline::model::{ModelError, Tables};
@@ -7,14 +7,9 @@ use foldline::shell::gauss_legendre;
 use foldline::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};
 use foldline::state::Hash;
 
-/// Under a plate in the plane z = 0.
+/// Of stiffness k, N/mm³, under a plate in the plane z = 0.
 #[derive(Clone, Copy, Debug)]
-pub struct Foundation {
-    /// N/mm³.
-    pub stiffness: f64,
-    /// How far the ground rises with the parameter, mm.
-    pub rise: f64,
-}
+pub struct Foundation(pub f64);
 
 impl TermSource for Foundation {
     fn name(&self) -> &str {
@@ -22,7 +17,7 @@ impl TermSource for Foundation {
     }
 
     fn hash(&self) -> Hash {
-        blake3::hash([self.stiffness, self.rise].map(f64::to_le_bytes).as_flattened())
+        blake3::hash(&self.0.to_le_bytes())
     }
 
     fn on(&self, scene: &Scene, mesh: &Mesh, tables: &Tables) -> Result<Box<dyn Term>, ModelError> {
@@ -43,18 +38,15 @@ impl TermSource for Foundation {
             let (first, [values, ..]) = evaluate_surface(mesh, [*u, *v]);
             let [a1, a2, ..] = mid_surface_point(mesh, &[], [*u, *v]).derivatives;
             let shares = mesh.window(first).zip(values).collect();
-            Spring { shares, stiffness: self.stiffness * one * other * (a1[0] * a2[1] - a1[1] * a2[0]) }
+            Spring { shares, stiffness: self.0 * one * other * (a1[0] * a2[1] - a1[1] * a2[0]) }
         };
-        Ok(Box::new(Bed { springs: pairs.map(spring).collect(), rise: self.rise }))
+        Ok(Box::new(Bed(pairs.map(spring).collect())))
     }
 }
 
 /// The foundation on a mesh.
 #[derive(Debug)]
-struct Bed {
-    springs: Vec<Spring>,
-    rise: f64,
-}
+struct Bed(Vec<Spring>);
 
 #[derive(Debug)]
 struct Spring {
@@ -64,33 +56,22 @@ struct Spring {
     stiffness: f64,
 }
 
-impl Bed {
-    /// How far a spring is drawn out.
-    fn stretch(&self, spring: &Spring, at: At) -> f64 {
-        let deflection = spring.shares.iter().map(|(point, share)| share * at.displacement[*point][2]).sum::<f64>();
-        deflection - self.rise * at.parameter
-    }
-
-    /// Adds forces along z, one on each spring.
-    fn spread(&self, force: impl Fn(&Spring) -> f64, forces: &mut [[f64; 3]]) {
-        for spring in &self.springs {
-            let force = force(spring);
-            spring.shares.iter().for_each(|(point, share)| forces[*point][2] += share * force);
-        }
+impl Spring {
+    fn deflection(&self, at: At) -> f64 {
+        self.shares.iter().map(|(point, share)| share * at.displacement[*point][2]).sum()
     }
 }
 
 impl Term for Bed {
     fn energy(&self, at: At) -> f64 {
-        self.springs.iter().map(|spring| 0.5 * spring.stiffness * self.stretch(spring, at).powi(2)).sum()
+        self.0.iter().map(|spring| 0.5 * spring.stiffness * spring.deflection(at).powi(2)).sum()
     }
 
     fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
-        self.spread(|spring| -spring.stiffness * self.stretch(spring, at), forces);
-    }
-
-    fn add_rates(&self, _: At, rates: &mut [[f64; 3]]) {
-        self.spread(|spring| spring.stiffness * self.rise, rates);
+        for spring in &self.0 {
+            let force = spring.stiffness * spring.deflection(at);
+            spring.shares.iter().for_each(|(point, share)| forces[*point][2] -= share * force);
+        }
     }
 
     fn has_tangent(&self) -> bool {
@@ -98,7 +79,7 @@ impl Term for Bed {
     }
 
     fn add_tangent(&self, _: At, tangent: &mut Tangent) {
-        for Spring { shares, stiffness } in &self.springs {
+        for Spring { shares, stiffness } in &self.0 {
             for (i, one) in shares {
                 for (j, other) in shares {
                     tangent.add([*i, *j], [[0.0; 3], [0.0; 3], [0.0, 0.0, -stiffness * one * other]]);

@@ -20,8 +20,16 @@ use crate::elastic_foundation::Foundation;
 struct Tie {
     /// N/mm.
     stiffness: f64,
+    /// How far its own length grows with the parameter, mm.
+    growth: f64,
     /// Whether its tangent holds both ends: only then is that symmetric.
     at_once: bool,
+}
+
+impl Tie {
+    fn of(stiffness: f64) -> Self {
+        Self { stiffness, growth: 0.0, at_once: true }
+    }
 }
 
 impl TermSource for Tie {
@@ -37,20 +45,21 @@ impl TermSource for Tie {
         let grid = mesh.grid();
         let ends: Vec<[usize; 2]> =
             grid.line(0, 0).zip(grid.line(0, grid.counts[0] - 1)).map(|(a, b)| [a, b]).collect();
-        Ok(Box::new(Ties { stiffness: self.stiffness / ends.len() as f64, ends, at_once: self.at_once }))
+        let each = Tie { stiffness: self.stiffness / ends.len() as f64, ..*self };
+        Ok(Box::new(Ties { ends, each }))
     }
 }
 
 #[derive(Debug)]
 struct Ties {
     ends: Vec<[usize; 2]>,
-    stiffness: f64,
-    at_once: bool,
+    each: Tie,
 }
 
 impl Ties {
     fn stretches(&self, at: At) -> impl Iterator<Item = ([usize; 2], f64)> {
-        self.ends.iter().map(move |[a, b]| ([*a, *b], at.displacement[*b][0] - at.displacement[*a][0]))
+        let own = self.each.growth * at.parameter;
+        self.ends.iter().map(move |[a, b]| ([*a, *b], at.displacement[*b][0] - at.displacement[*a][0] - own))
     }
 }
 
@@ -60,13 +69,20 @@ impl Term for Ties {
     }
 
     fn energy(&self, at: At) -> f64 {
-        self.stretches(at).map(|(_, stretch)| 0.5 * self.stiffness * stretch * stretch).sum()
+        self.stretches(at).map(|(_, stretch)| 0.5 * self.each.stiffness * stretch * stretch).sum()
     }
 
     fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
         for ([a, b], stretch) in self.stretches(at) {
-            forces[a][0] += self.stiffness * stretch;
-            forces[b][0] -= self.stiffness * stretch;
+            forces[a][0] += self.each.stiffness * stretch;
+            forces[b][0] -= self.each.stiffness * stretch;
+        }
+    }
+
+    fn add_rates(&self, _: At, rates: &mut [[f64; 3]]) {
+        for [a, b] in &self.ends {
+            rates[*a][0] -= self.each.stiffness * self.each.growth;
+            rates[*b][0] += self.each.stiffness * self.each.growth;
         }
     }
 
@@ -77,11 +93,11 @@ impl Term for Ties {
     fn add_tangent(&self, _: At, tangent: &mut Tangent) {
         let slope = |value: f64| [[value, 0.0, 0.0], [0.0; 3], [0.0; 3]];
         for [a, b] in self.ends.iter().copied() {
-            tangent.add([a, a], slope(-self.stiffness));
-            tangent.add([a, b], slope(self.stiffness));
-            if self.at_once {
-                tangent.add([b, a], slope(self.stiffness));
-                tangent.add([b, b], slope(-self.stiffness));
+            tangent.add([a, a], slope(-self.each.stiffness));
+            tangent.add([a, b], slope(self.each.stiffness));
+            if self.each.at_once {
+                tangent.add([b, a], slope(self.each.stiffness));
+                tangent.add([b, b], slope(-self.each.stiffness));
             }
         }
     }
@@ -107,7 +123,7 @@ fn strip(length: f64, elements: usize, rest: &str) -> Scene {
 }
 
 fn run_on(foundation: f64, scene: Scene) -> Vec<Record> {
-    run_with(vec![Arc::new(Foundation { stiffness: foundation, rise: 0.0 })], scene)
+    run_with(vec![Arc::new(Foundation(foundation))], scene)
 }
 
 fn run_with(own: Vec<Arc<dyn TermSource>>, scene: Scene) -> Vec<Record> {
@@ -181,7 +197,7 @@ fn a_plate_may_lie_on_it_alone() {
     assert!((report.probes[0].value - 0.02).abs() < 1e-9, "{report:?}");
     assert!((report.work_n_mm / report.strain_energy_n_mm - 1.0).abs() < 1e-9);
     let start = |scene: Scene| {
-        let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation { stiffness: 3.0, rise: 0.0 })];
+        let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(3.0))];
         Stages::with_terms(scene, own).start().unwrap_err()
     };
     let refused = |pressure: f64, support: &str| start(scene(pressure, support));
@@ -234,43 +250,13 @@ fn a_strip_on_it_buckles_at_the_load_of_the_closed_form() {
     assert!((critical.report.parameter - 1.0).abs() < 5e-3, "{}", critical.report.parameter);
 }
 
-/// A cantilever that a rising ground bends: all that shell and ground store, the ground put in. Step by step, and along the path.
-#[test]
-fn what_the_parameter_puts_in_is_work() {
-    for path in ["", r#"continuation = { control = "arc-length" }"#] {
-        let scene = strip(
-            10.0,
-            3,
-            &format!(
-                r#"load = {{ kind = "steps", increment = 0.25 }}
-                support = [{{ on = "u-start", kind = "clamped" }}]
-                action = [{{ kind = "line-force", on = "u-end", force_n_per_mm = [0, 0, 0.01] }}]
-                {path}"#
-            ),
-        );
-        let mut stages = Stages::with_terms(scene, vec![Arc::new(Foundation { stiffness: 3.0, rise: 0.01 })]);
-        let start = stages.start().unwrap();
-        let mut sink = MemorySink::default();
-        Run::new(stages, start, None).to_end(None, &|| false, &mut sink).unwrap();
-        let reports = || sink.stages.iter().map(|(_, record)| &record.report);
-        let work: f64 = reports().map(|report| report.work_n_mm).sum();
-        let stored = reports().next_back().unwrap().strain_energy_n_mm;
-        assert!(stored > 1e-4 && (work / stored - 1.0).abs() < 1e-4, "{work} {stored}");
-        assert!(reports().all(|report| !report.jumped && report.negative_pivots == 0));
-    }
-}
-
-/// A bar that two forces pull apart, with a spring from end to end: it grows by P/(E A/L + k).
-#[test]
-fn a_tie_from_end_to_end_bears_its_part() {
-    let (length, force) = (100.0, 0.02);
-    let bar = YOUNGS_MODULUS * WIDTH * THICKNESS / length;
-    let scene = strip(
+/// A bar that two forces pull apart, along x.
+fn bar(length: f64, force: f64, rest: &str) -> Scene {
+    strip(
         length,
         24,
         &format!(
-            r#"load = {{ kind = "steps", increment = 1 }}
-            support = [{{ kind = "rigid-motions" }}]
+            r#"support = [{{ kind = "rigid-motions" }}]
             action = [
                 {{ kind = "line-force", on = "u-start", force_n_per_mm = [{}, 0, 0] }},
                 {{ kind = "line-force", on = "u-end", force_n_per_mm = [{}, 0, 0] }},
@@ -278,17 +264,49 @@ fn a_tie_from_end_to_end_bears_its_part() {
             probe = [
                 {{ name = "one", kind = "displacement", on = [0, 0.5], component = "x" }},
                 {{ name = "other", kind = "displacement", on = [1, 0.5], component = "x" }},
-            ]"#,
+            ]
+            {rest}"#,
             -force / WIDTH,
             force / WIDTH
         ),
-    );
-    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Tie { stiffness: 2.0 * bar, at_once: true })];
-    let report = run_with(own, scene.clone()).pop().unwrap().report;
+    )
+}
+
+/// With a spring from end to end it grows by P/(E A/L + k).
+#[test]
+fn a_tie_from_end_to_end_bears_its_part() {
+    let (length, force) = (100.0, 0.02);
+    let stiffness = YOUNGS_MODULUS * WIDTH * THICKNESS / length;
+    let scene = bar(length, force, r#"load = { kind = "steps", increment = 1 }"#);
+    let report = run_with(vec![Arc::new(Tie::of(2.0 * stiffness))], scene).pop().unwrap().report;
     let found = report.probes[1].value - report.probes[0].value;
-    let expected = force / (3.0 * bar);
+    let expected = force / (3.0 * stiffness);
     assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
     assert!(report.iterations <= 3, "{report:?}");
+}
+
+/// Where the spring's own length grows by g with the parameter, all that bar and spring store it has put in, and the forces:
+/// ½ g² E A/L k/(E A/L + k) without these. Step by step, and along the path.
+#[test]
+fn what_the_parameter_puts_in_is_work() {
+    let (length, growth) = (100.0, 1e-4);
+    let stiffness = YOUNGS_MODULUS * WIDTH * THICKNESS / length;
+    for drive in ["", r#"continuation = { control = "arc-length" }"#] {
+        for force in [1e-9, 0.1] {
+            let scene = bar(length, force, &format!("load = {{ kind = \"steps\", increment = 0.25 }}\n{drive}"));
+            let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Tie { growth, ..Tie::of(2.0 * stiffness) })];
+            let records = run_with(own, scene);
+            let reports = || records.iter().map(|record| &record.report);
+            let work: f64 = reports().map(|report| report.work_n_mm).sum();
+            let stored = records.last().unwrap().report.strain_energy_n_mm;
+            assert!((work / stored - 1.0).abs() < 1e-5, "{work} {stored}");
+            assert!(reports().all(|report| !report.jumped && report.negative_pivots == 0));
+            if force < 1e-6 {
+                let expected = 0.5 * growth * growth * stiffness * 2.0 / 3.0;
+                assert!((stored / expected - 1.0).abs() < 1e-4, "{stored} {expected}");
+            }
+        }
+    }
 }
 
 /// A tangent that is not symmetric, and does not say so, does not lose its half in silence.
@@ -302,7 +320,7 @@ fn a_skew_tangent_that_hides_is_refused() {
         support = [{ on = "u-start", kind = "clamped" }]
         action = [{ kind = "line-force", on = "u-end", force_n_per_mm = [0, 0, 0.01] }]"#,
     );
-    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Tie { stiffness: 1.0, at_once: false })];
+    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Tie { at_once: false, ..Tie::of(1.0) })];
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
     let work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
     let still = vec![[0.0; 3]; mesh.control_points.len()];
@@ -320,7 +338,7 @@ fn a_section_moment_asks_every_term_for_its_part() {
         action = [{ kind = "line-force", on = "u-end", force_n_per_mm = [0, 0, 0.01] }]
         probe = [{ name = "m", kind = "section-moment", on = "u=0.5", component = "y" }]"#,
     );
-    let mut stages = Stages::with_terms(scene, vec![Arc::new(Tie { stiffness: 1.0, at_once: true })]);
+    let mut stages = Stages::with_terms(scene, vec![Arc::new(Tie::of(1.0))]);
     let start = stages.start().unwrap();
     let error = stages.run(Stage::Solve, &start, &mut |_| {}).unwrap_err().to_string();
     assert!(error.contains("step 1, solve: a section moment") && error.contains("the term \"tie\""), "{error}");
@@ -336,7 +354,7 @@ fn it_stands_in_the_sums() {
         support = [{ on = "u-start", kind = "clamped" }]
         action = [{ kind = "force", on = [1, 1], force_n = [0, 0, 1] }]"#,
     );
-    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation { stiffness: 3.0, rise: 0.0 })];
+    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(3.0))];
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
     let mut work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
     let field = |seed: f64| -> Vec<[f64; 3]> {
@@ -378,7 +396,7 @@ fn the_balance_of_a_solve_tells_it_apart() {
         support = [{ on = "u-start", kind = "clamped" }]
         action = [{ kind = "line-force", on = "u-end", force_n_per_mm = [0, 0, 0.01] }]"#,
     );
-    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation { stiffness: 3.0, rise: 0.0 })];
+    let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(3.0))];
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
     let mut work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
     let still = vec![[0.0; 3]; mesh.control_points.len()];
@@ -407,7 +425,7 @@ fn it_is_part_of_the_identity() {
         action = [{ kind = "force", on = [1, 1], force_n = [0, 0, 1] }]"#,
         )
     };
-    let with = |k: f64| Stages::with_terms(scene(), vec![Arc::new(Foundation { stiffness: k, rise: 0.0 })]).hash();
+    let with = |k: f64| Stages::with_terms(scene(), vec![Arc::new(Foundation(k))]).hash();
     assert_eq!(Stages::new(scene()).hash(), scene().hash());
     assert_eq!(with(1.0), with(1.0));
     assert!(with(1.0) != with(2.0) && with(1.0) != scene().hash());
