@@ -136,7 +136,7 @@ pub use recovery::{RecoverError, RecoverOutcome, recover, recover_mended};
 pub use resume::{Resume, ResumeError, Resumed};
 pub use soundness::{Flaw, check_mesh, check_state};
 pub use still_ours::Estranged;
-pub use stretch::LostManifest;
+pub use stretch::{LostManifest, stages_in_words};
 pub use thin::{ThinError, Thinned, thin};
 pub use trace::{ITERATE_TOPIC, TraceRow, trace_file};
 pub use verify::{Finding, Level, verify, verify_log};
