@@ -11,7 +11,7 @@ use super::probe_table::{json_lines, new_probes, probe_table};
 use super::progress::Manner;
 use super::session::{RunOptions, drive, watch_signals};
 use crate::history::{basis, plan, read_probes, restored_scene};
-use crate::journal::{Completeness, Entry, Log, Manifest, ReadError, Resume, ResumeError, stages_in_words};
+use crate::journal::{Completeness, Entry, Log, Manifest, ReadError, Resume, ResumeError, Resumed, stages_in_words};
 use crate::pipeline::{Parameter, Record, Run, Stages};
 use crate::scene::{Scene, SyncPolicy};
 use crate::study::Summary;
@@ -110,6 +110,10 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     }
     lost.for_each(|line| say(&line));
     let mut stages = Stages::new(scene.clone());
+    if !same_scene {
+        // What a run of it from the start would refuse is refused.
+        stages.start()?;
+    }
     let basis = basis(log, plan.keep, &mut stages).map_err(|source| unusable(Box::new(source)))?;
     let (first, all) = (log.first(), log.commits());
     let kept = log.entries().iter().take(plan.keep.saturating_sub(first));
@@ -141,9 +145,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     }
     let resumed =
         claim.start_after(plan.keep, &manifest, scene.output.sync).map_err(|source| unusable(Box::new(source)))?;
-    if let Some(dropped) = &resumed.dropped {
-        say(&format!("what was dropped is kept in {}", path_in_line(dropped)));
-    }
+    say_dropped(&resumed);
     let records = drive(run, &scene, resumed.writer, options, &raised)?;
     options.sum_up(&Summary::new(&scene, &[before, records].concat()))
 }
@@ -187,15 +189,22 @@ fn put_back(
     let path = &options.log;
     let finished = claim.log().completeness() == Completeness::Finished;
     ReadLog::warnings_of(claim.log()).iter().for_each(|line| say(line));
-    let writer = claim
+    let resumed = claim
         .put_back(manifest, sync)
         .map_err(|source| Failure::Resume { log: path.clone(), source: Box::new(source) })?;
-    let closed = if finished { writer.finish() } else { writer.close() };
+    say_dropped(&resumed);
+    let closed = if finished { resumed.writer.finish() } else { resumed.writer.close() };
     closed.map_err(|source| Failure::WrongLog { log: path.clone(), source: Box::new(source) })?;
     say(&format!(
         "put back: the scene of {stages}, which this is. No stage was run; `foldline resume` goes on with that of the last"
     ));
     Ok(())
+}
+
+fn say_dropped(resumed: &Resumed) {
+    if let Some(dropped) = &resumed.dropped {
+        say(&format!("what was dropped is kept in {}", path_in_line(dropped)));
+    }
 }
 
 /// What a log holds and what of it is used.

@@ -184,12 +184,12 @@ impl Resume {
     ///
     /// # Errors
     /// Where the copy cannot be made; the log is then as it was.
-    pub fn put_back(self, manifest: &Manifest, sync: SyncPolicy) -> Result<JournalWriter, ResumeError> {
+    pub fn put_back(self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
         let all = self.log.commits();
         let behind =
             |manifest: &Manifest| Manifest { first_ordinal: all as u64, same_scene: false, ..manifest.clone() };
         let manifests: Vec<Manifest> = [manifest].into_iter().chain(self.log.manifests().last()).map(behind).collect();
-        Ok(self.whole()?.copied(all, &manifests, sync)?.writer)
+        self.whole()?.copied(all, &manifests, sync)
     }
 
     fn in_place(mut self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {

@@ -6,7 +6,6 @@
 //! manifest where it holds a piece of one or has been zeroed.
 
 use super::frame::op;
-use super::log::{Entry, Log};
 use super::manifest::{MANIFEST_LEN_AT_LEAST, Manifest, begins_with_same_scene, has_piece_of_manifest};
 use crate::state::Hash;
 
@@ -19,40 +18,6 @@ pub struct LostManifest {
     pub ordinal: u64,
     /// Manifests before it that are there.
     pub(super) before: usize,
-}
-
-impl Log {
-    /// The stages of a lost manifest that no scene behind it makes, as far as they were read.
-    pub fn stages_without_scene(&self, lost: &LostManifest) -> Vec<&Entry> {
-        let behind = &self.manifests()[lost.before..];
-        let end = behind.first().map_or(self.commits() as u64, |next| next.first_ordinal);
-        let scenes = behind.iter().filter_map(|manifest| manifest.scene(&[]).ok());
-        let known: Vec<Hash> = scenes.map(|scene| scene.hash()).collect();
-        let made = (lost.ordinal..end).filter_map(|ordinal| self.entry(ordinal as usize));
-        made.filter(|entry| !known.contains(&entry.record.commit.scene_hash)).collect()
-    }
-
-    /// What is not known for the loss of a manifest, and the way out.
-    pub fn lost_in_words(&self, lost: &LostManifest) -> String {
-        let LostManifest { at, ordinal, .. } = lost;
-        let what = match stages_in_words(&self.stages_without_scene(lost)) {
-            Some(stages) => format!("the scene of {stages}"),
-            None => format!("what the run was asked for from stage {ordinal} on"),
-        };
-        format!(
-            "the manifest at byte {at} is lost, and with it {what}: no other scene takes its place. `foldline run SCENE -o LOG --resume` \
-             with that scene's file brings it back"
-        )
-    }
-}
-
-/// The first and the last of some stages, and their load steps; `None` where there is none.
-pub fn stages_in_words(stages: &[&Entry]) -> Option<String> {
-    let [first, last] = [stages.first()?, stages.last()?].map(|entry| &entry.record.commit);
-    Some(match first.ordinal == last.ordinal {
-        true => format!("stage {} (load step {})", first.ordinal, first.step),
-        false => format!("stages {} to {} (load steps {} to {})", first.ordinal, last.ordinal, first.step, last.step),
-    })
 }
 
 /// The stretches of a log, as it is read front to back.
