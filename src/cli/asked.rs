@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::failure::Failure;
 use super::log_file::{end_scene, older_scene, say_warnings, unreadable};
 use crate::history::stages_of_step;
-use crate::journal::{AskedLog, LongLogError};
+use crate::journal::{AskedLog, LongLog, LongLogError};
 use crate::pipeline::Record;
 use crate::scene::Scene;
 
@@ -34,7 +34,11 @@ impl Asked {
     /// The stages of a load step, in their order.
     pub(super) fn stages_of_step(&self, step: u64) -> Result<Vec<Record>, Failure> {
         let found = match &self.log {
-            AskedLog::Long(long) => stages_of_step(long, step),
+            AskedLog::Long(long) => stages_of_step(long, step).or_else(|_| match LongLog::read_through(&self.path)? {
+                // The index did not fit.
+                Some(long) => stages_of_step(&long, step),
+                None => Ok(Vec::new()),
+            }),
             AskedLog::Whole(log) => {
                 let records = log.entries().iter().map(|entry| &entry.record);
                 Ok(records.filter(|record| record.report.step == step).cloned().collect())

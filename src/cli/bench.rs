@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{print, print_json};
+use super::output::{path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
 use crate::scene::Scene;
@@ -50,7 +50,7 @@ impl Arguments {
         use_threads(self.threads.map(usize::from))?;
         let mut scenes: Vec<(String, Scene)> = Vec::new();
         for path in &self.scenes {
-            let name = path.display().to_string();
+            let name = path_in_line(path);
             let text = read_scene(path)?.text;
             scenes.push((name.clone(), checked(&text, &name, &self.set)?));
         }
@@ -58,7 +58,7 @@ impl Arguments {
         let settings: Vec<String> = self.set.iter().cloned().chain([elements]).collect();
         let (name, kernels) = match self.scenes.first() {
             Some(path) => {
-                let name = path.display().to_string();
+                let name = path_in_line(path);
                 (name.clone(), checked(&read_scene(path)?.text, &name, &settings)?)
             }
             None => ("baseline".to_string(), checked(BASELINE, "baseline", &settings)?),

@@ -7,7 +7,7 @@ use clap::Args;
 use super::asked::Asked;
 use super::failure::Failure;
 use super::log_file::{ReadLog, ask_long, read_log, scene_at};
-use super::output::print;
+use super::output::{path_in_line, print};
 use super::replay::place;
 use super::stage_table::stage_table;
 use crate::history::{
@@ -60,29 +60,31 @@ impl Arguments {
         let mut text = String::new();
         let found = find_parting(&a.log, &b.log).map_err(unusable)?;
         match &found {
-            None if lengths[0] == lengths[1] => text.push_str(&format!("the same: all {} stages\n", lengths[0])),
+            None if lengths[0] == lengths[1] => {
+                text.push_str(&format!("the same: all {}\n", count(lengths[0], "stage")))
+            }
             None => text.push_str(&format!(
-                "the same as far as both go: {} holds {} stages, {} holds {}\n",
-                self.log.display(),
-                lengths[0],
-                other.display(),
-                lengths[1]
+                "the same as far as both go: {} holds {}, {} holds {}\n",
+                path_in_line(&self.log),
+                count(lengths[0], "stage"),
+                path_in_line(other),
+                count(lengths[1], "stage")
             )),
             Some(parting) => {
                 let report = a.log.record(parting.index).map_err(a.changed())?.report;
                 text.push_str(&format!(
-                    "part at stage {}: step {} {} at {} (found in {} looks)\n",
+                    "part at stage {}: step {} {} at {} (found in {})\n",
                     parting.index,
                     report.step,
                     report.stage,
                     report.driven_by.shown(report.attempted_parameter),
-                    parting.looks
+                    count(parting.looks, "look")
                 ));
                 text.push_str(&compared(&parting.comparison));
             }
         }
         for (asked, log) in [(a, &*self.log), (b, other)] {
-            text.extend(asked.older_scene().map(|line| format!("  {}: {line}\n", log.display())));
+            text.extend(asked.older_scene().map(|line| format!("  {}: {line}\n", path_in_line(log))));
         }
         for difference in a.scene.differences(&b.scene) {
             let [x, y] = difference.values();
@@ -208,12 +210,14 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
     };
     let released = report.energy_released_n_mm.map_or("not known".to_string(), |energy| format!("{energy:.4} N·mm"));
     format!(
-        "{name:<20} {below:.9}{degree} to {beyond:.9}{degree}, on {n1} × {n2} elements, {} solves\n\
+        "{name:<20} {below:.9}{degree} to {beyond:.9}{degree}, on {n1} × {n2} elements, {}\n\
          {moment}\
          energy released      {released}; strain energy before: {:.4} N·mm\n\
          kind                 {kind}\n\
          negative pivots      {stable} before, up to {most} on the way, {end} after\n\
          soft mode            eigenvalue {:.4e} N/mm at {below:.6}{degree}; moves most at {at}, towards ({u:.2}, {v:.2}, {w:.2})\n",
-        report.solves, report.stable.strain_energy_n_mm, report.mode.eigenvalue
+        count(report.solves, "solve"),
+        report.stable.strain_energy_n_mm,
+        report.mode.eigenvalue
     )
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{print, print_json};
+use super::output::{path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
 use crate::scene::Scene;
 use crate::study::{ConvergenceRow, check_spring, converge};
@@ -37,7 +37,7 @@ impl Arguments {
     /// Runs every mesh; a row as soon as it is known.
     pub(super) fn run(self) -> Result<(), Failure> {
         let text = read_scene(&self.scene)?.text;
-        let name = self.scene.display().to_string();
+        let name = path_in_line(&self.scene);
         let mut scenes: Vec<Scene> = Vec::new();
         for degree in &self.degree {
             for elements in &self.elements {

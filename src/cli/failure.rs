@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use crate::history::{ConditionError, NothingStands, ReplayError, SnapError, StabilityError};
 use crate::model::ModelError;
 use crate::pipeline::Parameter;
+use crate::printable::one_line;
 use crate::scene::{Scene, Stage};
 use crate::study::{AccuracyError, BenchError, ConvergenceError};
 use crate::view::{PlotError, SamplesError};
@@ -65,7 +66,7 @@ pub(super) enum Failure {
     #[error("{} holds no scene", log.display())]
     NoScene { log: PathBuf },
     #[error(
-        "the scene that stage {ordinal} of {} was run with is lost; `foldline run SCENE -o {} --resume` goes on with the scene's file",
+        "the scene that stage {ordinal} of {} was run with is lost; `foldline run SCENE -o {} --resume` with that scene's file brings it back",
         log.display(), log.display()
     )]
     SceneLost { log: PathBuf, ordinal: usize },
@@ -148,11 +149,13 @@ impl Failure {
         let mut text = match self {
             // Has its own head.
             Failure::WrongScene { rendered } => return rendered.trim_end().to_string(),
-            _ => format!("foldline: {self}"),
+            // A line for each change.
+            Failure::NothingStands(_) => format!("foldline: {self}"),
+            _ => format!("foldline: {}", one_line(&self.to_string())),
         };
         let mut cause = std::error::Error::source(self);
         while let Some(error) = cause {
-            text.push_str(&format!("\n  because: {error}"));
+            text.push_str(&format!("\n  because: {}", one_line(&error.to_string())));
             cause = error.source();
         }
         text

@@ -1,16 +1,18 @@
 //! `foldline inspect`: what a log holds.
 
-use std::path::PathBuf;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::json_line::json_line;
-use super::log_file::{Gathered, ask_long, read_log, read_through};
-use super::output::print;
+use super::log_file::{Gathered, ReadLog, ask_long, first_and_last, read_log, read_through};
+use super::output::{path_in_line, print};
+use super::probe_table::probe_table;
 use super::stage_table::{stage_table, step_in_full};
 use crate::history::{keep_apart, redefined_probes, stages_of_step};
-use crate::journal::{LongLog, LongLogError};
+use crate::journal::{Log, LongLog, LongLogError};
 use crate::pipeline::Record;
 use crate::study::Summary;
 
@@ -35,61 +37,109 @@ impl Arguments {
     /// Reads the log and shows it.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, step, json, probes } = self;
-        if let Some(step) = step.filter(|_| !probes)
-            && let Some((found, known)) = ask_long(&log, |long| Ok((stages_of_step(long, step)?, steps_of(long)?)))?
-        {
-            return match found.is_empty() {
-                true => Err(Failure::NoSuchStep { known, step, log }),
-                false => show_step(&found, step, json),
-            };
-        }
-        let wanted_step = |record: &Record| step.is_none_or(|step| record.report.step == step);
-        let (mut gathered, mut lines, mut wanted, mut states) =
-            (Gathered::default(), String::new(), Vec::new(), Vec::new());
-        let read = match probes {
-            true => {
-                // Probes are read on states, which takes the whole log.
-                let read = read_log(&log)?;
-                gathered.records = read.records_of_scene(&log, true)?;
-                states = (0..gathered.records.len()).filter(|ordinal| read.log.keeps_state(*ordinal)).collect();
-                wanted = gathered.records.iter().filter(|record| wanted_step(record)).cloned().collect();
-                lines = wanted.iter().map(|record| json_line(record) + "\n").collect();
-                read
+        print(&match step {
+            Some(step) => {
+                let stages = stages_of(&log, step, probes)?;
+                if json { lines(&stages) } else { step_in_full(&stages, step) }
             }
-            false => read_through(&log, |portion| {
-                gathered.take(portion);
-                let records = portion.entries().iter().map(|entry| &entry.record);
-                match step {
-                    Some(_) => wanted.extend(records.filter(|record| wanted_step(record)).cloned()),
-                    None if json => records.for_each(|record| lines += &(json_line(record) + "\n")),
-                    None => {
-                        let ordinals = records.map(|record| record.commit.ordinal as usize);
-                        states.extend(ordinals.filter(|ordinal| portion.log().keeps_state(*ordinal)));
-                    }
-                }
-            })?,
-        };
-        match step {
-            Some(step) if wanted.is_empty() => return Err(Failure::NoSuchStep { known: gathered.steps(), step, log }),
-            Some(step) => return show_step(&wanted, step, json),
-            None if json => return print(&lines),
-            None => {}
-        }
-        let mut records = gathered.records;
-        if !probes {
-            keep_apart(&redefined_probes(&read.log), &mut records);
-        }
-        let older = read.older_scene().map_or_else(String::new, |line| line + "\n");
-        let summary = Summary::new(&read.scene, &records);
-        let mut text = format!("{}\n{}{older}{summary}", stage_table(&records), read.mixed());
-        if let Some(kept) = read.log.thinned() {
-            text += &format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states));
-        }
-        if !read.is_finished() {
-            text += &format!("\nunfinished; go on with: foldline resume {}\n", log.display());
-        }
-        print(&text)
+            None if json => all_lines(&log, probes)?,
+            None => overview(&log, probes)?,
+        })
     }
+}
+
+/// The stages of a load step.
+fn stages_of(path: &Path, step: u64, probes: bool) -> Result<Vec<Record>, Failure> {
+    let of_step = |record: &&Record| record.report.step == step;
+    let in_long = match probes {
+        true => None,
+        false => ask_long(path, |long| Ok((stages_of_step(long, step)?, steps_of(long)?)))?,
+    };
+    let (found, known) = match in_long {
+        Some(found) => found,
+        None if probes => {
+            let (_, records) = with_probes_anew(path)?;
+            (records.iter().filter(of_step).cloned().collect(), first_and_last(records.iter()))
+        }
+        None => {
+            let mut found = Vec::new();
+            let mut known: Option<(u64, u64)> = None;
+            read_through(path, |portion| {
+                let records = || portion.entries().iter().map(|entry| &entry.record);
+                found.extend(records().filter(of_step).cloned());
+                if let Some((first, last)) = first_and_last(records()) {
+                    known = Some((known.map_or(first, |(first, _)| first), last));
+                }
+            })?;
+            (found, known)
+        }
+    };
+    if found.is_empty() { Err(Failure::NoSuchStep { known, step, log: path.to_path_buf() }) } else { Ok(found) }
+}
+
+/// Every stage as JSON.
+fn all_lines(path: &Path, probes: bool) -> Result<String, Failure> {
+    if probes {
+        return Ok(lines(&with_probes_anew(path)?.1));
+    }
+    let mut text = String::new();
+    read_through(path, |portion| {
+        portion.entries().iter().for_each(|entry| text += &(json_line(&entry.record) + "\n"));
+    })?;
+    Ok(text)
+}
+
+fn lines(records: &[Record]) -> String {
+    records.iter().map(|record| json_line(record) + "\n").collect()
+}
+
+/// The log with all of its stages, and the ordinals of those that have their states.
+fn all_stages(path: &Path, probes: bool) -> Result<(ReadLog, Vec<Record>, Vec<usize>), Failure> {
+    let mut states = Vec::new();
+    let mut keep_states = |log: &Log, ordinals: Range<usize>| {
+        states.extend(ordinals.filter(|ordinal| log.keeps_state(*ordinal)));
+    };
+    if probes {
+        let (read, records) = with_probes_anew(path)?;
+        keep_states(&read.log, 0..records.len());
+        return Ok((read, records, states));
+    }
+    let mut gathered = Gathered::default();
+    let read = read_through(path, |portion| {
+        let from = gathered.records.len();
+        gathered.take(portion);
+        keep_states(portion.log(), from..gathered.records.len());
+    })?;
+    keep_apart(&redefined_probes(&read.log), &mut gathered.records);
+    Ok((read, gathered.records, states))
+}
+
+/// Every stage as a table, with what they come to.
+fn overview(path: &Path, probes: bool) -> Result<String, Failure> {
+    let (read, records, states) = all_stages(path, probes)?;
+    let older = read.older_scene().map_or_else(String::new, |line| line + "\n");
+    let summary = Summary::new(&read.scene, &records);
+    let mut text = format!("{}\n{}{older}{summary}", stage_table(&records), read.mixed());
+    let names: Vec<String> = read.scene.probes.iter().map(|probe| probe.name.clone()).collect();
+    if probes && !names.is_empty() {
+        text += &format!("\nprobes of the last scene on every equilibrium\n{}", probe_table(&names, &records));
+    } else if !probes && !redefined_probes(&read.log).is_empty() {
+        text += &format!("\nthe last probes on every equilibrium: foldline inspect {} --probes\n", path_in_line(path));
+    }
+    if let Some(kept) = read.log.thinned() {
+        text += &format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states));
+    }
+    if !read.is_finished() {
+        text += &format!("\nunfinished; go on with: foldline resume {}\n", path_in_line(path));
+    }
+    Ok(text)
+}
+
+/// Every stage with the probes of the last scene, read on the states, which takes the whole log.
+fn with_probes_anew(path: &Path) -> Result<(ReadLog, Vec<Record>), Failure> {
+    let read = read_log(path)?;
+    let records = read.records_of_scene(path)?;
+    Ok((read, records))
 }
 
 /// First and last load step of a long log.
@@ -106,9 +156,4 @@ fn ranges(numbers: &[usize]) -> String {
         _ => run[0].to_string(),
     });
     shown.collect::<Vec<_>>().join(", ")
-}
-
-fn show_step(records: &[Record], step: u64, json: bool) -> Result<(), Failure> {
-    let lines = || records.iter().map(|record| json_line(record) + "\n").collect();
-    print(&if json { lines() } else { step_in_full(records, step) })
 }

@@ -38,8 +38,9 @@ impl LoadStep {
         };
         let elements = format!("{n1} × {n2}");
         let mut line = format!(
-            "step {step:>4}  {reached}  {elements:>9}  {:>3} iterations  {:>8}",
+            "step {step:>4}  {reached}  {elements:>9}  {:>3} {:<10}  {:>8}",
             self.iterations,
+            if self.iterations == 1 { "iteration" } else { "iterations" },
             duration(self.wall_s)
         );
         for event in self.events() {
@@ -151,7 +152,12 @@ impl Gatherer {
         }
         match &mut self.open {
             Some(step) => {
+                // Only an equilibrium has readings of the probes.
+                let probes = std::mem::take(&mut step.report.probes);
                 step.report = report.clone();
+                if step.report.probes.is_empty() {
+                    step.report.probes = probes;
+                }
                 step.iterations += report.iterations;
                 step.wall_s += record.wall_s;
                 if report.jumped {

@@ -3,14 +3,15 @@
 use std::path::Path;
 
 use super::failure::Failure;
-use super::output::say;
+use super::output::{path_in_line, say};
 use super::scene_file::rendered;
-use crate::history::{LoggedSceneError, keep_apart, logged_scene, read_probes, redefined_probes};
+use crate::history::{LoggedSceneError, logged_scene, read_probes, redefined_probes};
 use crate::journal::{
     Completeness, Log, LongLog, LongLogError, Manifest, Portion, Portions, ReadError, SceneInLogError,
 };
 use crate::pipeline::{Record, Stages};
 use crate::scene::{Reach, Scene};
+use crate::units::count;
 
 /// A log as far as it can be trusted, with the scene that its last stretch was run with.
 pub(super) struct ReadLog {
@@ -26,15 +27,20 @@ impl ReadLog {
         self.log.entries().iter().map(|entry| entry.record.clone()).collect()
     }
 
-    /// The same with the readings of the probes of [`Self::scene`] alone; those that the log lacks are made where `anew`.
-    pub(super) fn records_of_scene(&self, path: &Path, anew: bool) -> Result<Vec<Record>, Failure> {
+    /// The same with the readings of the probes of [`Self::scene`] alone; those that the log lacks are made.
+    pub(super) fn records_of_scene(&self, path: &Path) -> Result<Vec<Record>, Failure> {
         let mut records = self.records();
-        keep_apart(&redefined_probes(&self.log), &mut records);
-        if anew {
-            let read = read_probes(&self.log, &mut Stages::new(self.scene.clone()), &mut records);
-            read.map_err(|source| Failure::WrongLog { log: path.to_path_buf(), source: Box::new(source) })?;
-        }
+        read_probes(&self.log, &mut Stages::new(self.scene.clone()), &mut records)
+            .map_err(|source| Failure::WrongLog { log: path.to_path_buf(), source: Box::new(source) })?;
         Ok(records)
+    }
+
+    /// This log with every stage in memory, where only the last ones are.
+    pub(super) fn whole(self, path: &Path) -> Result<Self, Failure> {
+        match self.log.first() {
+            0 => Ok(self),
+            _ => Ok(Self { log: Log::read(path).map_err(unreadable(path))?, ..self }),
+        }
     }
 
     /// Where what steps are made with changed: a line for each setting, without which all would seem to be of one kind.
@@ -63,21 +69,24 @@ impl ReadLog {
     pub(super) fn warnings_of(log: &Log) -> Vec<String> {
         let mut warnings: Vec<String> =
             log.notes().iter().map(|note| format!("at byte {}: {}", note.at, note.text)).collect();
-        warnings.extend(log.missed_manifests().map(ToString::to_string));
+        warnings.extend(log.missed_manifests().map(|lost| log.lost_in_words(lost)));
         warnings.extend(redefined_probes(log).iter().map(ToString::to_string));
         let own = log.manifests().iter().rfind(|manifest| !manifest.own_terms.is_empty());
         warnings.extend(own.map(|manifest| {
             let names: Vec<&str> = manifest.own_terms.iter().map(|(name, _)| &name[..]).collect();
             format!("made with terms of its program's own ({}), which are not part of its scene", names.join(", "))
         }));
+        let bytes = |number: u64| count(number as usize, "byte");
         match log.completeness() {
             Completeness::Finished | Completeness::Unfinished => {}
             Completeness::Truncated { at, dropped } => warnings.push(format!(
-                "cut off: good up to byte {at}; {dropped} bytes beyond are part of a stage and are not used"
+                "cut off: good up to byte {at}; {} beyond, part of a stage, not used", bytes(dropped)
             )),
             Completeness::Damaged { at, dropped, later_commits } => warnings.push(format!(
-                "damaged at byte {at}: {dropped} bytes beyond, with {later_commits} stages that have lost what they follow \
-                 on, are not used; `foldline verify` tells more, and `foldline recover --remake` may run again what they follow on"
+                "damaged at byte {at}: {} beyond not used, with {} behind what is lost; `foldline verify` tells more, and `foldline \
+                 recover --remake` may run again what is lost",
+                bytes(dropped),
+                count(later_commits as usize, "whole stage")
             )),
         }
         warnings
@@ -105,11 +114,6 @@ impl Gathered {
             }
             self.records.push(entry.record.clone());
         }
-    }
-
-    /// First and last load step.
-    pub(super) fn steps(&self) -> Option<(u64, u64)> {
-        first_and_last(self.records.iter())
     }
 }
 
@@ -178,7 +182,7 @@ pub(super) fn end_scene(log: &Log, path: &Path) -> Result<(Scene, bool), Failure
 /// Says what of a log is lost.
 pub(super) fn say_warnings(log: &Log, path: &Path) {
     for warning in ReadLog::warnings_of(log) {
-        say(&format!("foldline: {}: {warning}", path.display()));
+        say(&format!("foldline: {}: {warning}", path_in_line(path)));
     }
 }
 

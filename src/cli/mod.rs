@@ -12,7 +12,7 @@
 //! | `help` | help on subcommands and topics |
 //! | `scene_file`, `log_file` | what is read |
 //! | `session` | threads, signals, the log of a run under way |
-//! | `new_probes` | probes that a log lacks |
+//! | `probe_table` | what probes measure on a log |
 //! | `progress`, `load_step`, `stage_table`, `json_line` | stages, as they are shown |
 //! | `trace` | iterates of replayed stages |
 //! | `output`, `failure` | streams and files; what can stop a command |
@@ -27,9 +27,9 @@ mod inspect;
 mod json_line;
 mod load_step;
 mod log_file;
-mod new_probes;
 mod output;
 mod plot;
+mod probe_table;
 mod progress;
 mod recover;
 mod replay;

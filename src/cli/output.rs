@@ -3,9 +3,11 @@
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
 use super::failure::Failure;
-use crate::printable::is_obeyed;
 pub(super) use crate::printable::printable;
+use crate::printable::{is_obeyed, one_line};
 use crate::whole_file::write_new;
 
 /// Writes to standard output. A reader that has closed its end (`| head`) has what it wanted: that is no failure.
@@ -17,15 +19,17 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// The name of a file or a folder to write. `-`, which elsewhere means standard output, is none.
-pub(super) fn file_name(text: &str) -> Result<PathBuf, String> {
-    match text {
-        "-" => {
-            Err("a file is wanted: this is written in place, not to standard output; ./- is a file of that name".into())
-        }
-        "" => Err("a name is wanted".into()),
-        name => Ok(name.into()),
-    }
+/// The name of a file or a folder to write, in whatever characters. `-`, which elsewhere means standard output, is none.
+pub(super) fn file_name() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.as_os_str() == "-" {
+        true => Err("a file is wanted: this is written in place, not to standard output; ./- is a file of that name"),
+        false => Ok(path),
+    })
+}
+
+/// A path as it stands in a line of text.
+pub(super) fn path_in_line(path: &Path) -> String {
+    one_line(&path.to_string_lossy()).into_owned()
 }
 
 /// Writes a line of JSON to standard output.

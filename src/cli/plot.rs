@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
-use super::log_file::{Gathered, first_and_last, read_log, read_through};
-use super::output::{file_name, print, write_files};
+use super::log_file::{Gathered, first_and_last, read_through};
+use super::output::{file_name, path_in_line, print, write_files};
 use crate::history::{States, keep_apart, redefined_probes};
-use crate::pipeline::{Parameter, Report};
+use crate::pipeline::{Parameter, Record, Report};
 use crate::scene::Scene;
 use crate::spline::Mesh;
+use crate::state::State;
 use crate::study::{TapeSpring, equilibria};
 use crate::units::rounded;
 use crate::view::{Picture, ViewDirection, deformed_surface, load_probe_plot, mesh_picture, moment_rotation_plot, vtu};
@@ -26,7 +27,7 @@ pub(super) struct Arguments {
     log: PathBuf,
     /// Folder for moment-rotation.svg (other shells: load-probe.svg, the load factor over the first probe), mesh.svg and
     /// mesh.vtu [default: the log's name without .mcap]
-    #[arg(short, long, value_name = "DIR", value_parser = file_name)]
+    #[arg(short, long, value_name = "DIR", value_parser = file_name())]
     output: Option<PathBuf>,
     /// Show the mesh at the end of this load step [default: the last one]
     #[arg(long, value_name = "K")]
@@ -49,12 +50,8 @@ impl Arguments {
             }
             gathered.take(portion);
         })?;
-        let scene = &read.scene;
         let mut records = std::mem::take(&mut gathered.records);
         keep_apart(&redefined_probes(&read.log), &mut records);
-        if equilibria(&records).any(|record| lacks_first_probe(scene, &record.report)) {
-            records = read_log(&log)?.records_of_scene(&log, true)?;
-        }
         let folder = output.unwrap_or_else(|| log.with_extension(""));
         let name = log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let Some((ordinal, report, state)) = shown else {
@@ -63,30 +60,41 @@ impl Arguments {
                 None => crate::view::PlotError::NoEquilibrium.into(),
             });
         };
-        // Everything is drawn before anything is written.
-        let curve = match TapeSpring::of_scene(scene) {
-            Some(_) => Some(("moment-rotation.svg", moment_rotation_plot(scene, &records, &name)?)),
-            None => load_probe_plot(scene, &records, &name)?.map(|text| ("load-probe.svg", text)),
-        };
+        let unprobed = equilibria(&records).any(|record| lacks_first_probe(&read.scene, &record.report));
+        // Readings and states that the log has not are made from the states that it has.
+        let read = if unprobed || state.is_err() { read.whole(&log)? } else { read };
+        if unprobed {
+            records = read.records_of_scene(&log)?;
+        }
         let unusable = |source| Failure::WrongLog { log: log.clone(), source: Box::new(source) };
-        // Where it was dropped it is made again, for which the whole log is read.
-        let state = match state {
-            Ok(state) => state,
-            Err(_) => States::of(&read_log(&log)?.log).at(ordinal).map_err(unusable)?,
-        };
-        let samples = deformed_surface(scene, &state.mesh, &state.displacement, cells_per_element(&state.mesh))?;
+        let state = state.or_else(|_| States::of(&read.log).at(ordinal)).map_err(unusable)?;
         let picture = Picture {
             direction: view.unwrap_or_default(),
             title: format!("{name}, load step {}", report.step),
             subtitle: subtitle(&report),
             ..Picture::default()
         };
-        let surface = [("mesh.svg", mesh_picture(&samples, &picture)), ("mesh.vtu", vtu(&samples))];
-        let files = curve.into_iter().chain(surface);
+        // Everything is drawn before anything is written.
+        let files = curve(&read.scene, &records, &name)?.into_iter().chain(surface(&read.scene, &state, &picture)?);
         let files: Vec<_> = files.map(|(file, text)| (folder.join(file), text.into_bytes())).collect();
         write_files(&files)?;
-        print(&files.iter().map(|(path, _)| format!("{}\n", path.display())).collect::<String>())
+        print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
     }
+}
+
+/// The curve of a run, if it has one.
+fn curve(scene: &Scene, records: &[Record], name: &str) -> Result<Option<(&'static str, String)>, Failure> {
+    Ok(match TapeSpring::of_scene(scene) {
+        Some(_) => Some(("moment-rotation.svg", moment_rotation_plot(scene, records, name)?)),
+        None => load_probe_plot(scene, records, name)?.map(|text| ("load-probe.svg", text)),
+    })
+}
+
+/// The deformed surface as a picture and for ParaView.
+fn surface(scene: &Scene, state: &State, picture: &Picture) -> Result<[(&'static str, String); 2], Failure> {
+    let State { mesh, displacement, .. } = state;
+    let samples = deformed_surface(scene, mesh, displacement, cells_per_element(mesh))?;
+    Ok([("mesh.svg", mesh_picture(&samples, picture)), ("mesh.vtu", vtu(&samples))])
 }
 
 /// Whether a report has no reading of the probe that is drawn, as where the run began without it.

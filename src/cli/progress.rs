@@ -12,7 +12,7 @@ use super::output::{escaped, printable};
 use crate::pipeline::{Outcome, Parameter, Record, Report, Sink, SinkError};
 use crate::scene::Scene;
 use crate::state::State;
-use crate::units::rounded;
+use crate::units::{count, rounded};
 
 /// How a run is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -206,10 +206,10 @@ fn live_prefix(driven_by: Parameter, parameter: f64, target: f64) -> String {
 
 /// What stands after the bar: the last stage and the numbers of the state that it made.
 fn live_message(report: &Report) -> String {
-    let Report { stage, moment_n_mm, elements: [n1, n2], iterations, .. } = report;
+    let Report { stage, moment_n_mm, elements: [n1, n2], .. } = report;
     let degree = if report.driven_by == Parameter::Rotation { "°" } else { "" };
     let outcome = match report.outcome {
-        Outcome::Done if report.iterations > 0 => format!(", {iterations} iterations"),
+        Outcome::Done if report.iterations > 0 => format!(", {}", count(report.iterations, "iteration")),
         Outcome::Done => String::new(),
         Outcome::RejectedJump => {
             format!(" turned down at {:.3}{degree}: unstable on the way", report.attempted_parameter)

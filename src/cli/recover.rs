@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{file_name, print, say};
+use super::output::{file_name, path_in_line, print, say};
 use crate::history::mended;
-use crate::journal::{Log, RecoverOutcome, recover_mended};
+use crate::journal::{Log, RecoverOutcome, recover, recover_mended};
 use crate::units::count;
 
 /// Exit code of a recovery that had to leave something behind.
@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     /// Log to read (MCAP)
     log: PathBuf,
     /// Log to write
-    #[arg(short, long, value_name = "NEW", value_parser = file_name)]
+    #[arg(short, long, value_name = "NEW", value_parser = file_name())]
     output: PathBuf,
     /// Run lost stages again where whole ones stand behind them, which then follow on them; that they are the same say the
     /// hashes of those
@@ -31,39 +31,45 @@ impl Arguments {
     /// Recovers and says what became of it.
     pub(super) fn run(self) -> Result<u8, Failure> {
         let Self { log, output, remake } = self;
-        let (mut made, mut hint) = (0, "");
+        let mut made = 0;
         let mend = |log: &Log| {
-            if !remake {
-                hint = "; --remake may run that again";
-                return None;
-            }
             let (mended, count) = mended(log, &[])?;
             made += count;
             Some(mended)
         };
-        let outcome = recover_mended(&log, &output, mend)
-            .map_err(|source| Failure::WrongLog { log: log.clone(), source: Box::new(source) })?;
+        let outcome = if remake { recover_mended(&log, &output, mend) } else { recover(&log, &output) };
+        let outcome = outcome.map_err(|source| Failure::WrongLog { log: log.clone(), source: Box::new(source) })?;
         // Where the mended log does not read as it should, the good part of the log itself is what is kept.
-        let made = if matches!(outcome, RecoverOutcome::Lossless { .. }) || !remake { made } else { 0 };
-        if made > 0 {
+        if made > 0 && matches!(outcome, RecoverOutcome::Lossless { .. }) {
             say(&format!(
-                "{} made again that were lost: the stages behind follow on what they came to; but how long they took is not known any more",
+                "made again what was lost, {}: the stages behind follow on it; but how long it took is not known any more",
                 count(made, "stage")
             ));
         }
-        let new = output.display();
+        let stages = |number: u64| count(number as usize, "stage");
+        let behind = |later: u64| match later {
+            0 => String::new(),
+            _ if remake => format!(", with {} behind what is lost", stages(later)),
+            _ => format!(", with {} behind what is lost; --remake may run that again", stages(later)),
+        };
+        let new = path_in_line(&output);
         let (text, code) = match outcome {
-            RecoverOutcome::Lossless { commits } => (format!("{new}: all {commits} stages\n"), 0),
+            RecoverOutcome::Lossless { commits } => (format!("{new}: all {}\n", stages(commits)), 0),
+            // Every stage is there, and something else is not.
+            RecoverOutcome::Lossy { commits, dropped: 0, why, .. } => {
+                (format!("{new}: all {}\n  but: {why}\n", stages(commits)), LOSSY)
+            }
             RecoverOutcome::Lossy { commits, dropped, later_commits, why } => (
                 format!(
-                    "{new}: the first {commits} stages; {dropped} bytes left behind, with {later_commits} stages that have lost \
-                     what they follow on{hint}\n  because: {why}\n"
+                    "{new}: the first {}; {dropped} bytes left behind{}\n  because: {why}\n",
+                    stages(commits),
+                    behind(later_commits)
                 ),
                 LOSSY,
             ),
-            RecoverOutcome::Hopeless { why } => {
-                let log = log.display();
-                (format!("nothing of {log} can be kept, and nothing was written{hint}\n  because: {why}\n"), 1)
+            RecoverOutcome::Hopeless { why, later_commits } => {
+                let (log, behind) = (path_in_line(&log), behind(later_commits));
+                (format!("nothing of {log} can be kept, and nothing was written{behind}\n  because: {why}\n"), 1)
             }
         };
         print(&text)?;

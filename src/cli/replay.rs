@@ -17,6 +17,7 @@ use crate::journal::TraceRow;
 use crate::pipeline::{Commit, Stages};
 use crate::scene::{Scene, Stage};
 use crate::spline::Mesh;
+use crate::units::count;
 
 /// Run stages of a log again, from the state before each; exit code 0 if every bit is the same, 1 if within tolerance,
 /// 2 if not
@@ -37,7 +38,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Write every Newton iterate to FILE.mcap and FILE.csv, neither of which may be there
-    #[arg(long, value_name = "FILE", value_parser = file_name)]
+    #[arg(long, value_name = "FILE", value_parser = file_name())]
     trace: Option<PathBuf>,
     /// Threads; the result is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -169,7 +170,10 @@ fn line(verdict: &Verdict, replayed: &Replayed, ordinal: u64) -> String {
         ),
         Verdict::Different(what) => format!("different: {what}"),
     };
-    let iterations = if report.iterations > 0 { format!(", {} iterations", report.iterations) } else { String::new() };
+    let iterations = match report.iterations {
+        0 => String::new(),
+        iterations => format!(", {}", count(iterations, "iteration")),
+    };
     format!("{ordinal:>5}  step {} {}{iterations}: {what}\n", report.step, report.stage)
 }
 

@@ -6,15 +6,16 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{ReadLog, scene_of};
-use super::new_probes;
-use super::output::{print, say};
+use super::output::{path_in_line, print, say};
+use super::probe_table::{json_lines, new_probes, probe_table};
 use super::progress::Manner;
 use super::session::{RunOptions, drive, watch_signals};
 use crate::history::{basis, plan, read_probes, restored_scene};
-use crate::journal::{Completeness, Log, Manifest, ReadError, Resume, ResumeError};
+use crate::journal::{Completeness, Entry, Log, Manifest, ReadError, Resume, ResumeError, Resumed, stages_in_words};
 use crate::pipeline::{Parameter, Record, Run, Stages};
-use crate::scene::Scene;
+use crate::scene::{Scene, SyncPolicy};
 use crate::study::Summary;
+use crate::units::count;
 
 /// Go on with a log from its last good stage, as if it had never stopped
 #[derive(Args, Debug)]
@@ -94,16 +95,12 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let same_scene = scene_of(old.claim.log(), path).is_ok_and(|was| was.differences(&scene).is_empty());
     let claim = if same_scene { old.claim } else { old.claim.whole().map_err(|source| unusable(Box::new(source)))? };
     let log = claim.log();
-    let mut restored = None;
-    let was = match scene_of(log, path) {
-        Err(lost @ (Failure::SceneLost { .. } | Failure::NoScene { .. })) => {
-            restored = Some(
-                "the log has lost its last scene; this one decides the same states and takes its place".to_string(),
-            );
-            restored_scene(log, &Stages::new(scene.clone())).ok_or(lost)?
-        }
-        was => was?,
-    };
+    let (was, restored) = scene_before(log, path, &scene)?;
+    if restored.is_none()
+        && let Some(stages) = stages_without(log, &scene)
+    {
+        return put_back(claim, &stages, &manifest, scene.output.sync, options);
+    }
     let plan = plan(log, &was, &scene).map_err(|source| unusable(Box::new(source)))??;
     // What is lost or changed is said however quiet the run is.
     let lost = ReadLog::warnings_of(log).into_iter().chain(restored).chain(plan.changes);
@@ -113,6 +110,10 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     }
     lost.for_each(|line| say(&line));
     let mut stages = Stages::new(scene.clone());
+    if !same_scene {
+        // What a run of it from the start would refuse is refused.
+        stages.start()?;
+    }
     let basis = basis(log, plan.keep, &mut stages).map_err(|source| unusable(Box::new(source)))?;
     let (first, all) = (log.first(), log.commits());
     let kept = log.entries().iter().take(plan.keep.saturating_sub(first));
@@ -120,13 +121,10 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     if first > 0 {
         findings.push(format!("the summary is of the stages from {first} on; every stage: foldline inspect"));
     }
-    let new_probes = new_probes::names(&was, &scene);
+    let new_probes = new_probes(&was, &scene);
     if !new_probes.is_empty() {
         read_probes(log, &mut stages, &mut before).map_err(|source| unusable(Box::new(source)))?;
-        match options.manner {
-            Manner::Json => print(&new_probes::json_lines(&before))?,
-            _ => print(&new_probes::table(&new_probes, &before))?,
-        }
+        show_probes(&new_probes, &before, options)?;
     }
     let run = Run::new(stages, basis.state, basis.commit);
     let reached = run.state().parameter;
@@ -147,22 +145,78 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     }
     let resumed =
         claim.start_after(plan.keep, &manifest, scene.output.sync).map_err(|source| unusable(Box::new(source)))?;
-    if let Some(dropped) = &resumed.dropped {
-        say(&format!("what was dropped is kept in {}", dropped.display()));
-    }
+    say_dropped(&resumed);
     let records = drive(run, &scene, resumed.writer, options, &raised)?;
     options.sum_up(&Summary::new(&scene, &[before, records].concat()))
 }
 
+/// The scene that a log was last gone on with, and what is said where it is lost and `scene` takes its place.
+fn scene_before(log: &Log, path: &Path, scene: &Scene) -> Result<(Scene, Option<String>), Failure> {
+    match scene_of(log, path) {
+        Err(lost @ (Failure::SceneLost { .. } | Failure::NoScene { .. })) => {
+            let said = "the log has lost its last scene; this one decides the same states and takes its place";
+            Ok((restored_scene(log, &Stages::new(scene.clone())).ok_or(lost)?, Some(said.to_string())))
+        }
+        was => Ok((was?, None)),
+    }
+}
+
+/// Shows what probes that a log has not read on its equilibria.
+fn show_probes(names: &[String], before: &[Record], options: &RunOptions) -> Result<(), Failure> {
+    let head = "new probes on the equilibria of the log, which itself keeps the ones that it has";
+    match options.manner {
+        Manner::Json => print(&json_lines(before)),
+        _ => print(&format!("{head}\n{}", probe_table(names, before))),
+    }
+}
+
+/// The stages that were run with `scene` under a manifest that is lost, where the log lacks it; that of its last stages it has.
+fn stages_without(log: &Log, scene: &Scene) -> Option<String> {
+    let hash = scene.hash();
+    let lost = log.missed_manifests().flat_map(|lost| log.stages_without_scene(lost));
+    let stages: Vec<&Entry> = lost.filter(|entry| entry.record.commit.scene_hash == hash).collect();
+    stages_in_words(&stages)
+}
+
+/// Puts the scene of lost stretches back into the log, which goes on with that of its last stages as before.
+fn put_back(
+    claim: Resume,
+    stages: &str,
+    manifest: &Manifest,
+    sync: SyncPolicy,
+    options: &RunOptions,
+) -> Result<(), Failure> {
+    let path = &options.log;
+    let finished = claim.log().completeness() == Completeness::Finished;
+    ReadLog::warnings_of(claim.log()).iter().for_each(|line| say(line));
+    let resumed = claim
+        .put_back(manifest, sync)
+        .map_err(|source| Failure::Resume { log: path.clone(), source: Box::new(source) })?;
+    say_dropped(&resumed);
+    let closed = if finished { resumed.writer.finish() } else { resumed.writer.close() };
+    closed.map_err(|source| Failure::WrongLog { log: path.clone(), source: Box::new(source) })?;
+    say(&format!(
+        "put back: the scene of {stages}, which this is. No stage was run; `foldline resume` goes on with that of the last"
+    ));
+    Ok(())
+}
+
+fn say_dropped(resumed: &Resumed) {
+    if let Some(dropped) = &resumed.dropped {
+        say(&format!("what was dropped is kept in {}", path_in_line(dropped)));
+    }
+}
+
 /// What a log holds and what of it is used.
 fn found(log: &Log, keep: usize) -> String {
+    let all = count(log.commits(), "stage");
     match log.commits() {
         0 => "the log holds no stage".to_string(),
-        all if keep == all && log.missed_manifests().next().is_some() => {
-            format!("the log holds {all} stages, and has lost a manifest")
+        commits if keep == commits && log.missed_manifests().next().is_some() => {
+            format!("the log holds {all}, and has lost a manifest")
         }
-        all if keep == all => format!("the log holds {all} stages, all good"),
-        all => format!("the log holds {all} good stages; the first {keep} stand"),
+        commits if keep == commits => format!("the log holds {all}, all good"),
+        _ => format!("the log holds {all}, all good; the first {keep} stand"),
     }
 }
 

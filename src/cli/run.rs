@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
-use super::output::{file_name, say};
+use super::output::{file_name, path_in_line, say};
 use super::progress::Manner;
 use super::resume::{self, OldLog};
 use super::scene_file::{SceneFile, read_scene};
@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     /// Scene file (TOML); `foldline help scene` describes its keys
     scene: PathBuf,
     /// Log to write (MCAP) [default: checkpoints/SCENE.mcap]
-    #[arg(short, long, value_name = "LOG", value_parser = file_name)]
+    #[arg(short, long, value_name = "LOG", value_parser = file_name())]
     output: Option<PathBuf>,
     /// Threads; the result is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -79,7 +79,7 @@ impl Job {
             if let Some(old) = OldLog::open_unless_empty(&options.log)? {
                 return resume::go_on(old, scene, manifest, &options);
             }
-            say(&format!("{} holds nothing: begun anew", options.log.display()));
+            say(&format!("{} holds nothing: begun anew", path_in_line(&options.log)));
         }
         let mut stages = Stages::new(scene.clone());
         let start = stages.start()?;
@@ -94,10 +94,11 @@ impl Job {
                 Parameter::Rotation => format!("{}°", rounded(to)),
                 Parameter::LoadFactor => format!("load factor {}", rounded(to)),
             };
-            say(&format!("to {to} → {}", options.log.display()));
-            stages.remarks(&start)?.iter().for_each(|remark| say(remark));
+            say(&format!("to {to} → {}", path_in_line(&options.log)));
         }
-        if options.is_shown() && scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
+        // What looks odd is said however quiet the run is.
+        stages.remarks(&start)?.iter().for_each(|remark| say(remark));
+        if scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
             say(
                 "warning: degree 2 with full quadrature locks on coarse meshes, and stays too stiff; mesh.quadrature = \"reduced\" helps",
             );

@@ -4,6 +4,7 @@ use std::io::{self, IsTerminal};
 use std::path::Path;
 
 use super::failure::Failure;
+use super::output::path_in_line;
 use crate::scene::{Geometry, SCENE_BYTES_LIMIT, Scene, SceneError, Stage, parse_with_settings};
 
 /// A scene with the text that it came from.
@@ -16,7 +17,7 @@ pub(super) struct SceneFile {
 pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
     let bytes = bytes_of(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
     let text = text_of(bytes).map_err(|reason| Failure::NotText { path: path.to_path_buf(), reason })?;
-    let scene = checked(&text, &path.display().to_string(), &[])?;
+    let scene = checked(&text, &path_in_line(path), &[])?;
     // A log stands for itself: a surface from a file of its own goes into the text that the log keeps.
     let text = match scene.geometry {
         Geometry::Nurbs(_) => scene.to_toml(),

@@ -11,7 +11,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXCPU, SIGXFSZ};
 use signal_hook::flag;
 
 use super::failure::{Failure, INTERRUPTED};
-use super::output::{print, say};
+use super::output::{path_in_line, print, say};
 use super::progress::{Manner, Shown};
 use crate::journal::JournalWriter;
 use crate::pipeline::{Ending, Record, Run};
@@ -46,7 +46,7 @@ impl RunOptions {
     pub(super) fn sum_up(&self, summary: &Summary) -> Result<(), Failure> {
         self.show(&summary.to_string())?;
         if self.is_shown() {
-            say(&format!("every stage: foldline inspect {}", self.log.display()));
+            say(&format!("every stage: foldline inspect {}", path_in_line(&self.log)));
         }
         Ok(())
     }

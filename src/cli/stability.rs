@@ -7,7 +7,7 @@ use clap::Args;
 use super::asked::Asked;
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::scene_at;
-use super::output::{file_name, print, refuse_what_is_there, write_files};
+use super::output::{file_name, path_in_line, print, refuse_what_is_there, write_files};
 use super::plot::cells_per_element;
 use crate::history::{StabilityReport, States, stability_at};
 use crate::pipeline::{Outcome, Record};
@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "K")]
     step: Option<u64>,
     /// Folder for mode.svg and mode.vtu: the shell of --step with the mode added, as large as 5 % of the shell
-    #[arg(short, long, value_name = "DIR", requires = "step", value_parser = file_name)]
+    #[arg(short, long, value_name = "DIR", requires = "step", value_parser = file_name())]
     output: Option<PathBuf>,
 }
 
@@ -153,7 +153,7 @@ fn draw(folder: &Path, scene: &Scene, record: &Record, report: &StabilityReport)
     let texts = [mesh_picture(&samples, &picture), vtu(&samples)];
     let files: Vec<_> = pictures(folder).into_iter().zip(texts.map(String::into_bytes)).collect();
     write_files(&files)?;
-    print(&files.iter().map(|(path, _)| format!("{}\n", path.display())).collect::<String>())
+    print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
 }
 
 /// The files of a mode.

@@ -33,8 +33,9 @@ const COLUMNS: [Column; 14] = [
 /// zero. The last column says what else happened; ✗ is a solve turned down, at the rotation that it tried, ! a warning.
 pub fn stage_table(records: &[Record]) -> String {
     let steps = records.first().is_some_and(|record| record.report.driven_by == Parameter::LoadFactor);
-    // Where no ends turn, the first probe stands in the place of their moment.
-    let probe = records.iter().find_map(|record| record.report.probes.first()).map(|reading| reading.name.clone());
+    // Where no ends turn, the first probe stands in the place of their moment: of the last scene, which may have others.
+    let probe = records.iter().rev().find_map(|record| record.report.probes.first());
+    let probe = probe.map(|reading| reading.name.clone());
     // The cells are made twice: those of a long run do not fit in memory.
     let rows = || records.iter().map(|record| cells(record, probe.as_deref()));
     let mut widths = COLUMNS.map(|column| column.0.chars().count());

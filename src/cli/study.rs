@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{print, print_json, say};
+use super::output::{path_in_line, print, print_json, say};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
 use crate::scene::Scene;
@@ -70,7 +70,7 @@ impl Arguments {
     pub(super) fn run(self) -> Result<(), Failure> {
         use_threads(self.threads.map(usize::from))?;
         let cases = self.cases()?;
-        let name = self.against.display().to_string();
+        let name = path_in_line(&self.against);
         let reference = checked(&read_scene(&self.against)?.text, &name, &self.set)?;
         for case in &cases {
             let comparable = is_one_structure(&case.scene, &reference);
@@ -121,7 +121,7 @@ impl Arguments {
         }
         let mut cases = Vec::new();
         for path in &self.scenes {
-            let (scene_name, text) = (path.display().to_string(), read_scene(path)?.text);
+            let (scene_name, text) = (path_in_line(path), read_scene(path)?.text);
             for settings in &combinations {
                 let all = [self.set.clone(), settings.clone()].concat();
                 let scene = checked(&text, &scene_name, &all)?;

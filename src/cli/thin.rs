@@ -1,13 +1,14 @@
 //! `foldline thin`: a log without the states between some load steps.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{file_name, print, say};
-use crate::journal::{ThinError, thin};
+use super::output::{file_name, path_in_line, print, say};
+use crate::journal::{ThinError, Thinned, thin};
+use crate::units::count;
 
 /// Write a smaller log that holds every stage and every report, but the states of some load steps alone
 ///
@@ -18,7 +19,7 @@ pub(super) struct Arguments {
     /// Log to read (MCAP)
     log: PathBuf,
     /// Log to write; never over another file
-    #[arg(short, long, value_name = "NEW", value_parser = file_name)]
+    #[arg(short, long, value_name = "NEW", value_parser = file_name())]
     output: PathBuf,
     /// Load steps whose last state is kept: every=10 for every tenth, 7 for one, 20..30 for those from 20 to 30; several with
     /// commas between
@@ -37,20 +38,32 @@ impl Arguments {
             source => Failure::WrongLog { log: log.clone(), source: Box::new(source) },
         })?;
         for (text, choice) in &keep.choices {
-            if !thinned.steps.iter().any(|step| choice.has(*step)) {
-                let last = thinned.last_step;
-                say(&format!(
-                    "--keep {text} keeps nothing: the log has no state of such a load step; it goes from 1 to {last}"
-                ));
-            }
+            not_kept(text, *choice, &thinned, &log).iter().for_each(|line| say(line));
         }
         let [before, after] = thinned.bytes.map(|bytes| bytes as f64 / 1e6);
         print(&format!(
             "{}: all {} stages, {} of them with their states; {after:.2} MB of {before:.2} MB\n",
-            output.display(),
+            path_in_line(&output),
             thinned.commits,
             thinned.states
         ))
+    }
+}
+
+/// What is said of load steps whose state was to be kept and is not: the log has none, or not any more.
+fn not_kept(text: &str, choice: Choice, thinned: &Thinned, log: &Path) -> Option<String> {
+    let (last, kept) = (thinned.last_step, &thinned.steps);
+    let missed: Vec<u64> = (1..=last).filter(|step| choice.has(*step) && !kept.contains(step)).collect();
+    match missed.first() {
+        Some(first) => Some(format!(
+            "--keep {text}: the log was thinned before, and has no state any more of {}, the first of them {first}. Such a state is \
+             made again where it is asked for, as by `foldline stability {} --step {first}`; to keep it, thin the log that this one was \
+             made of",
+            count(missed.len(), "load step"),
+            path_in_line(log)
+        )),
+        None if kept.iter().any(|step| choice.has(*step)) => None,
+        None => Some(format!("--keep {text} keeps nothing: the load steps of the log go from 1 to {last}")),
     }
 }
 

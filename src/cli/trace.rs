@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
-use super::output::write_files;
+use super::output::{path_in_line, write_files};
 use crate::equilibrium::Iterate;
 use crate::journal::{TraceRow, trace_file};
 use crate::pipeline::Commit;
@@ -36,7 +36,7 @@ pub(super) fn files(file: &Path) -> [PathBuf; 2] {
 pub(super) fn write(file: &Path, rows: &[TraceRow]) -> Result<String, Failure> {
     let [mcap, csv] = files(file);
     let trace = trace_file(rows).map_err(|source| Failure::WrongLog { log: mcap.clone(), source: Box::new(source) })?;
-    let written = format!("{} iterates: {}, {}\n", rows.len(), mcap.display(), csv.display());
+    let written = format!("{} iterates: {}, {}\n", rows.len(), path_in_line(&mcap), path_in_line(&csv));
     write_files(&[(mcap, trace), (csv, table(rows).into_bytes())])?;
     Ok(written)
 }

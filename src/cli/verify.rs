@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::print;
+use super::output::{path_in_line, print};
 use crate::journal::{Level, verify};
 
 /// Check every hash, the chain, the order and the completeness of a log; exit code 1 if anything is wrong
@@ -35,7 +35,7 @@ impl Arguments {
             1 => "1 thing is wrong".to_owned(),
             _ => format!("{wrong} things are wrong"),
         };
-        print(&(lines.collect::<String>() + &format!("{}: {verdict}\n", self.log.display())))?;
+        print(&(lines.collect::<String>() + &format!("{}: {verdict}\n", path_in_line(&self.log))))?;
         Ok(u8::from(wrong > 0))
     }
 }

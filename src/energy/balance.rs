@@ -1,11 +1,11 @@
 //! The balance of energy of a solve: what is stored, what was done, and what is missing.
 
-/// Energies of the whole shell, N·mm. [`super::Workspace`] forms it where a solve ends; all else reads it.
+/// Energies of the whole shell, N·mm. The workspace of a solve forms it where a solve ends; all else reads it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Balance {
-    /// Stored at the end: strain energy, and what terms beside the shell store.
+    /// Stored at the end by all terms.
     pub stored: f64,
-    /// What each of those terms stores, in their order; 0 for loads.
+    /// What each of them stores, in their order, the shell first; 0 for loads.
     pub of_terms: Vec<f64>,
     /// Work of loads, given motions and changes of the natural state, or of what terms store, with the parameter since the start of
     /// the solve: reactions, and factors of the actions, by their means before and after; strokes of the actions along the way

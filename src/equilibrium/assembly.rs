@@ -1,6 +1,6 @@
 //! Sums over all terms on control points: energy, forces and stiffness.
 
-use crate::energy::{At, Discretization, Part, Want, with_locked};
+use crate::energy::{At, Discretization, Want, with_locked};
 use crate::equilibrium::vector::length;
 use crate::model::{Blocks, NaturalState};
 use crate::shell::{add, sub};

@@ -31,7 +31,7 @@
 //! Garcea 2017, here C (ε − ½ d,α·d,β) for a step d) save any: with them the same scene took 455 iterations for 344, and
 //! its snap 35 to 72 factorizations for 25 to 37, as the stiffness away from equilibrium was more often indefinite.
 
-use crate::energy::{At, Discretization, Want, strain_energy};
+use crate::energy::{Discretization, Want};
 use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::force_scale::ForceScale;

@@ -66,10 +66,12 @@ impl Workspace {
             None => 0.0,
         };
         let Discretization { mesh, terms, .. } = &self.discretization;
-        let of_terms = terms.energies(At { mesh, displacement: &ended.displacement, parameter });
+        let beside = terms.energies(At { mesh, displacement: &ended.displacement, parameter });
+        // What the shell stores is known without integrating again.
+        let of_shell = last.energy - beside.iter().sum::<f64>();
         let balance = Balance {
             stored: parts * last.energy,
-            of_terms: of_terms.into_iter().map(|energy| parts * energy).collect(),
+            of_terms: std::iter::once(of_shell).chain(beside).map(|energy| parts * energy).collect(),
             work: parts
                 * (before.work(&self.discretization, parameter, &ended.reactions, &ended.strokes)
                     + 0.5 * (put_in[0] + put_in[1])),

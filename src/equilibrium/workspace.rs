@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::energy::{At, Discretization, TermSource, Want, strain_energy};
+use crate::energy::{Discretization, TermSource, Want};
 use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::configuration::{Configuration, Standing};
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};

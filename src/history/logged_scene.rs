@@ -18,7 +18,7 @@ const DEFAULTS_BEFORE: [&str; 3] =
 pub enum LoggedSceneError {
     /// No manifest has a scene that hashes as the stage's commit says.
     #[error(
-        "the scene that stage {ordinal} was run with is lost; `foldline run SCENE -o LOG --resume` with the scene's file brings it back"
+        "the scene that stage {ordinal} was run with is lost; `foldline run SCENE -o LOG --resume` with that scene's file brings it back"
     )]
     Lost {
         /// Ordinal of the stage.

@@ -58,7 +58,7 @@ impl fmt::Display for Redefined {
         write!(
             f,
             "probe `{}` of stages {start} to {} is not the one of the last scene ({was} there, {is} in the end): they are not put \
-             together; `foldline inspect LOG --probes` reads the last one on all states",
+             together",
             self.is.name,
             end.saturating_sub(1)
         )

@@ -180,11 +180,7 @@ impl Log {
             let end = behind.first().map_or(self.commits() as u64, |next| next.first_ordinal);
             // What is not in memory is not known to have the scene of another manifest.
             let is_known = lost.ordinal >= end || self.entry(lost.ordinal as usize).is_some();
-            let made = (lost.ordinal..end).filter_map(|ordinal| self.entry(ordinal as usize));
-            let mut hashes: Vec<Hash> = made.map(|entry| entry.record.commit.scene_hash).collect();
-            hashes.dedup();
-            let runs = || behind.iter().filter_map(Manifest::run_hash);
-            behind.is_empty() || !is_known || !hashes.iter().all(|hash| runs().any(|run| run == *hash))
+            behind.is_empty() || !is_known || !self.stages_without_scene(lost).is_empty()
         })
     }
 

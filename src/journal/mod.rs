@@ -24,7 +24,7 @@
 //! | `portions` | a log of any length, read through without holding it |
 //! | `resume`, `recovery` | going on with a log, copying what is good of one |
 //! | `new_log`, `thin` | a log that is made of another, without some of its states |
-//! | `mending` | a log with stages put back that it had lost |
+//! | `mending`, `lost_manifest` | a log with stages put back that it had lost; what is not known without a manifest |
 //! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
 //! | `rewriting`, `agreement`, `verify` | all that can be checked, all of it |
 //! | `trace` | what a solve did, iterate by iterate, as a log of its own |
@@ -98,6 +98,7 @@ mod ledger;
 mod lock;
 mod log;
 mod long;
+mod lost_manifest;
 mod manifest;
 mod mending;
 pub mod message;
@@ -131,6 +132,7 @@ pub use index::word_number;
 pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
 pub use long::{LongLog, LongLogError};
+pub use lost_manifest::stages_in_words;
 pub use manifest::{Manifest, ManifestError, SceneInLogError};
 pub use mending::MendError;
 pub use new_log::NewLogError;

@@ -80,6 +80,8 @@ pub enum RecoverOutcome {
     Hopeless {
         /// Why.
         why: String,
+        /// Commits that are whole but have lost their predecessor.
+        later_commits: u64,
     },
 }
 
@@ -100,7 +102,7 @@ pub enum RecoverError {
 /// Where the log cannot be read at all, or the new file exists or cannot be written. That nothing is good of the log is
 /// an outcome.
 pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> {
-    recover_mended(path, new, |_| None)
+    recover_with(path, new, None)
 }
 
 /// The same; of a log in which whole commits have lost what they follow on `mend` may give back one in which they have not.
@@ -112,17 +114,23 @@ pub fn recover_mended(
     new: &Path,
     mut mend: impl FnMut(&Log) -> Option<Log>,
 ) -> Result<RecoverOutcome, RecoverError> {
+    recover_with(path, new, Some(&mut mend))
+}
+
+type Mend<'m> = &'m mut dyn FnMut(&Log) -> Option<Log>;
+
+fn recover_with(path: &Path, new: &Path, mut mend: Option<Mend>) -> Result<RecoverOutcome, RecoverError> {
     let mut portions = Portions::of(path)?;
     let mut copy: Option<NewLog> = None;
     loop {
         let portion = match portions.read() {
             Ok(portion) => portion,
             Err(error @ ReadError::Io { .. }) => return Err(error.into()),
-            Err(error) => return Ok(RecoverOutcome::Hopeless { why: error.to_string() }),
+            Err(error) => return Ok(RecoverOutcome::Hopeless { why: error.to_string(), later_commits: 0 }),
         };
-        if !portion.log().later_commits().is_empty()
+        if let Some(mend) = mend.as_mut().filter(|_| !portion.log().later_commits().is_empty())
             && let Some(mended) = mend(&Log::read(path)?)
-            && let Some((copy, mended)) = copy_mended(mended, &mut mend, new)?
+            && let Some((copy, mended)) = copy_mended(mended, mend, new)?
         {
             copy.keep()?;
             return Ok(outcome(&mended));
@@ -132,7 +140,10 @@ pub fn recover_mended(
         let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
         let mut good = match (copy, loss) {
             (Some(copy), _) => copy,
-            (None, Some(why)) if log.commits() == 0 => return Ok(RecoverOutcome::Hopeless { why }),
+            (None, Some(why)) if log.commits() == 0 => {
+                let later_commits = log.later_commits().len() as u64;
+                return Ok(RecoverOutcome::Hopeless { why, later_commits });
+            }
             (None, _) => NewLog::begin(new, &log.library)?,
         };
         for part in portion.parts().iter().filter(|part| finished || part.kept != Kept::Finished) {
@@ -153,11 +164,7 @@ const MOST_MENDS: usize = 4;
 
 /// A copy of a mended log with that log; `None` where no copy reads as its log does. What a copy lacks that was not described
 /// when it was made is mended again.
-fn copy_mended(
-    mut mended: Log,
-    mend: &mut impl FnMut(&Log) -> Option<Log>,
-    new: &Path,
-) -> Result<Option<(ClosedLog, Log)>, NewLogError> {
+fn copy_mended(mut mended: Log, mend: Mend, new: &Path) -> Result<Option<(ClosedLog, Log)>, NewLogError> {
     for _ in 0..MOST_MENDS {
         let Some(copy) = copy_whole(&mended, new)? else { return Ok(None) };
         let Ok(read) = copy.read() else { return Ok(None) };
@@ -187,10 +194,10 @@ fn copy_whole(log: &Log, new: &Path) -> Result<Option<ClosedLog>, NewLogError> {
 /// What a copy of a log lacks, which was read to its end.
 fn outcome(log: &Log) -> RecoverOutcome {
     let (commits, later_commits) = (log.commits() as u64, log.later_commits().len() as u64);
-    let dropped = log.file_len() - log.good_end();
     let finished = log.completeness() == Completeness::Finished;
     let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
-    let lost_manifest = log.missed_manifests().next().map(ToString::to_string);
+    let dropped = loss.as_ref().map_or(0, |_| log.file_len() - log.good_end());
+    let lost_manifest = log.missed_manifests().next().map(|lost| log.lost_in_words(lost));
     let lost_manifest = lost_manifest.or(log.unused_manifest().map(|note| note.text.clone()));
     match loss.or(lost_manifest) {
         Some(why) => RecoverOutcome::Lossy { commits, dropped, later_commits, why },

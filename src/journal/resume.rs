@@ -180,7 +180,20 @@ impl Resume {
             |before: &Manifest| before.scene_text == manifest.scene_text && before.own_terms == manifest.own_terms;
         let same_scene = before.is_some_and(same);
         let manifest = Manifest { first_ordinal: keep as u64, same_scene, ..manifest.clone() };
-        if in_place { self.in_place(&manifest, sync) } else { self.whole()?.copied(keep, &manifest, sync) }
+        if in_place { self.in_place(&manifest, sync) } else { self.whole()?.copied(keep, &[manifest], sync) }
+    }
+
+    /// Puts back the scene of a manifest that is lost, of which `manifest` has the file, and behind it that of the last stretch, with
+    /// which the log is gone on with as before. No stage is added.
+    ///
+    /// # Errors
+    /// Where the copy cannot be made; the log is then as it was.
+    pub fn put_back(self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
+        let all = self.log.commits();
+        let behind =
+            |manifest: &Manifest| Manifest { first_ordinal: all as u64, same_scene: false, ..manifest.clone() };
+        let manifests: Vec<Manifest> = [manifest].into_iter().chain(self.log.manifests().last()).map(behind).collect();
+        self.whole()?.copied(all, &manifests, sync)
     }
 
     fn in_place(mut self, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
@@ -189,7 +202,7 @@ impl Resume {
         let behind = encoder_behind(&self.log, ledger).map_err(|source| begin(&self.name, source.into()))?;
         let Some((mut encoder, length)) = behind else {
             let all = self.log.commits();
-            return self.whole()?.copied(all, manifest, sync);
+            return self.whole()?.copied(all, std::slice::from_ref(manifest), sync);
         };
         let Self { path, name, lock, log, before, .. } = self;
         let dropped = keep_dropped(&path, &log)?;
@@ -235,7 +248,7 @@ impl Resume {
         Ok(Resumed { writer, log, dropped })
     }
 
-    fn copied(self, keep: usize, manifest: &Manifest, sync: SyncPolicy) -> Result<Resumed, ResumeError> {
+    fn copied(self, keep: usize, manifests: &[Manifest], sync: SyncPolicy) -> Result<Resumed, ResumeError> {
         let Self { path, name, lock, log, .. } = self;
         let begin = |source| ResumeError::Begin { log: name.clone(), source };
         let dropped = if keep < log.entries().len() { Some(keep_whole(&path)?) } else { keep_dropped(&path, &log)? };
@@ -243,7 +256,7 @@ impl Resume {
         let mut backend = FileBackend::copy_of(&path).map_err(failed)?;
         let mut encoder = Encoder::new(&library()).map_err(|source| begin(source.into()))?;
         let copied = copy(&log, keep, &mut encoder, &mut backend).and_then(|length| {
-            encoder.manifest(manifest)?;
+            manifests.iter().try_for_each(|manifest| encoder.manifest(manifest))?;
             let bytes = encoder.take();
             backend.append(&bytes)?;
             backend.replace(log.file_len())?;

@@ -20,17 +20,6 @@ pub struct LostManifest {
     pub(super) before: usize,
 }
 
-impl std::fmt::Display for LostManifest {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { at, ordinal, .. } = self;
-        write!(
-            f,
-            "the manifest at byte {at} is lost: what the run was asked for from commit {ordinal} on is not known, and no other scene \
-             takes its place"
-        )
-    }
-}
-
 /// The stretches of a log, as it is read front to back.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stretches {

@@ -14,7 +14,6 @@ use super::message::in_brief;
 use super::new_log::{NewLog, NewLogError};
 use super::portions::{Portion, Portions};
 use super::reader::ReadError;
-use super::stretch::LostManifest;
 use crate::state::Hash;
 
 /// What became of a log that was thinned.
@@ -45,15 +44,10 @@ pub enum ThinError {
         why: String,
     },
     /// The scene of some stages is lost.
-    #[error(
-        "{lost}, and states of these stages that are dropped could not be made again: `foldline run SCENE -o {log} --resume` with the \
-         scene's file brings it back"
-    )]
+    #[error("states of stages without a scene could not be made again once they are dropped: {lost}")]
     SceneLost {
-        /// The log.
-        log: String,
-        /// Its manifest.
-        lost: LostManifest,
+        /// Which manifest, and the way out.
+        lost: String,
     },
     /// Something has written over it meanwhile.
     #[error("it was changed while it was read, and nothing was written: thin it again when nothing else writes to it")]
@@ -91,7 +85,7 @@ pub fn thin(path: &Path, new: &Path, kept_as: &str, keeps: impl Fn(u64) -> bool)
         return Err(ThinError::NotWhole { why });
     }
     if let Some(lost) = log.missed_manifests().next() {
-        return Err(ThinError::SceneLost { log: path.display().to_string(), lost: *lost });
+        return Err(ThinError::SceneLost { lost: log.lost_in_words(lost) });
     }
     let mut thinned = NewLog::begin(new, &log.library)?;
     let (commits, last) = (log.commits(), log.last_commit().copied());

@@ -13,6 +13,7 @@ use super::log::{Entry, Log};
 use super::parts::read_in_parts;
 use super::reader::{open_regular, read_at};
 use super::rewriting::Rewriting;
+use crate::units::count;
 
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -126,11 +127,17 @@ fn of_the_whole(log: &Log) -> Vec<Finding> {
     }
     let missed: Vec<_> = log.missed_manifests().collect();
     for lost in log.lost_manifests() {
-        let (level, rest) = match missed.contains(&lost) {
-            true => (Level::Error, ". `foldline run SCENE -o LOG --resume` with the scene's file brings it back"),
-            false => (Level::Info, "; a scene that was given anew behind it makes the same states"),
+        let (level, text) = match missed.contains(&lost) {
+            true => (Level::Error, log.lost_in_words(lost)),
+            false => {
+                let at = lost.at;
+                let text = format!(
+                    "the manifest at byte {at} is lost; a scene that was given anew behind it makes the same states"
+                );
+                (Level::Info, text)
+            }
         };
-        findings.push(finding(level, format!("commit {}", lost.ordinal), format!("{lost}{rest}")));
+        findings.push(finding(level, format!("commit {}", lost.ordinal), text));
     }
     findings.extend(manifests(log));
     findings
@@ -168,17 +175,18 @@ fn place(entry: &Entry) -> String {
 }
 
 fn completeness(log: &Log) -> Finding {
-    let commits = log.commits();
+    let commits = count(log.commits(), "commit");
     let (level, text) = match log.completeness() {
-        Completeness::Finished => (Level::Info, format!("{commits} commits, finished")),
-        Completeness::Unfinished => (Level::Info, format!("{commits} commits, not finished")),
+        Completeness::Finished => (Level::Info, format!("{commits}, finished")),
+        Completeness::Unfinished => (Level::Info, format!("{commits}, not finished")),
         Completeness::Truncated { at, dropped } => {
-            let text = format!("{commits} commits; the {dropped} bytes from byte {at} on are of one that was cut off");
+            let text = format!("{commits}; the {dropped} bytes from byte {at} on are of one that was cut off");
             (Level::Warning, text)
         }
         Completeness::Damaged { at, dropped, later_commits } => {
             let text = format!(
-                "{commits} commits; {dropped} bytes from byte {at} on are lost, with {later_commits} whole commits"
+                "{commits}; {dropped} bytes from byte {at} on are lost, with {}",
+                count(later_commits as usize, "whole commit")
             );
             (Level::Error, text)
         }

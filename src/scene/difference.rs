@@ -48,16 +48,13 @@ pub(super) fn of_tables(path: &str, a: Option<&Value>, b: Option<&Value>) -> Opt
             b.iter().map(|is| (named(a, is), Some(is))).chain(gone).collect()
         }
     };
-    let mut found: Vec<Difference> = pairs.into_iter().flat_map(|(was, is)| of_table(table, was, is)).collect();
-    for difference in &mut found {
-        difference.reach = match difference.path.rsplit('.').next() {
-            _ if table == "probe" => Reach::Free,
-            Some("name") if aligned => Reach::Names,
-            Some("history") if aligned => Reach::LaterLoads,
-            _ => Reach::Everything,
-        };
-    }
-    Some(found)
+    let reach = |key: Option<&str>| match key {
+        _ if table == "probe" => Reach::Free,
+        Some("name") if aligned => Reach::Names,
+        Some("history") if aligned => Reach::LaterLoads,
+        _ => Reach::Everything,
+    };
+    Some(pairs.into_iter().flat_map(|(was, is)| of_table(table, was, is, reach)).collect())
 }
 
 /// Whether the tables of two lists are the same ones in the same order, some perhaps renamed.
@@ -72,14 +69,17 @@ fn named<'v>(list: &'v [Value], table: &Value) -> Option<&'v Value> {
     list.iter().find(|other| other["name"] == table["name"])
 }
 
-/// Differences of two tables, a key each; of one alone, or of two kinds, the whole table.
-fn of_table(table: &str, was: Option<&Value>, is: Option<&Value>) -> Vec<Difference> {
+/// Differences of two tables, a key each; of one alone, or of two kinds, the whole table. How far each reaches says `reach`.
+fn of_table(
+    table: &str,
+    was: Option<&Value>,
+    is: Option<&Value>,
+    reach: impl Fn(Option<&str>) -> Reach,
+) -> Vec<Difference> {
     let name = was.or(is).and_then(|it| it["name"].as_str()).unwrap_or_default();
-    let difference = |path: String, a: Option<&Value>, b: Option<&Value>| Difference {
-        path,
-        a: a.cloned(),
-        b: b.cloned(),
-        reach: Reach::Everything,
+    let difference = |key: Option<&str>, a: Option<&Value>, b: Option<&Value>| {
+        let path = key.map_or(format!("{table}.{name}"), |key| format!("{table}.{name}.{key}"));
+        Difference { path, a: a.cloned(), b: b.cloned(), reach: reach(key) }
     };
     match (was.and_then(Value::as_object), is.and_then(Value::as_object)) {
         (Some(a), Some(b)) if a.get("kind") == b.get("kind") => {
@@ -87,10 +87,10 @@ fn of_table(table: &str, was: Option<&Value>, is: Option<&Value>) -> Vec<Differe
             keys.sort();
             keys.dedup();
             let differ = keys.into_iter().filter(|key| a.get(*key) != b.get(*key));
-            differ.map(|key| difference(format!("{table}.{name}.{key}"), a.get(key), b.get(key))).collect()
+            differ.map(|key| difference(Some(key), a.get(key), b.get(key))).collect()
         }
         _ if was == is => Vec::new(),
-        _ => vec![difference(format!("{table}.{name}"), was, is)],
+        _ => vec![difference(None, was, is)],
     }
 }
 
@@ -153,6 +153,9 @@ mod tests {
         assert_differ("actions", was.clone(), json!([push("a", 1.0), push("b", 2.0)]), &keys);
         let keys = [("action.b.history", Reach::Everything)];
         assert_differ("actions", was, json!([push("b", 2.0), push("a", 1.0)]), &keys);
+        // Whatever it is called.
+        let [force, pressure] = ["force", "pressure"].map(|kind| json!([{ "name": "a.history", "kind": kind }]));
+        assert_differ("actions", force, pressure, &[("action.a.history", Reach::Everything)]);
     }
 
     #[test]

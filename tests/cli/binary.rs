@@ -179,3 +179,47 @@ fn scenes_that_no_log_can_hold() {
     place.foldline("run long.toml -o a.mcap").ends(2).says(&["a scene has no more than 8388608"]);
     assert_eq!(place.logs(), ["plate.json"]);
 }
+
+/// Files may have any name that the system takes: it is used as it is, and breaks no line where it is shown.
+#[cfg(unix)]
+#[test]
+fn names_of_files() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    for (name, shown) in [(&b"not\xffutf-8"[..], "not\u{fffd}utf-8"), (b"two\nlines", "two␊lines")] {
+        let log = folder.path().join(OsStr::from_bytes(name));
+        let scene = log.with_extension("toml");
+        std::fs::write(&scene, include_str!("../restart/small.toml")).unwrap();
+        let run = |arguments: &[&OsStr]| {
+            let output = Command::new(env!("CARGO_BIN_EXE_foldline")).args(arguments).output().unwrap();
+            let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+            (output.status.code(), text)
+        };
+        let [command, to, until, two] = ["run", "-o", "--until", "2"].map(OsStr::new);
+        let (code, said) = run(&[command, scene.as_os_str(), to, log.as_os_str(), until, two]);
+        assert!(code == Some(0) && said.contains(shown), "{said}");
+        for (command, code) in [("inspect", 0), ("verify", 0), ("resume", 0), ("thin", 2)] {
+            let (found, said) = run(&[OsStr::new(command), log.as_os_str()]);
+            assert!(found == Some(code) && (code == 2 || said.contains(shown)), "{command}: {said}");
+        }
+        let (code, said) = run(&[OsStr::new("inspect"), log.with_extension("other").as_os_str()]);
+        assert!(code == Some(2) && said.contains(shown), "{said}");
+        std::fs::remove_file(&scene).unwrap();
+    }
+}
+
+/// A scene in which nothing acts is one that is run, and that it does is said however quiet the run is.
+#[test]
+fn nothing_acts() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("still.toml");
+    let roof = include_str!("../restart/path.toml").split("[continuation]").next().unwrap();
+    std::fs::write(&scene, roof.replace("-3000.0]", "-3000.0]\nhistory = [[0, 0], [2, 0]]")).unwrap();
+    for (number, manner) in ["--quiet", "--json"].into_iter().enumerate() {
+        let log = folder.path().join(format!("{number}.mcap"));
+        let output = output(&["run", scene.to_str().unwrap(), "-o", log.to_str().unwrap(), manner]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success() && said.contains("nothing acts on the shell"), "{manner}: {said}");
+    }
+}

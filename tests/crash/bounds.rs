@@ -151,7 +151,7 @@ fn an_ordinary_log_is_one() {
     place.write("log.mcap", ordinary.with_state(|_| ()));
     // Its header names no program that writes logs: that is all there is to say.
     let said =
-        place.foldline("verify log.mcap").says(&["1 commits, not finished", "not the byte that would be written"]);
+        place.foldline("verify log.mcap").says(&["1 commit, not finished", "not the byte that would be written"]);
     assert!(!said.out.contains("error"), "{}", said.out);
 }
 

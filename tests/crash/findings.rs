@@ -57,7 +57,7 @@ fn findings_in_words() {
     insta::assert_snapshot!(flipped(150), @r"
     Info log: 5 commits, finished
     Warning byte 64: the manifest's entries do not have the hash that it carries; it is left out
-    Error commit 0: the manifest at byte 64 is lost: what the run was asked for from commit 0 on is not known, and no other scene takes its place. `foldline run SCENE -o LOG --resume` with the scene's file brings it back
+    Error commit 0: the manifest at byte 64 is lost, and with it the scene of stages 0 to 4 (load steps 1 to 3): no other scene takes its place. `foldline run SCENE -o LOG --resume` with that scene's file brings it back
     ");
     insta::assert_snapshot!(flipped(entries[2].start as usize + 9), @r"
     Info log: 5 commits, finished

@@ -16,6 +16,10 @@ fn lost_stages_are_made_again() {
             bytes[entries[*stage].end as usize - 300] ^= 1;
         }
         place.write("run.mcap", &bytes);
+        let refused = place.foldline("recover run.mcap -o good.mcap");
+        refused
+            .ends(if damaged[0] == 0 { 1 } else { 3 })
+            .says(&["stages behind what is lost; --remake may run that again"]);
         let said = place.foldline("recover run.mcap -o new.mcap --remake").ends(0);
         said.says(&[&format!("{made} stage"), "made again", &format!("all {} stages", whole.stages)]);
         assert_ends_with(&place.log("new.mcap"), whole.chain, &format!("{damaged:?}"));

@@ -167,6 +167,54 @@ fn a_finished_log_gets_its_scene_again() {
     }
 }
 
+/// The scene of an earlier stretch is lost, and that of the last is there: every message says which stages are meant, and the
+/// way out that it names puts the scene back, whatever became of the log meanwhile.
+#[test]
+fn an_earlier_scene_is_put_back() {
+    let place = Place::new();
+    let tighter = scene_to("3.0") + "\n[solver]\ntolerance = 1e-9\n";
+    for (name, scene) in [("first", scene_to("3.0")), ("last", tighter)] {
+        place.write(&format!("{name}.toml"), scene);
+    }
+    place.foldline("run first.toml -o log.mcap --until 1 --quiet").ends(0);
+    place.foldline("run last.toml -o log.mcap --resume --until 2 --quiet").ends(0);
+    let unfinished = place.read("log.mcap");
+    place.foldline("resume log.mcap --quiet").ends(0);
+    let chain = place.log("log.mcap").last_commit().unwrap().chain_hash;
+    for (what, mut bytes) in [("finished", place.read("log.mcap")), ("unfinished", unfinished)] {
+        let at = bytes.windows(18).position(|window| window == b"rotation_deg = 3.0").unwrap();
+        bytes[at + 15] = b'2';
+        let log = Log::from_bytes(bytes.clone()).unwrap();
+        let lost = log.entries().iter().take_while(|entry| entry.record.report.parameter <= 1.0).count();
+        let stages = format!("the scene of stages 0 to {} (load steps 1 to 2)", lost - 1);
+        for recovered in [false, true] {
+            place.write("log.mcap", &bytes);
+            if recovered {
+                place.foldline("recover log.mcap -o new.mcap").ends(3).says(&[&stages]);
+                std::fs::rename(place.file("new.mcap"), place.file("log.mcap")).unwrap();
+            }
+            for (command, code) in
+                [("verify log.mcap", 1), ("inspect log.mcap", 0), ("thin log.mcap -o thin.mcap --keep 1", 1)]
+            {
+                place.foldline(command).ends(code).says(&[&stages, "--resume` with that scene's file"]);
+            }
+            place.foldline("replay log.mcap --step 1").ends(1).says(&["stage 0 of log.mcap", "--resume"]);
+            place.foldline("run first.toml -o log.mcap --resume").ends(0).says(&["put back", &stages]);
+            assert_eq!(place.log("log.mcap").commits(), log.commits(), "{what}: no stage is added or taken");
+            place.foldline("resume log.mcap --quiet").ends(0);
+            let again = place.log("log.mcap");
+            assert_eq!(
+                (again.completeness(), again.last_commit().unwrap().chain_hash),
+                (Completeness::Finished, chain)
+            );
+            has_its_scene_again(&place);
+            for copy in ["copy.mcap", "thinner.mcap"] {
+                std::fs::remove_file(place.file(copy)).unwrap();
+            }
+        }
+    }
+}
+
 /// Where the scene of the last stretch is lost, nothing of the one before is shown as if it held.
 #[test]
 fn an_older_scene_is_said_to_be_one() {

@@ -37,15 +37,20 @@ fn new_probes_and_a_mesh_history() {
     let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
     let stand = format!("every stage stands, and the {} in the log keep what they were written with", whole.stages);
     let lines: Vec<&str> = said.err.lines().filter(|line| line.contains(&stand)).collect();
-    assert!(lines.len() == 2 && lines[0].contains("mesh_history") && lines[1].contains("probes"), "{}", said.err);
+    assert!(
+        lines.len() == 2 && lines[0].contains("mesh_history") && lines[1].contains("probe.strain energy changed"),
+        "{}",
+        said.err
+    );
     // Each equilibrium, with the energy that its report tells.
     let log = whole.log();
     let done = log.entries().iter().map(|entry| &entry.record.report);
     let done = done.filter(|report| report.outcome == Outcome::Done && report.stage.finds_equilibrium());
-    let rows: Vec<&str> = said.out.lines().filter(|line| line.contains(": strain energy ")).collect();
-    assert_eq!(rows.len(), done.clone().count(), "{}", said.out);
+    let mut table = said.out.lines().skip_while(|line| !line.contains("strain energy N·mm")).skip(1);
+    let rows: Vec<&str> = table.by_ref().take(done.clone().count()).collect();
+    assert!(table.next().is_some_and(|next| next.starts_with("tape spring")), "{}", said.out);
     for (row, report) in rows.iter().zip(done) {
-        let value: f64 = row.split("strain energy ").nth(1).unwrap().trim_end_matches(" N·mm").parse().unwrap();
+        let value: f64 = row.split_whitespace().last().unwrap().parse().unwrap();
         // Of the whole shell, to the digits that are printed.
         assert!((value - report.strain_energy_n_mm).abs() < 1e-4 * value.abs(), "{row}: {}", report.strain_energy_n_mm);
     }
@@ -82,9 +87,9 @@ fn a_probe_that_is_another_under_the_same_name() {
     let first = place.log("run.mcap").entries().len();
     let said = place.foldline("run other.toml -o run.mcap --resume --quiet").ends(0);
     // What differs is shown, however long the rest is.
-    said.says(&["probes changed (", "[0.5,0.5]", "[0.5,0.25]"]);
+    said.says(&["probe.w_c.on changed ([0.5,0.5] → [0.5,0.25])"]);
     let names = format!("probe `w_c` of stages 0 to {} is not the one of the last scene", first - 1);
-    let table = place.foldline("inspect run.mcap").ends(0).says(&[&names]).out;
+    let table = place.foldline("inspect run.mcap").ends(0).says(&[&names, "foldline inspect run.mcap --probes"]).out;
     let probes = |place: &Place, command: &str| -> Vec<serde_json::Value> {
         let out = place.foldline(command).ends(0).out;
         out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap()["probes"].clone()).collect()
@@ -101,6 +106,82 @@ fn a_probe_that_is_another_under_the_same_name() {
     assert_eq!(place.read("pictures/load-probe.svg"), straight.read("pictures/load-probe.svg"));
 }
 
+/// Each probe that changed is a line, whatever else changed; all of them are read anew, and shown while the run goes on.
+#[test]
+fn many_probes_are_a_line_and_a_column_each() {
+    let probe = |name: &str, on: &str| {
+        format!("\n[[probe]]\nname = \"{name}\"\nkind = \"displacement\"\non = {on}\ncomponent = \"z\"\n")
+    };
+    let was = include_str!("path.toml").to_owned() + &probe("left", "[0.5, 0.25]") + &probe("right", "[0.5, 0.75]");
+    let is = was.replace("\"w_c\"", "\"crown\"").replace("[0.5, 0.75]", "[0.25, 0.75]").replace("\"z\"", "\"x\"");
+    let place = Place::new();
+    place.write("was.toml", &was);
+    place.write("is.toml", is + &probe("end", "[0.0, 0.5]"));
+    place.foldline("run was.toml -o run.mcap --until 0.5 --quiet").ends(0);
+    let said = place.foldline("run is.toml -o run.mcap --resume").ends(0).says(&[
+        "probe.left.component changed (\"z\" → \"x\")",
+        "probe.right.on changed ([0.5,0.75] → [0.25,0.75])",
+        "probe.w_c changed (",
+        "probe.crown changed (not set → ",
+        "probe.end changed (not set → ",
+        "crown mm",
+    ]);
+    let steps: Vec<&str> = said.err.lines().filter(|line| line.starts_with("step ")).collect();
+    assert!(steps.len() > 3 && steps.iter().all(|line| line.contains("  crown ")), "{}", said.err);
+    let anew = place.foldline("inspect run.mcap --probes").ends(0);
+    assert!(!anew.err.contains("--probes") && !anew.out.contains("--probes"), "{}{}", anew.out, anew.err);
+    let heads = anew.out.lines().find(|line| line.contains("crown mm")).unwrap();
+    assert!(["left mm", "right mm", "end mm"].iter().all(|head| heads.contains(head)), "{heads}");
+}
+
+/// What supports and actions are called decides no state, nor does a history beyond the loads that were reached: the run goes on,
+/// and ends with the states of one that had the new scene from the start.
+#[test]
+fn names_and_later_loads() {
+    let roof = include_str!("path.toml").split("[continuation]").next().unwrap().replace("1.6", "1.0");
+    let ramp = |points: &str| roof.replace("-3000.0]", &format!("-3000.0]\nhistory = [{points}]"));
+    let [was, later] = [ramp("[0, 0], [0.7, 0.7], [1, 1]"), ramp("[0, 0], [0.7, 0.7], [1, 0.2]")];
+    let renamed = was.replace("left hinge", "links").replace("[[action]]", "[[action]]\nname = \"pull\"");
+    let states = |log: &Log| log.entries().iter().map(|entry| entry.record.commit.state_hash).collect::<Vec<_>>();
+    for (what, is, until, kept) in [
+        ("renamed", &renamed, 0.6, "every stage stands"),
+        ("changed beyond", &later, 0.6, "every stage stands"),
+        ("changed before the last stages", &later, 0.9, "is new"),
+    ] {
+        let (place, straight) = (Place::new(), Place::new());
+        place.write("was.toml", &was);
+        place.foldline(&format!("run was.toml -o run.mcap --until {until} --quiet")).ends(0);
+        for place in [&place, &straight] {
+            place.write("is.toml", is);
+        }
+        let said = place.foldline("run is.toml -o run.mcap --resume").ends(0).says(&["changed (", kept]);
+        assert!(!said.err.contains("mixed"), "{what}: {}", said.err);
+        straight.foldline("run is.toml -o run.mcap --quiet").ends(0);
+        assert_eq!(states(&place.log("run.mcap")), states(&straight.log("run.mcap")), "{what}");
+        place.foldline("replay run.mcap --from-scratch").ends(0);
+    }
+    // Where nothing can be kept, the message says why.
+    let place = Place::new();
+    place.write("was.toml", &was);
+    place.write("other.toml", ramp("[0.1, 0], [0.7, 0.7], [1, 1]"));
+    place.write("at-start.toml", ramp("[0, 0], [0.3, 0.7], [1, 1]"));
+    place.foldline("run was.toml -o run.mcap --until 0.6 --quiet").ends(0);
+    for (scene, why) in [
+        ("other", "the histories do not begin with the same points: nothing can be kept"),
+        ("at-start", "the histories part at load factor 0: nothing can be kept"),
+    ] {
+        place
+            .foldline(&format!("run {scene}.toml -o run.mcap --resume"))
+            .ends(1)
+            .says(&["action 1.history changed", why]);
+    }
+    let along_path = |scene: &str| scene.to_owned() + "\n[continuation]\ncontrol = \"arc-length\"\n";
+    place.write("path.toml", along_path(&was));
+    place.write("path-later.toml", along_path(&later));
+    place.foldline("run path.toml -o path.mcap --until 0.3 --quiet").ends(0);
+    place.foldline("run path-later.toml -o path.mcap --resume").ends(1).says(&["a step by arc length looks beyond"]);
+}
+
 /// A finished run goes on to a farther target as if that had been the target from the start.
 #[test]
 fn a_farther_target() {
@@ -115,7 +196,11 @@ fn a_farther_target() {
         assert_eq!(place.logs().len(), 1 + usize::from(clipped), "{near}: {:?}", place.logs());
         if clipped {
             assert!(!said.err.contains("every stage stands"), "{near}: stages go, and yet: {}", said.err);
-            said.says(&["load.rotation_deg changed", "stand,", &format!("the log holds {near_stages} good stages")]);
+            said.says(&[
+                "load.rotation_deg changed",
+                "stand,",
+                &format!("the log holds {near_stages} stages, all good; the first"),
+            ]);
             assert_eq!(place.logs(), ["run.mcap", "run.mcap.replaced-1"]);
         } else {
             said.says(&["load.rotation_deg changed", "every stage stands"]);

@@ -57,7 +57,7 @@ fn a_resume_says_what_it_found() {
     flipped[whole.cut_after(20).len() + 400] ^= 8;
     place.write("flipped.mcap", &flipped);
     let said = place.foldline("resume flipped.mcap").ends(0);
-    let later = format!("with {} stages that have lost what they follow on", whole.stages - 21);
+    let later = format!("with {} whole stages behind what is lost", whole.stages - 21);
     said.says(&["the log holds 20 stages", "damaged at byte", &later, "flipped.mcap.dropped-1"]);
     assert_ends_with(&place.log("flipped.mcap"), whole.chain, "flipped");
 }

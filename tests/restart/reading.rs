@@ -31,7 +31,7 @@ fn cases() -> Vec<Case> {
     };
     let unfinished = &["unfinished; go on with: foldline resume"][..];
     let cut = &["cut off: good up to byte", "unfinished; go on with: foldline resume"][..];
-    let damaged = &["damaged at byte", "have lost what they follow on", "unfinished; go on with"][..];
+    let damaged = &["damaged at byte", "behind what is lost", "unfinished; go on with"][..];
     vec![
         Case { name: "whole", bytes: bytes.clone(), stages: all, inspect: &["16°"], verify: 0, recover: 0 },
         Case {

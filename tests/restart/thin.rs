@@ -43,6 +43,16 @@ fn every_stage_stays_and_some_states() {
     place.foldline("recover thin.mcap -o copy.mcap").ends(0);
     assert_eq!(place.read("copy.mcap"), place.read("thin.mcap"));
     place.foldline("thin thin.mcap -o thinner.mcap --keep 3").ends(0);
+    // What it has no state of any more can be made again, and is not said to be nothing.
+    let said = place.foldline("thin thin.mcap -o again.mcap --keep 2,5,every=2,400").ends(0);
+    let again = said.says(&[
+        "--keep 2: the log was thinned before, and has no state any more of 1 load step, the first of them 2",
+        "--keep every=2: the log was thinned before, and has no state any more of 4 load steps",
+        "`foldline stability thin.mcap --step 2`",
+        "--keep 400 keeps nothing",
+    ]);
+    assert!(!again.err.contains("--keep 5"), "{}", again.err);
+    place.foldline("stability thin.mcap --step 2").ends(0);
     assert_ends_with(&place.log("thinner.mcap"), whole.chain, "thinned twice");
 }
 
@@ -78,7 +88,7 @@ fn what_was_dropped_is_made_again_when_it_is_asked_for() {
     let place = Place::new();
     place.write("run.mcap", &whole.bytes);
     let said = place.foldline("thin run.mcap -o thin.mcap --keep 2,400,500..600").ends(0);
-    said.says(&["--keep 400 keeps nothing", "--keep 500..600 keeps nothing", "it goes from 1 to"]);
+    said.says(&["--keep 400 keeps nothing", "--keep 500..600 keeps nothing", "of the log go from 1 to"]);
     for command in [
         "stability LOG",
         "stability LOG --step 4",
