@@ -124,6 +124,32 @@ impl Tangent<'_> {
         self.stiffness
     }
 
+    /// The tangent of one term, on a matrix of this pattern: the symmetric part of −∂f/∂u, and the skew part, empty where the term
+    /// has none.
+    ///
+    /// # Panics
+    /// Where the term couples control points without saying so, or has a skew part without saying so.
+    pub fn of(term: &dyn Term, at: At, pattern: &BlockPattern) -> [Blocks; 2] {
+        let mut stiffness = Blocks::zeros(pattern);
+        let mut skew = if term.has_skew() { Blocks::zeros(pattern) } else { Blocks::default() };
+        let symmetry = (!term.has_skew()).then(Symmetry::default);
+        let (stiffness_of, skew_of) = (&mut stiffness, &mut skew);
+        let mut tangent = Tangent { pattern, stiffness: stiffness_of, skew: skew_of, term: "one term", symmetry };
+        term.add_tangent(at, &mut tangent);
+        tangent.check();
+        [stiffness, skew]
+    }
+
+    /// Ends the program where the term hides a skew part.
+    fn check(self) {
+        if let Some(Symmetry { difference, size }) = self.symmetry.filter(Symmetry::is_broken) {
+            let (name, share) = (self.term, difference.abs() / size);
+            panic!(
+                "the tangent of the term \"{name}\" is not symmetric, by {share:.1e} of its size, and it does not say so"
+            );
+        }
+    }
+
     /// Takes ∂f_i/∂u_j, N/mm.
     ///
     /// # Panics
@@ -306,12 +332,7 @@ impl Terms {
             let symmetry = (!term.has_skew()).then(Symmetry::default);
             let mut tangent = Tangent { pattern, stiffness, skew: &mut skew, term: name, symmetry };
             term.add_tangent(at, &mut tangent);
-            if let Some(Symmetry { difference, size }) = tangent.symmetry.filter(Symmetry::is_broken) {
-                let share = difference.abs() / size;
-                panic!(
-                    "the tangent of the term \"{name}\" is not symmetric, by {share:.1e} of its size, and it does not say so"
-                );
-            }
+            tangent.check();
         }
         skew
     }

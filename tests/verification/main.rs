@@ -26,3 +26,4 @@ mod soft_mode;
 mod spring_path;
 mod support;
 mod surfaces;
+mod terms;
