@@ -34,12 +34,14 @@ impl Asked {
     /// The stages of a load step, in their order.
     pub(super) fn stages_of_step(&self, step: u64) -> Result<Vec<Record>, Failure> {
         let found = match &self.log {
-            AskedLog::Long(long) => stages_of_step(long, step).or_else(|error| match LongLog::read_through(&self.path)? {
-                // The index did not fit.
-                Some(long) => stages_of_step(&long, step),
-                // The log is damaged.
-                None => Err(error),
-            }),
+            AskedLog::Long(long) => {
+                stages_of_step(long, step).or_else(|error| match LongLog::read_through(&self.path)? {
+                    // The index did not fit.
+                    Some(long) => stages_of_step(&long, step),
+                    // The log is damaged.
+                    None => Err(error),
+                })
+            }
             AskedLog::Whole(log) => {
                 let records = log.entries().iter().map(|entry| &entry.record);
                 Ok(records.filter(|record| record.report.step == step).cloned().collect())

@@ -10,7 +10,7 @@
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `stress` | suites, and how fast and exact runs are |
 //! | `help` | help on subcommands and topics |
-//! | `scene_file`, `log_file` | what is read |
+//! | `scene_file`, `log_file`, `asked` | what is read: scenes, logs, some stages of a log |
 //! | `session` | threads, signals, the log of a run under way |
 //! | `probe_table` | what probes measure on a log |
 //! | `progress`, `load_step`, `stage_table`, `json_line` | stages, as they are shown |

@@ -6,119 +6,22 @@
 //! displacements, and those of the equilibrium before are there already. Nothing decoded leaves this file before its content
 //! hash is what the commit says and [`soundness`](super::soundness) has passed it.
 
+mod bytes;
 mod older;
 mod versions;
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
+pub use self::bytes::{CODEC_VERSION, CodecError};
+use self::bytes::{decode, encode};
 use self::older::{Older, decode_older};
 use self::versions::{CourseV7, FieldV1, MeshV1, RefinementV6, RejectionV1, StageV1, StateV7};
-use super::format::{CHUNK_BYTES_LIMIT, FIELDS_LIMIT};
-use super::soundness::{Flaw, check_mesh, check_on_mesh, check_state};
+use super::format::FIELDS_LIMIT;
+use super::soundness::{check_mesh, check_on_mesh, check_state};
 use crate::digest::extend_with_numbers;
 use crate::scene::Stage;
 use crate::state::{DriveMemory, Hash, Mesh, Rejection, State, StepControl};
-use serde::{Deserialize, Serialize};
-
-/// The version in which states are written, in front of each of them.
-pub const CODEC_VERSION: u8 = 7;
-
-/// Why bytes are not a state or a mesh that can be used.
-#[derive(Debug, thiserror::Error)]
-pub enum CodecError {
-    /// No bytes at all.
-    #[error("the message is empty")]
-    Empty,
-    /// Written by a later version of the program.
-    #[error("the message has encoding version {found}, and this program reads up to {CODEC_VERSION}: use a newer one")]
-    Version {
-        /// Version in the message.
-        found: u8,
-    },
-    /// A version that such messages never had.
-    #[error("the message has encoding version {found}, and messages of its kind have {expected}")]
-    OtherVersion {
-        /// Version in the message.
-        found: u8,
-        /// Version of its kind.
-        expected: u8,
-    },
-    /// Not what the encoding says.
-    #[error("the message does not decode")]
-    Decode(#[from] bincode::error::DecodeError),
-    /// Too large, or a failure of the encoder.
-    #[error("the state cannot be encoded")]
-    Encode(#[from] bincode::error::EncodeError),
-    /// Bytes left over after decoding.
-    #[error("the message holds {total} bytes of which only {used} were used")]
-    LeftOver {
-        /// Bytes that decoding used.
-        used: usize,
-        /// Bytes of the message.
-        total: usize,
-    },
-    /// The state names another mesh than the commit.
-    #[error("the state stands on mesh {found}, and its commit says {expected}")]
-    OtherMesh {
-        /// Mesh that the commit names.
-        expected: Hash,
-        /// Mesh that the state names.
-        found: Hash,
-    },
-    /// The state names a field that the log does not hold.
-    #[error("the state has a field {hash} on its control points, which the log does not hold")]
-    NoField {
-        /// Hash of its bytes.
-        hash: Hash,
-    },
-    /// The state names more or fewer fields than it has.
-    #[error("the state names {found} fields, and it has its displacements and at most one of its course")]
-    FieldCount {
-        /// Those that it names.
-        found: usize,
-    },
-    /// Decoded, but not the content that was committed.
-    #[error("the {what} hashes to {found}, and its commit says {expected}")]
-    ContentHash {
-        /// "state" or "mesh".
-        what: &'static str,
-        /// Hash in the commit.
-        expected: Hash,
-        /// Hash of what was decoded.
-        found: Hash,
-    },
-    /// The content that was committed, but nothing that a run could go on from.
-    #[error("the content is unusable")]
-    Unsound(#[from] Flaw),
-}
-
-fn config() -> impl bincode::config::Config {
-    bincode::config::standard().with_little_endian().with_fixed_int_encoding().with_limit::<CHUNK_BYTES_LIMIT>()
-}
-
-fn encode(version: u8, value: &impl Serialize) -> Result<Vec<u8>, CodecError> {
-    let mut bytes = vec![version];
-    bincode::serde::encode_into_std_write(value, &mut bytes, config())?;
-    Ok(bytes)
-}
-
-/// What the bytes of a message of this version hold.
-fn decode<T: for<'de> Deserialize<'de>>(version: u8, bytes: &[u8]) -> Result<T, CodecError> {
-    match bytes {
-        [] => Err(CodecError::Empty),
-        [found, body @ ..] if *found == version => {
-            let (value, used) = bincode::serde::decode_from_slice(body, config())?;
-            if used == body.len() {
-                Ok(value)
-            } else {
-                Err(CodecError::LeftOver { used: used + 1, total: bytes.len() })
-            }
-        }
-        [found @ 1..=CODEC_VERSION, ..] => Err(CodecError::OtherVersion { found: *found, expected: version }),
-        [found, ..] => Err(CodecError::Version { found: *found }),
-    }
-}
 
 /// What [`encode`] makes of [`FieldV1`], in a tenth of the time: fields are nearly all of most logs.
 fn encode_field(vectors: &[[f64; 3]]) -> Vec<u8> {

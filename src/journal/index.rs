@@ -17,10 +17,9 @@ use super::format::{MANIFEST, THINNED, library};
 use super::frame;
 use super::ledger::{ChunkPlace, Ledger, Pattern};
 use super::manifest::Manifest;
-use super::message::HexHash;
+use super::message::{HexHash, kept_as};
 use super::reader::read_at;
 use super::stretch::Stretches;
-use super::thin::kept_as;
 use crate::pipeline::{Record, Report, as_number, fields_of};
 use crate::state::Hash;
 

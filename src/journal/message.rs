@@ -331,6 +331,11 @@ pub(super) fn in_brief(text: String) -> String {
     }
 }
 
+/// The words of the record in front of a log that was thinned.
+pub(super) fn kept_as(marker: &mcap::records::Metadata) -> String {
+    in_brief(marker.metadata.get("kept").cloned().unwrap_or_default())
+}
+
 /// Stands where the seal will be.
 const UNSEALED: HexHash = HexHash(Hash::from_bytes([0; 32]));
 

@@ -12,9 +12,8 @@ use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT, MANIFESTS_BY
 use super::frame::{self, Cut, Frame, PREFIX_LEN, op};
 use super::log::{Entry, Kept, Note, Part};
 use super::manifest::{LIBRARY, Manifest};
-use super::message::{FinishedMessage, in_brief};
+use super::message::{FinishedMessage, in_brief, kept_as};
 use super::stretch::Stretches;
-use super::thin::kept_as;
 use crate::pipeline::{Commit, Record};
 use crate::state::Hash;
 

@@ -10,7 +10,6 @@ use std::path::Path;
 
 use super::format::THINNED;
 use super::log::{Kept, Log};
-use super::message::in_brief;
 use super::new_log::{NewLog, NewLogError};
 use super::portions::{Portion, Portions};
 use super::reader::ReadError;
@@ -114,11 +113,6 @@ pub fn thin(path: &Path, new: &Path, kept_as: &str, keeps: impl Fn(u64) -> bool)
 fn marker(kept_as: &str) -> mcap::records::Metadata {
     let metadata = BTreeMap::from([("kept".to_owned(), kept_as.to_owned())]);
     mcap::records::Metadata { name: THINNED.to_owned(), metadata }
-}
-
-/// The words of the record in front of a log that was thinned.
-pub(super) fn kept_as(marker: &mcap::records::Metadata) -> String {
-    in_brief(marker.metadata.get("kept").cloned().unwrap_or_default())
 }
 
 /// Whether the state of an entry stays: of those that have one, that of the last stage of every step that is kept, and the last

@@ -64,7 +64,8 @@ fn a_long_log_that_is_damaged() {
         assert_eq!(whole.commits(), kept);
         if let Completeness::Damaged { at, dropped, later_commits } = whole.completeness() {
             assert_eq!(later_commits as usize, half - 1);
-            let said = [format!("damaged at byte {at}: {dropped} bytes beyond, with {later_commits} stages")];
+            let said =
+                [format!("damaged at byte {at}: {dropped} bytes beyond not used, with {later_commits} whole stages")];
             place.foldline("inspect long.mcap").ends(0).says(&said.each_ref().map(String::as_str));
         }
         place.foldline("thin long.mcap -o thin.mcap --keep every=10").says(&["it is not whole"]);

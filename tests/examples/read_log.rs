@@ -15,7 +15,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{} stages, {:?}", log.commits(), log.completeness());
     for entry in log.entries() {
         let report = &entry.record.report;
-        println!("{:>4}  step {:>3}  {:<22} {:.4}", entry.record.commit.ordinal, report.step, report.stage.name(), report.parameter);
+        println!(
+            "{:>4}  step {:>3}  {:<22} {:.4}",
+            entry.record.commit.ordinal,
+            report.step,
+            report.stage.name(),
+            report.parameter
+        );
     }
     if let Some(last) = log.commits().checked_sub(1) {
         // Decoded only now, and compared with the hash that its commit names.

@@ -11,7 +11,8 @@ use foldline::pipeline::{MemorySink, Outcome, Run, Stages};
 use foldline::scene::{Stage, parse};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("pipelines/baseline-quarter.toml"), PathBuf::from);
+    let path =
+        std::env::args_os().nth(1).map_or_else(|| PathBuf::from("pipelines/baseline-quarter.toml"), PathBuf::from);
     let scene = parse(&std::fs::read_to_string(&path)?, &path.display().to_string())?;
     let mut stages = Stages::new(scene);
     let start = stages.start()?;
@@ -20,7 +21,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     Run::new(stages, start, None).to_end(Some(5.0), &|| false, &mut sink)?;
     for (state, record) in &sink.stages {
         if record.report.stage == Stage::Solve && record.report.outcome == Outcome::Done {
-            println!("{:>7.3}  {:>9.3} N·mm  {:?} elements", state.parameter, state.moment_n_mm, state.mesh.element_counts());
+            println!(
+                "{:>7.3}  {:>9.3} N·mm  {:?} elements",
+                state.parameter,
+                state.moment_n_mm,
+                state.mesh.element_counts()
+            );
         }
     }
     Ok(())

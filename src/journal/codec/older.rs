@@ -6,8 +6,8 @@ use serde::Deserialize;
 #[cfg(test)]
 use serde::Serialize;
 
+use super::bytes::{CodecError, decode};
 use super::versions::{CourseV7, MeshV1, PathV7, RefinementV6, RejectionV1, StageV1, StateV7};
-use super::{CodecError, decode};
 use crate::journal::soundness::Flaw;
 
 /// Its one field holds the displacements and, from version 4 on, behind them those of the equilibrium before.

@@ -2,6 +2,7 @@
 
 use super::older::{PathV3, StateV1, StateV3, StateV5, StateV6};
 use super::*;
+use crate::journal::Flaw;
 use crate::state::{Course, PathMemory};
 
 fn on_a_path() -> State {
