@@ -37,9 +37,9 @@ impl Asked {
             AskedLog::Long(long) => {
                 stages_of_step(long, step).or_else(|error| match LongLog::read_through(&self.path)? {
                     // The index did not fit.
-                    Some(long) => stages_of_step(&long, step),
+                    Some(long) if long.commits() == self.log.commits() => stages_of_step(&long, step),
                     // The log is damaged.
-                    None => Err(error),
+                    _ => Err(error),
                 })
             }
             AskedLog::Whole(log) => {
