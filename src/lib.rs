@@ -48,7 +48,7 @@
 //! # }
 //! ```
 //!
-//! `tests/examples/` goes on: `run_scene`, `read_log`, `own_sink` (a sink of one's own) and `own_term` (an energy term of one's own).
+//! `tests/examples/` continues: `run_scene`, `read_log`, `own_sink` (a sink of one's own) and `own_term` (an energy term of one's own).
 //!
 //! # Features
 //!

@@ -7,7 +7,7 @@ pub use crate::digest::Hash;
 use crate::scene::Stage;
 pub use crate::spline::Mesh;
 
-/// A run between two stages.
+/// The state of a run between two stages: all that decides its future.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Geometry and spline space that the displacement belongs to.
@@ -34,8 +34,8 @@ pub struct State {
     pub negative_pivots: u64,
     /// What the drive remembers from step to step.
     pub drive: DriveMemory,
-    /// The largest force that residuals were held against so far, N; 0 before the first equilibrium, and in states that
-    /// were logged before residuals were held against it.
+    /// The largest force that residuals were compared with so far, N; 0 before the first equilibrium, and in states that
+    /// were logged before residuals were compared with it.
     pub largest_force_n: f64,
     /// What the last refinement changed, and ripples since; `None` before the first, and where the shell jumped on it.
     pub refinement: Option<Refinement>,
@@ -44,7 +44,7 @@ pub struct State {
 /// What a refinement changed at a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refinement {
-    /// Magnitudes of what integrating anew and re-equilibrating changed the strain energy by, N·mm.
+    /// Magnitudes of what integrating again and re-equilibrating changed the strain energy by, N·mm.
     pub changed_n_mm: f64,
     /// Elements that it added, as a share of those before.
     pub growth: f64,
@@ -93,7 +93,7 @@ impl DriveMemory {
 /// drive has made a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Course {
-    /// In no way that goes on: the shell is undeformed, or it jumped since.
+    /// In no way that continues: the shell is undeformed, or it jumped since.
     #[default]
     Unknown,
     /// By moving the load on from the equilibrium before.
@@ -175,8 +175,8 @@ pub struct StepControl {
     /// The scene's increment is divided by 2 to this power; negative where it has grown.
     pub halvings: i32,
     /// A rotation beyond the present one that is known to lie past a jump, degrees.
-    pub jump_seen_at_deg: Option<f64>,
-    /// Why the last solve left the state where it was; `None` where it went on.
+    pub jump_beyond: Option<f64>,
+    /// Why the last solve left the state where it was; `None` where it continued.
     pub rejection: Option<Rejection>,
 }
 
@@ -210,7 +210,7 @@ impl MeshHash {
 }
 
 impl State {
-    /// Of an undeformed shell, before the first step.
+    /// The state of an undeformed shell, before the first step.
     pub fn undeformed(mesh: Mesh) -> Self {
         Self {
             displacement: vec![[0.0; 3]; mesh.control_points.len()],
@@ -290,11 +290,11 @@ impl State {
 
 impl StepControl {
     fn feed(&self, feed: &mut Feed) {
-        let Self { halvings, jump_seen_at_deg, rejection } = self;
+        let Self { halvings, jump_beyond, rejection } = self;
         // As 32 bits without a sign: they had none before increments could grow.
         feed.integer(u64::from(halvings.cast_unsigned()));
-        feed.integer(u64::from(jump_seen_at_deg.is_some()));
-        feed.number(jump_seen_at_deg.unwrap_or(0.0));
+        feed.integer(u64::from(jump_beyond.is_some()));
+        feed.number(jump_beyond.unwrap_or(0.0));
         feed.integer(match rejection {
             None => 0,
             Some(Rejection::NoEquilibrium) => 1,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::adapt::project_displacements;
 use crate::energy::TermSource;
-use crate::equilibrium::{LinearBuckling, LinearRelease, Standing, Workspace};
+use crate::equilibrium::{Configuration, LinearBuckling, LinearRelease, Workspace};
 use crate::model::MOST_CONTROL_POINTS;
 use crate::scene::Scene;
 use crate::shell::norm;
@@ -74,7 +74,7 @@ impl Halved {
         let displacement = project_displacements(mesh, &finer, &state.displacement);
         let mut work = Workspace::with_terms(scene, &finer, own).ok()?;
         let integrated = work.energy(&displacement, state.parameter);
-        let at = Standing { displacement: &displacement, ..Standing::of(state) };
+        let at = Configuration { displacement: &displacement, ..Configuration::of(state) };
         let held = work.energy(&vec![[0.0; 3]; displacement.len()], state.parameter);
         let relaxed = work.linear_release(at).ok()?;
         let energy = state.strain_energy_n_mm / scene.symmetry.copies() as f64;
@@ -85,16 +85,16 @@ impl Halved {
         Some(Self { work, halving, relaxed, parameter: state.parameter, largest_force: state.largest_force_n })
     }
 
-    /// What halving changes of the energy.
+    /// Solves on the halved mesh and returns what that changes of the energy.
     pub fn halving(&self) -> Halving {
         self.halving
     }
 
     /// The workspace of the halved mesh and the relaxed shape on it.
-    pub fn relaxed(&mut self) -> (&mut Workspace, Standing<'_>) {
+    pub fn relaxed(&mut self) -> (&mut Workspace, Configuration<'_>) {
         let LinearRelease { displacement, turns, .. } = &self.relaxed;
         let Self { parameter, largest_force, .. } = *self;
-        (&mut self.work, Standing { displacement, turns, parameter, largest_force })
+        (&mut self.work, Configuration { displacement, turns, parameter, largest_force })
     }
 
     /// How the shell has buckled on the halved mesh, if it has.

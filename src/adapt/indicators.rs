@@ -27,7 +27,7 @@ const WORST_FIRST: f64 = 0.5;
 /// curvature 1/R has √(R t).
 const LONGEST: f64 = 3.0;
 
-/// What the indicators say of a state.
+/// Indicators of a state and the knots that they mark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Indicators {
     /// Largest r_i each way, dimensionless.
@@ -89,7 +89,7 @@ fn spans_where(elements: Grid, axis: usize, holds: impl Fn(usize, usize) -> bool
     spans
 }
 
-/// The indicators beside what they are held against.
+/// The indicators beside what they are compared with.
 struct Judged<'a> {
     adapt: &'a Adapt,
     /// Elements are not halved below this each way, mm.

@@ -183,7 +183,7 @@ fn compared(comparison: &Comparison) -> String {
 }
 
 fn told(report: &SnapReport, parameter: Parameter) -> String {
-    let [below, beyond] = report.bracket_deg;
+    let [below, beyond] = report.bracket;
     let [before, after] = report.moment_n_mm;
     let [stable, most, end] = report.negative_pivots;
     let at = place_mm(report.mode_at);

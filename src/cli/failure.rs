@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::history::{ConditionError, NothingStands, ReplayError, SnapError, StabilityError};
+use crate::history::{ConditionError, NothingKept, ReplayError, SnapError, StabilityError};
 use crate::model::ModelError;
 use crate::pipeline::Parameter;
 use crate::printable::one_line;
@@ -40,11 +40,11 @@ pub(super) enum Failure {
     #[error("{rendered}")]
     WrongScene { rendered: String },
     #[error(
-        "--until {until_deg} is beyond the {} that the scene asks for; raise `{}` there",
+        "--until {until} is beyond the {} that the scene asks for; raise `{}` there",
         Parameter::of(scene).shown(scene.load.target()),
         if scene.end_rotation().is_some() { "load.rotation_deg" } else { "load.factor" }
     )]
-    UntilBeyondScene { until_deg: f64, scene: Box<Scene> },
+    UntilBeyondScene { until: f64, scene: Box<Scene> },
     #[error("cannot use the log {}", log.display())]
     WrongLog { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
     #[error("{} has no load step {step}; {}", log.display(), known_steps(*known))]
@@ -73,7 +73,7 @@ pub(super) enum Failure {
     #[error(transparent)]
     Model(#[from] ModelError),
     #[error(transparent)]
-    NothingStands(#[from] NothingStands),
+    NothingKept(#[from] NothingKept),
     #[error("the log {} cannot be resumed", log.display())]
     Resume { log: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
     #[error("load step {step} of {} has no {stage}; it has {}", log.display(), known.join(", "))]
@@ -150,7 +150,7 @@ impl Failure {
             // Has its own head.
             Failure::WrongScene { rendered } => return rendered.trim_end().to_string(),
             // A line for each change.
-            Failure::NothingStands(_) => format!("foldline: {self}"),
+            Failure::NothingKept(_) => format!("foldline: {self}"),
             _ => format!("foldline: {}", one_line(&self.to_string())),
         };
         let mut cause = std::error::Error::source(self);

@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     /// Print a JSON object for each stage
     #[arg(long)]
     json: bool,
-    /// Read the probes of the last scene anew on every equilibrium: also on those that were run without them
+    /// Read the probes of the last scene again on every equilibrium: also on those that were run without them
     #[arg(long)]
     probes: bool,
 }

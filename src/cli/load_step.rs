@@ -12,7 +12,7 @@ pub(super) struct LoadStep {
     elements_before: [usize; 2],
     iterations: usize,
     wall_s: f64,
-    /// Solves turned down on the way: without equilibrium, for a jump or an unstable shape on the way, for a critical point, for a sharp turn.
+    /// Solves rejected on the way: without equilibrium, for a jump or an unstable shape on the way, for a critical point, for a sharp turn.
     rejected: [usize; 4],
     /// What the step passed on its path.
     passed: Option<CriticalPoint>,

@@ -196,7 +196,7 @@ pub(super) fn older_scene(log: &Log, is_older: bool) -> Option<String> {
     ))
 }
 
-/// The scene that the log was last gone on with.
+/// The scene that the log was last continued with.
 pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
     let stages = log.commits();
     if log.last_manifest_is_lost() {
@@ -210,7 +210,7 @@ pub(super) fn scene_of(log: &Log, path: &Path) -> Result<Scene, Failure> {
     }
 }
 
-/// The scene that stage `index` was run with, with settings laid over it.
+/// The scene that stage `index` was run with, with settings applied to it.
 pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]) -> Result<Scene, Failure> {
     logged_scene(log, index, settings, &[]).map_err(|error| match error {
         LoggedSceneError::Lost { ordinal } => Failure::SceneLost { log: path.to_path_buf(), ordinal },

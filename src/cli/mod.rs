@@ -8,7 +8,7 @@
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | what a log is asked |
 //! | `recover`, `thin` | a log written again |
-//! | `bench`, `converge`, `study`, `stress` | suites, and how fast and exact runs are |
+//! | `bench`, `converge`, `study`, `extremes` | suites, and how fast and exact runs are |
 //! | `help` | help on subcommands and topics |
 //! | `scene_file`, `log_file`, `asked` | what is read: scenes, logs, some stages of a log |
 //! | `session` | threads, signals, the log of a run under way |
@@ -21,6 +21,7 @@ mod asked;
 mod bench;
 mod bisect;
 mod converge;
+mod extremes;
 mod failure;
 mod help;
 mod inspect;
@@ -39,7 +40,6 @@ mod scene_file;
 mod session;
 mod stability;
 mod stage_table;
-mod stress;
 mod study;
 mod thin;
 mod trace;
@@ -51,10 +51,10 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::{EXIT_CODES, Failure};
 
+pub use extremes::ExtremesTable;
 pub use json_line::json_line;
 pub use progress::{Manner, Shown};
 pub use stage_table::{stage_table, step_in_full};
-pub use stress::StressTable;
 
 /// Thin shells that fold, simulated as a pipeline of restartable stages
 #[derive(Parser, Debug)]
@@ -79,7 +79,8 @@ enum Command {
     Bench(bench::Arguments),
     Converge(converge::Arguments),
     Study(study::Arguments),
-    Stress(stress::Arguments),
+    #[command(alias = "stress")]
+    Extremes(extremes::Arguments),
     Help(help::Arguments),
 }
 
@@ -108,7 +109,7 @@ impl Command {
             Command::Converge(arguments) => arguments.run().map(|()| 0),
             Command::Study(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
-            Command::Stress(arguments) => arguments.run(),
+            Command::Extremes(arguments) => arguments.run(),
             Command::Help(arguments) => arguments.run(Arguments::command()).map(|()| 0),
         }
     }

@@ -1,4 +1,4 @@
-//! What probes measure on the equilibria of a log, be they in it or read anew.
+//! What probes measure on the equilibria of a log, be they in it or read again.
 
 use super::json_line::json_line;
 use crate::pipeline::{Parameter, Reading, Record};

@@ -1,4 +1,4 @@
-//! What a run shows while it goes on: a live line on a terminal, a plain line for each load step otherwise, JSON lines
+//! What a run shows while it continues: a live line on a terminal, a plain line for each load step otherwise, JSON lines
 //! for programs, or nothing.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
@@ -52,7 +52,7 @@ enum Display<'a> {
     Quiet,
     Live {
         bar: ProgressBar,
-        target_deg: f64,
+        target: f64,
         gatherer: Gatherer,
     },
     Lines {
@@ -66,13 +66,11 @@ enum Display<'a> {
 impl<'a, S: Sink> Shown<'a, S> {
     /// Shows a run of `scene` from a rotation (0, or where it is taken up again) to another, degrees, to the streams
     /// of this process.
-    pub fn new(inner: S, manner: Manner, scene: &Scene, [start_deg, target_deg]: [f64; 2]) -> Self {
+    pub fn new(inner: S, manner: Manner, scene: &Scene, [start, target]: [f64; 2]) -> Self {
         let gatherer = Gatherer::new(scene);
         let display = match manner {
             Manner::Quiet => Display::Quiet,
-            Manner::Live => {
-                Display::Live { bar: live_bar(Parameter::of(scene), target_deg, start_deg), target_deg, gatherer }
-            }
+            Manner::Live => Display::Live { bar: live_bar(Parameter::of(scene), target, start), target, gatherer },
             Manner::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
             Manner::Json => Display::Json(Some(Box::new(io::stdout()))),
         };
@@ -113,13 +111,13 @@ impl<'a, S: Sink> Shown<'a, S> {
         let warnings = self.new_warnings(record);
         match &mut self.display {
             Display::Quiet => {}
-            Display::Live { bar, target_deg, gatherer } => {
+            Display::Live { bar, target, gatherer } => {
                 for step in gatherer.take(record).into_iter().filter(|step| step.is_eventful()) {
                     bar.println(printable(&step.line()));
                 }
                 warnings.iter().for_each(|line| bar.println(printable(line)));
                 bar.set_position(thousandths(record.report.parameter));
-                bar.set_prefix(live_prefix(record.report.driven_by, record.report.parameter, *target_deg));
+                bar.set_prefix(live_prefix(record.report.driven_by, record.report.parameter, *target));
                 bar.set_message(live_message(&record.report));
             }
             Display::Lines { out, gatherer } => {
@@ -132,7 +130,7 @@ impl<'a, S: Sink> Shown<'a, S> {
                 let Some(open) = out else { return Ok(()) };
                 match writeln!(open, "{}", escaped(json_line(record))).and_then(|()| open.flush()) {
                     Ok(()) => {}
-                    // The reader has seen enough. The log is what the run is for, so it goes on.
+                    // The reader has seen enough. The log is what the run is for, so it continues.
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => *out = None,
                     Err(error) => {
                         let context = format!(
@@ -181,13 +179,13 @@ fn thousandths(parameter: f64) -> u64 {
     (parameter * 1000.0).max(0.0) as u64
 }
 
-fn live_bar(driven_by: Parameter, target_deg: f64, start_deg: f64) -> ProgressBar {
+fn live_bar(driven_by: Parameter, target: f64, start: f64) -> ProgressBar {
     let template = "{prefix}  {bar:10}  {wide_msg}  {elapsed}, {eta} left";
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    let bar = ProgressBar::with_draw_target(Some(thousandths(target_deg)), ProgressDrawTarget::stderr())
+    let bar = ProgressBar::with_draw_target(Some(thousandths(target)), ProgressDrawTarget::stderr())
         .with_style(style.progress_chars("━╸─"))
-        .with_prefix(live_prefix(driven_by, start_deg, target_deg))
-        .with_position(thousandths(start_deg));
+        .with_prefix(live_prefix(driven_by, start, target))
+        .with_position(thousandths(start));
     bar.reset_eta();
     // It takes a thread, and does not bear that there is none.
     if std::thread::Builder::new().spawn(|| {}).is_ok() {

@@ -1,4 +1,4 @@
-//! `foldline resume`: goes on with a log from its last good stage.
+//! `foldline resume`: continues a log from its last good stage.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ use crate::units::count;
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
-    /// Log to go on with (MCAP)
+    /// Log to continue (MCAP)
     log: PathBuf,
     /// Stop after the first step at or beyond this rotation of each end, in degrees, or this load factor
     #[arg(long, value_name = "AT", value_parser = super::session::positive, allow_negative_numbers = true)]
@@ -42,13 +42,13 @@ impl Arguments {
     pub(super) fn run(self) -> Result<(), Failure> {
         let old = OldLog::open(&self.log)?;
         let scene = scene_of(old.claim.log(), &self.log)?;
-        if let Some(until_deg) = self.until.filter(|until| *until > scene.load.target()) {
-            return Err(Failure::UntilBeyondScene { until_deg, scene: Box::new(scene) });
+        if let Some(until) = self.until.filter(|until| *until > scene.load.target()) {
+            return Err(Failure::UntilBeyondScene { until, scene: Box::new(scene) });
         }
         let options = RunOptions {
             log: self.log,
             threads: self.threads.map(usize::from),
-            until_deg: self.until,
+            until: self.until,
             manner: Manner::of(self.quiet, self.json),
         };
         let last = old.claim.log().manifests().last();
@@ -129,8 +129,8 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let run = Run::new(stages, basis.state, basis.commit);
     let reached = run.state().parameter;
     let shown = Parameter::of(&scene).shown(reached);
-    let until_deg = options.until_deg;
-    let next = run.next_stage().filter(|_| until_deg.is_none_or(|until| reached < until));
+    let until = options.until;
+    let next = run.next_stage().filter(|_| until.is_none_or(|until| reached < until));
     match next {
         Some(stage) => findings.push(format!("goes on from {shown} with {stage}")),
         None => findings.push(format!("nothing to do: the log has reached {shown}")),
@@ -139,7 +139,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
         findings.iter().for_each(|line| say(line));
     }
     let finished = log.completeness() == Completeness::Finished && plan.keep == all;
-    // One that lost its summary is closed anew.
+    // One that lost its summary is closed again.
     if next.is_none() && finished && log.has_summary() && !log.last_manifest_is_lost() {
         return options.sum_up(&Summary::new(&scene, &before));
     }
@@ -150,7 +150,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     options.sum_up(&Summary::new(&scene, &[before, records].concat()))
 }
 
-/// The scene that a log was last gone on with, and what is said where it is lost and `scene` takes its place.
+/// The scene that a log was last continued with, and what is said where it is lost and `scene` takes its place.
 fn scene_before(log: &Log, path: &Path, scene: &Scene) -> Result<(Scene, Option<String>), Failure> {
     match scene_of(log, path) {
         Err(lost @ (Failure::SceneLost { .. } | Failure::NoScene { .. })) => {
@@ -178,7 +178,7 @@ fn stages_without(log: &Log, scene: &Scene) -> Option<String> {
     stages_in_words(&stages)
 }
 
-/// Puts the scene of lost stretches back into the log, which goes on with that of its last stages as before.
+/// Puts the scene of lost stretches back into the log, which continues with that of its last stages as before.
 fn put_back(
     claim: Resume,
     stages: &str,

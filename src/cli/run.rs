@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     /// Threads; the result is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Stop after the first step at or beyond this rotation of each end, in degrees, or this load factor; `resume` goes on
+    /// Stop after the first step at or beyond this rotation of each end, in degrees, or this load factor; `resume` continues
     /// from there
     #[arg(long, value_name = "AT", value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
@@ -55,13 +55,13 @@ impl Arguments {
     /// Checks everything that can be checked before the run.
     pub(super) fn prepare(self) -> Result<Job, Failure> {
         let scene = read_scene(&self.scene)?;
-        if let Some(until_deg) = self.until.filter(|until| *until > scene.scene.load.target()) {
-            return Err(Failure::UntilBeyondScene { until_deg, scene: Box::new(scene.scene) });
+        if let Some(until) = self.until.filter(|until| *until > scene.scene.load.target()) {
+            return Err(Failure::UntilBeyondScene { until, scene: Box::new(scene.scene) });
         }
         let options = RunOptions {
             log: self.output.unwrap_or_else(|| default_log(&self.scene)),
             threads: self.threads.map(usize::from),
-            until_deg: self.until,
+            until: self.until,
             manner: Manner::of(self.quiet, self.json),
         };
         Ok(Job { file: self.scene, scene, options, resume: self.resume })
@@ -89,7 +89,7 @@ impl Job {
         let writer = begin(&options.log, &manifest, scene.output.sync)
             .map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         if options.is_shown() {
-            let to = options.until_deg.unwrap_or(scene.load.target());
+            let to = options.until.unwrap_or(scene.load.target());
             let to = match Parameter::of(&scene) {
                 Parameter::Rotation => format!("{}°", rounded(to)),
                 Parameter::LoadFactor => format!("load factor {}", rounded(to)),

@@ -61,7 +61,7 @@ fn text_of(bytes: Vec<u8>) -> Result<String, String> {
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
-/// Checks the text of a scene, with settings `section.key=value` laid over it.
+/// Checks the text of a scene, with settings `section.key=value` applied to it.
 pub(super) fn checked(text: &str, name: &str, settings: &[String]) -> Result<Scene, Failure> {
     let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
     parse_with_settings(text, name, &settings).map_err(|error| Failure::WrongScene { rendered: rendered(&error) })

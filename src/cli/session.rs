@@ -26,7 +26,7 @@ pub(super) struct RunOptions {
     /// Threads of the assembly; `None` takes one for each core.
     pub(super) threads: Option<usize>,
     /// Rotation at which the run stops early, degrees.
-    pub(super) until_deg: Option<f64>,
+    pub(super) until: Option<f64>,
     /// How the run is shown.
     pub(super) manner: Manner,
 }
@@ -133,14 +133,14 @@ pub(super) fn drive(
     options: &RunOptions,
     raised: &AtomicBool,
 ) -> Result<Vec<Record>, Failure> {
-    let start_deg = run.state().parameter;
+    let start = run.state().parameter;
     let writer = match scene.output.mesh_history {
         true => writer.with_viewer(Box::new(MeshHistory::new(scene))),
         false => writer,
     };
-    let target_deg = options.until_deg.unwrap_or(scene.load.target());
-    let mut sink = Shown::new(writer, options.manner, scene, [start_deg, target_deg]);
-    let ending = run.to_end(options.until_deg, &|| raised.load(Ordering::Relaxed), &mut sink);
+    let target = options.until.unwrap_or(scene.load.target());
+    let mut sink = Shown::new(writer, options.manner, scene, [start, target]);
+    let ending = run.to_end(options.until, &|| raised.load(Ordering::Relaxed), &mut sink);
     let (writer, records) = sink.finish();
     let log = || options.log.clone();
     let keeps = writer.is_still_there();

@@ -30,7 +30,7 @@ const COLUMNS: [Column; 14] = [
 /// A row a stage, in columns that are as wide as they need to be; a run of a thousand stages fits 120 characters.
 ///
 /// `mesh` is elements along the length × along the arc, `free` the free unknowns, `neg` the negative pivots; blank is
-/// zero. The last column says what else happened; ✗ is a solve turned down, at the rotation that it tried, ! a warning.
+/// zero. The last column says what else happened; ✗ is a solve rejected, at the rotation that it tried, ! a warning.
 pub fn stage_table(records: &[Record]) -> String {
     let steps = records.first().is_some_and(|record| record.report.driven_by == Parameter::LoadFactor);
     // Where no ends turn, the first probe stands in the place of their moment: of the last scene, which may have others.

@@ -31,7 +31,7 @@ impl Discretization {
         Self::with_terms(scene, mesh, &[])
     }
 
-    /// The same with terms of the caller's own.
+    /// Builds the same with terms of the caller's own.
     ///
     /// # Errors
     /// Where supports, loads or those terms do not fit the mesh.
@@ -39,7 +39,7 @@ impl Discretization {
         Self::with_unknowns(scene, mesh, Unknowns::new(scene, mesh)?, own)
     }
 
-    /// The same where the unknowns of scene and mesh are known.
+    /// Builds the same where the unknowns of scene and mesh are known.
     ///
     /// # Errors
     /// Where loads or terms do not fit the mesh.

@@ -61,7 +61,7 @@ impl<const ROWS: usize, const SIZE: usize> Derivatives<ROWS, SIZE> {
 }
 
 impl ElementBuffers {
-    /// Buffers for `padded` basis functions.
+    /// Allocates buffers for elements of `padded` basis functions.
     pub fn new(padded: usize) -> Self {
         Self {
             displacement: vec![0.0; 3 * padded],
@@ -76,7 +76,7 @@ impl ElementBuffers {
     }
 }
 
-/// How much of an element is wanted.
+/// What of an element is computed: energy, residual, or stiffness as well.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Want {
     /// Energy only.

@@ -41,7 +41,7 @@ pub fn check_balance(
         if on_free.norm() > BALANCE * all {
             let motion = DMatrix::from_column_slice(6, 1, (&on_free / on_free.norm()).as_slice());
             return Err(ModelError::Unbalanced {
-                support: unknowns.supports().traces[held.support].name.clone(),
+                support: unknowns.supports().footprints[held.support].name.clone(),
                 motion: held.free.body.words(&motion),
                 share: on_free.norm() / all,
                 load_factor,
@@ -52,7 +52,7 @@ pub fn check_balance(
         let [_, by_terms] = held.free.parted_by_terms(scene, mesh, own)?;
         if by_terms.basis.ncols() > 0 {
             return Err(ModelError::HeldByTerms {
-                support: unknowns.supports().traces[held.support].name.clone(),
+                support: unknowns.supports().footprints[held.support].name.clone(),
                 motion: by_terms.body.words(&by_terms.basis),
             });
         }

@@ -29,7 +29,7 @@ pub fn remarks(
     own: &[Arc<dyn TermSource>],
 ) -> Result<Vec<String>, ModelError> {
     let supports = unknowns.supports().held_motions.iter().map(|held| {
-        let name = &unknowns.supports().traces[held.support].name;
+        let name = &unknowns.supports().footprints[held.support].name;
         let motions = match held.free.basis.ncols() {
             6 => "all six rigid motions".into(),
             count => format!("{count} of the six rigid motions"),

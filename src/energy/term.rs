@@ -150,7 +150,7 @@ impl Tangent<'_> {
         }
     }
 
-    /// Takes ∂f_i/∂u_j, N/mm.
+    /// Adds ∂f_i/∂u_j, N/mm.
     ///
     /// # Panics
     /// Where the control points neither share an element nor are among the term's own [`Term::pairs`].
@@ -262,17 +262,17 @@ impl Terms {
         self.list.push(Named { name: name.to_owned(), term });
     }
 
-    /// Each of them.
+    /// Iterates over the terms.
     pub fn iter(&self) -> impl Iterator<Item = &dyn Term> {
         self.list.iter().map(|named| &*named.term)
     }
 
-    /// Whether there are none.
+    /// Whether there are no terms.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Whether a tangent is not symmetric.
+    /// Whether the tangent of any term is not symmetric.
     pub fn have_skew(&self) -> bool {
         self.iter().any(Term::has_skew)
     }
@@ -282,12 +282,12 @@ impl Terms {
         self.iter().flat_map(Term::pairs).collect()
     }
 
-    /// Energy that each stores in the model, N·mm.
+    /// Energy that each term stores in the model, N·mm.
     pub fn energies(&self, at: At) -> Vec<f64> {
         self.iter().map(|term| term.energy(at)).collect()
     }
 
-    /// Energy that they store in the model, N·mm.
+    /// Energy that all terms store in the model, N·mm.
     pub fn energy(&self, at: At) -> f64 {
         self.iter().map(|term| term.energy(at)).sum::<f64>() + 0.0
     }

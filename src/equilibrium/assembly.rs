@@ -27,7 +27,7 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// Buffers for a mesh.
+    /// Allocates the sums for a mesh.
     pub fn new(discretization: &Discretization) -> Self {
         let stiffness = Blocks::zeros(&discretization.blocks);
         let residual = vec![[0.0; 3]; discretization.blocks.points()];

@@ -4,7 +4,7 @@
 //! Computations*, 4th ed., section 8.2). Both approach from inside, so that the ratio is a lower bound; a few per
 //! cent of it are of no interest, and the iterations stop there.
 
-use crate::equilibrium::configuration::Standing;
+use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::{Formed, Workspace};
@@ -25,11 +25,11 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// Of the stiffness at a state.
+    /// Finds the extreme eigenvalues of the stiffness at a state.
     ///
     /// # Errors
     /// Where the stiffness has no factor.
-    pub fn at(work: &mut Workspace, at: Standing) -> Result<Self, SolveError> {
+    pub fn at(work: &mut Workspace, at: Configuration) -> Result<Self, SolveError> {
         let Formed { tangent, configuration, .. } = work.form_at(at);
         let (matrix, count) = (tangent.matrix(), configuration.free.len());
         tangent.factorize_formed()?;
@@ -43,7 +43,7 @@ impl Condition {
         Ok(Self { largest, smallest: 1.0 / smallest })
     }
 
-    /// Ratio of the largest to the smallest.
+    /// Condition number: ratio of the largest eigenvalue to the smallest.
     pub fn number(&self) -> f64 {
         self.largest / self.smallest
     }
@@ -91,7 +91,7 @@ mod tests {
         for (size, parameter) in [(0.0, 0.0), (0.5, 5.0)] {
             let free: Vec<f64> = (0..count).map(|i| size * ((i * 7919 % 1013) as f64 / 1013.0 - 0.5)).collect();
             let displacement = work.discretization.unknowns.place(&free, parameter).displacement();
-            let at = Standing { displacement: &displacement, turns: &[], parameter, largest_force: 0.0 };
+            let at = Configuration { displacement: &displacement, turns: &[], parameter, largest_force: 0.0 };
             let found = Condition::at(&mut work, at).unwrap();
             let matrix = work.form_at(at).tangent.matrix();
             let dense = DMatrix::from_fn(count, count, |row, column| {

@@ -1,11 +1,11 @@
-//! Where a shell stands: as a state says it, and in the coordinates that solves work with.
+//! A configuration of the shell: as a state holds it, and in the coordinates that solves work with.
 
 use crate::model::{Placement, Unknowns};
 use crate::state::State;
 
-/// Where a solve starts from.
+/// Displacements, section rotations and parameter, borrowed from a state.
 #[derive(Clone, Copy, Debug)]
-pub struct Standing<'s> {
+pub struct Configuration<'s> {
     /// Displacement of the control points, mm.
     pub displacement: &'s [[f64; 3]],
     /// Rotation vectors of the rigid sections where one of them turns freely; empty otherwise.
@@ -16,8 +16,8 @@ pub struct Standing<'s> {
     pub largest_force: f64,
 }
 
-impl<'s> Standing<'s> {
-    /// A state.
+impl<'s> Configuration<'s> {
+    /// The configuration of a state.
     pub fn of(state: &'s State) -> Self {
         Self {
             displacement: &state.displacement,
@@ -27,15 +27,15 @@ impl<'s> Standing<'s> {
         }
     }
 
-    /// Its free unknowns.
+    /// The free unknowns of the configuration.
     pub fn free(&self, unknowns: &Unknowns) -> Vec<f64> {
         unknowns.of_displacement(self.displacement, self.turns, self.parameter)
     }
 }
 
-/// A point in the coordinates of a mesh.
+/// A configuration in the coordinates of a mesh: its free unknowns.
 #[derive(Debug)]
-pub struct Configuration<'u> {
+pub struct Coordinates<'u> {
     /// The scene's parameter.
     pub parameter: f64,
     /// Free unknowns.
@@ -46,15 +46,15 @@ pub struct Configuration<'u> {
     pub displacement: Vec<[f64; 3]>,
 }
 
-impl<'u> Configuration<'u> {
-    /// At free unknowns.
+impl<'u> Coordinates<'u> {
+    /// The configuration at these free unknowns.
     pub fn at(unknowns: &'u Unknowns, free: Vec<f64>, parameter: f64) -> Self {
         let placement = unknowns.place(&free, parameter);
         Self { parameter, displacement: placement.displacement(), free, placement }
     }
 
-    /// Of a standing, with its displacement to the bit: the unknowns give that to rounding.
-    pub fn of(unknowns: &'u Unknowns, at: Standing) -> Self {
+    /// The coordinates of a configuration, whose displacement is kept to the bit: the unknowns give it to rounding only.
+    pub fn of(unknowns: &'u Unknowns, at: Configuration) -> Self {
         let free = at.free(unknowns);
         let placement = unknowns.place(&free, at.parameter);
         Self { parameter: at.parameter, displacement: at.displacement.to_vec(), free, placement }

@@ -9,7 +9,7 @@
 //! Lengths are of displacements alone, λ has no weight (Crisfield's cylindrical choice): λ may be degrees or a load factor,
 //! and a prescribed motion shows in the displacements anyway. See [`Metric`] for how they are measured.
 
-use crate::equilibrium::configuration::Standing;
+use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::equations::{Equations, Point};
 use crate::equilibrium::iterate::{Effort, Observer};
 use crate::equilibrium::ledger::Before;
@@ -54,7 +54,7 @@ pub struct ContinuedPoint {
     pub chord: f64,
 }
 
-/// Which way the path goes on from a point.
+/// Which way the path continues from a point.
 #[derive(Clone, Copy, Debug)]
 pub enum Sense<'s> {
     /// With a growing (or falling) parameter.
@@ -91,7 +91,7 @@ pub struct Continuation<'a> {
 }
 
 impl<'a> Continuation<'a> {
-    /// Works in these buffers.
+    /// Creates a continuation that uses the buffers of `work`.
     pub fn new(scene: &'a Scene, work: &'a mut Workspace) -> Self {
         let metric = Metric::new(&work.discretization.mesh);
         Self { scene, work, metric }
@@ -101,20 +101,20 @@ impl<'a> Continuation<'a> {
     ///
     /// # Errors
     /// Where no equilibrium is found in a few iterations, or nothing moves.
-    pub fn begin(&mut self, from: Standing, to: f64, observer: Observer) -> Result<ContinuedPoint, SolveError> {
+    pub fn begin(&mut self, from: Configuration, to: f64, observer: Observer) -> Result<ContinuedPoint, SolveError> {
         let (tangent, free) = self.tangent_at(from, Sense::Parameter { grows: to > from.parameter })?;
         let distance = (to - from.parameter) / tangent.direction.parameter;
         let start = (along(&free, &tangent.free, distance), to);
         self.solve(from, &tangent.direction, start, &Constraint::Parameter(to), None, observer)
     }
 
-    /// A step of this length, in the sense of `heading`.
+    /// Makes a step of this length, in the sense of `heading`.
     ///
     /// # Errors
     /// Where no equilibrium is found in a few iterations.
     pub fn step(
         &mut self,
-        from: Standing,
+        from: Configuration,
         heading: &[[f64; 3]],
         distance: f64,
         observer: Observer,
@@ -127,20 +127,20 @@ impl<'a> Continuation<'a> {
 
     /// A step to a value of the parameter at which a history has a corner. The path may turn there by any angle, back on
     /// itself where what drove the shell stops and something else sets in: the heading at the end is that beyond the
-    /// corner, where the parameter goes on as before; where nothing moves beyond, that by which the path came.
+    /// corner, where the parameter continues as before; where nothing moves beyond, that by which the path came.
     ///
     /// # Errors
     /// Where no equilibrium is found in a few iterations.
     pub fn step_to_corner(
         &mut self,
-        from: Standing,
+        from: Configuration,
         parameter: f64,
         observer: Observer,
     ) -> Result<ContinuedPoint, SolveError> {
         let point = self.begin(from, parameter, observer)?;
         let Solved { displacement, turns, largest_force, .. } = &point.solved;
         let sense = Sense::Parameter { grows: parameter > from.parameter };
-        let there = Standing { displacement, turns, parameter, largest_force: *largest_force };
+        let there = Configuration { displacement, turns, parameter, largest_force: *largest_force };
         let heading = match self.heading_at(there, sense) {
             Err(SolveError::NothingMoves { .. }) => point.heading.clone(),
             found => found?,
@@ -154,7 +154,7 @@ impl<'a> Continuation<'a> {
     /// Where no equilibrium is found in a few iterations.
     pub fn step_to(
         &mut self,
-        from: Standing,
+        from: Configuration,
         beyond: &ContinuedPoint,
         parameter: f64,
         observer: Observer,
@@ -166,7 +166,7 @@ impl<'a> Continuation<'a> {
         };
         let displacement = &between(from.displacement, &beyond.solved.displacement);
         let turns = &between(from.turns, &beyond.solved.turns);
-        let free = Standing { displacement, turns, parameter, ..from }.free(&self.work.discretization.unknowns);
+        let free = Configuration { displacement, turns, parameter, ..from }.free(&self.work.discretization.unknowns);
         self.solve(from, &tangent.direction, (free, parameter), &Constraint::Parameter(parameter), None, observer)
     }
 
@@ -176,7 +176,7 @@ impl<'a> Continuation<'a> {
     /// Where none is found in a few iterations.
     pub fn correct(
         &mut self,
-        from: Standing,
+        from: Configuration,
         heading: &Direction,
         held: bool,
         observer: Observer,
@@ -190,7 +190,7 @@ impl<'a> Continuation<'a> {
     ///
     /// # Errors
     /// Where the stiffness has no factor, or nothing moves.
-    pub fn heading_at(&mut self, at: Standing, sense: Sense) -> Result<Direction, SolveError> {
+    pub fn heading_at(&mut self, at: Configuration, sense: Sense) -> Result<Direction, SolveError> {
         self.tangent_at(at, sense).map(|(tangent, _)| tangent.direction)
     }
 
@@ -200,17 +200,17 @@ impl<'a> Continuation<'a> {
     }
 
     /// Tangent at an equilibrium, and its free unknowns.
-    fn tangent_at(&mut self, at: Standing, sense: Sense) -> Result<(Tangent, Vec<f64>), SolveError> {
+    fn tangent_at(&mut self, at: Configuration, sense: Sense) -> Result<(Tangent, Vec<f64>), SolveError> {
         let mut equations = Equations::factored_at(self.work, at)?;
-        let point = equations.at_standing(at)?;
+        let point = equations.at_configuration(at)?;
         let tangent = tangent(&mut equations, &point, &self.metric, sense)?;
         Ok((tangent, point.here.free))
     }
 
-    /// `onwards` tells which way the path goes on; otherwise the chord from `from` does.
+    /// `onwards` tells which way the path continues; otherwise the chord from `from` does.
     fn solve(
         &mut self,
-        from: Standing,
+        from: Configuration,
         heading: &Direction,
         (mut free, mut parameter): (Vec<f64>, f64),
         constraint: &Constraint,

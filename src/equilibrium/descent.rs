@@ -33,7 +33,7 @@
 
 use crate::energy::{Discretization, Want};
 use crate::equilibrium::assembly::Assembled;
-use crate::equilibrium::configuration::{Configuration, Standing};
+use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::ledger::Before;
@@ -59,7 +59,7 @@ const MAX_DOUBLINGS: usize = 6;
 
 /// A descent under way: residual and stiffness are assembled at the point in hand.
 pub(super) struct Descent<'a> {
-    here: Configuration<'a>,
+    here: Coordinates<'a>,
     discretization: &'a Discretization,
     assembled: &'a mut Assembled,
     tangent: &'a mut TangentStiffness,
@@ -106,10 +106,10 @@ impl Start {
 
 impl<'a> Descent<'a> {
     /// At these unknowns, on the way from a state.
-    pub(super) fn new(workspace: &'a mut Workspace, from: Standing, parameter: f64, free: Vec<f64>) -> Self {
+    pub(super) fn new(workspace: &'a mut Workspace, from: Configuration, parameter: f64, free: Vec<f64>) -> Self {
         let Workspace { discretization, tangent, assembled, .. } = workspace;
         let discretization = &*discretization;
-        let here = Configuration::at(&discretization.unknowns, free, parameter);
+        let here = Coordinates::at(&discretization.unknowns, free, parameter);
         assembled.assemble(discretization, &here.displacement, parameter, Want::Stiffness);
         Self {
             strokes: discretization.terms.strokes(&discretization.mesh, from.displacement, &here.displacement),
@@ -125,8 +125,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Starts anew from other unknowns, on the way from a state; what it took so far stays counted.
-    pub(super) fn start_at(&mut self, from: Standing, free: Vec<f64>) {
+    /// Starts again from other unknowns, on the way from a state; what it took so far stays counted.
+    pub(super) fn start_at(&mut self, from: Configuration, free: Vec<f64>) {
         self.go_to(free);
         let Discretization { mesh, terms, .. } = self.discretization;
         self.strokes = terms.strokes(mesh, from.displacement, &self.here.displacement);
@@ -134,8 +134,8 @@ impl<'a> Descent<'a> {
 
     /// Goes to other unknowns and assembles everything there.
     fn go_to(&mut self, free: Vec<f64>) {
-        self.here = Configuration::at(&self.discretization.unknowns, free, self.here.parameter);
-        let Configuration { displacement, parameter, .. } = &self.here;
+        self.here = Coordinates::at(&self.discretization.unknowns, free, self.here.parameter);
+        let Coordinates { displacement, parameter, .. } = &self.here;
         self.assembled.assemble(self.discretization, displacement, *parameter, Want::Stiffness);
     }
 

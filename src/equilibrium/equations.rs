@@ -2,7 +2,7 @@
 
 use crate::energy::{At, Discretization, Want};
 use crate::equilibrium::assembly::Assembled;
-use crate::equilibrium::configuration::{Configuration, Standing};
+use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::solve_error::SolveError;
@@ -24,7 +24,7 @@ pub(super) struct Equations<'w> {
 
 /// The equations at a point; the factor of their stiffness is in the workspace.
 pub(super) struct Point<'w> {
-    pub here: Configuration<'w>,
+    pub here: Coordinates<'w>,
     /// R: forces on the free unknowns, N.
     pub gradient: Vec<f64>,
     /// ∂R/∂λ.
@@ -35,16 +35,16 @@ pub(super) struct Point<'w> {
 }
 
 impl<'w> Equations<'w> {
-    /// On the way from a state.
-    pub fn of(work: &'w mut Workspace, from: Standing) -> Self {
+    /// Creates the equations of a path that begins at a state.
+    pub fn of(work: &'w mut Workspace, from: Configuration) -> Self {
         let Workspace { discretization, tangent, assembled, factored_at } = work;
         *factored_at = None;
         Self { discretization, tangent, assembled, largest_force: from.largest_force, ready: None }
     }
 
-    /// Ready for [`Self::at_standing`] at this state, with the stiffness and factor that a solve left there if there are
+    /// Ready for [`Self::at_configuration`] at this state, with the stiffness and factor that a solve left there if there are
     /// any. Where sections turn freely all is formed again: what the state holds decides the unknowns to rounding only.
-    pub fn factored_at(work: &'w mut Workspace, at: Standing) -> Result<Self, SolveError> {
+    pub fn factored_at(work: &'w mut Workspace, at: Configuration) -> Result<Self, SolveError> {
         if work.discretization.unknowns.turns_are_unknown() {
             return Ok(Self::of(work, at));
         }
@@ -53,8 +53,8 @@ impl<'w> Equations<'w> {
         Ok(Self { discretization, tangent, assembled, largest_force: at.largest_force, ready: Some(negative) })
     }
 
-    /// At a state.
-    pub fn at_standing(&mut self, at: Standing) -> Result<Point<'w>, SolveError> {
+    /// Assembles and factors at a configuration.
+    pub fn at_configuration(&mut self, at: Configuration) -> Result<Point<'w>, SolveError> {
         // Not an effort of the solve that follows: it would depend on what ran before in the same process.
         self.at(at.free(&self.discretization.unknowns), at.parameter, &mut Effort::default())
     }
@@ -62,8 +62,8 @@ impl<'w> Equations<'w> {
     /// Assembles and factors at a point.
     pub fn at(&mut self, free: Vec<f64>, parameter: f64, effort: &mut Effort) -> Result<Point<'w>, SolveError> {
         let discretization = self.discretization;
-        let here = Configuration::at(&discretization.unknowns, free, parameter);
-        let Configuration { placement, displacement, .. } = &here;
+        let here = Coordinates::at(&discretization.unknowns, free, parameter);
+        let Coordinates { placement, displacement, .. } = &here;
         let ready = std::mem::take(&mut self.ready);
         if ready.is_none() {
             self.assembled.assemble(discretization, displacement, parameter, Want::Stiffness);
@@ -117,8 +117,8 @@ impl<'w> Equations<'w> {
 }
 
 impl Point<'_> {
-    /// What a solve from a state that ends here leaves.
-    pub fn ended(self, equations: &Equations, from: Standing, effort: Effort) -> Ended {
+    /// Forms what a solve leaves that started at a state and ends here.
+    pub fn ended(self, equations: &Equations, from: Configuration, effort: Effort) -> Ended {
         let forces = equations.assembled.forces();
         let Discretization { mesh, terms, .. } = equations.discretization;
         Ended {

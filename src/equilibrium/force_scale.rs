@@ -1,4 +1,4 @@
-//! What a residual is held against: equilibrium has an absolute sense.
+//! What a residual is compared with: equilibrium has an absolute sense.
 //!
 //! Forces balance where what is left of their sum is small beside the forces themselves. Which ones?
 //!
@@ -10,7 +10,7 @@
 //! - A shell that is unloaded keeps no force at all: there it is the largest of these that the run has met, by a share
 //!   again, since a shell that has snapped carries a tenth of what it carried before and is to be found as precisely.
 //! - Rounding is below all of it: displacements that are off by their last bit already exert ε |K| |u|. But where that is more
-//!   than a thousandth of the loads, rounding hides them, and a solve goes on until it meets its limits.
+//!   than a thousandth of the loads, rounding hides them, and a solve continues until it meets its limits.
 //!
 //! All are Euclidean norms, over control points, and over the control points of each element: the sum Σ |f_e| of
 //! magnitudes would grow with the number of elements for one and the same stress, which the norm of membrane forces does
@@ -37,7 +37,7 @@ const OF_KNOWN: f64 = 1e-3;
 /// Reactions of so many roundings are none.
 const CLEAR: f64 = 30.0;
 
-/// What the residual at a point is held against, N.
+/// Forces that the residual at a point is compared with, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceScale {
     /// The largest of |g| of internal forces on all control points (at equilibrium, the reactions), |f| of the loads and of the
@@ -52,7 +52,7 @@ pub struct ForceScale {
 }
 
 impl ForceScale {
-    /// At a displacement, at which forces and stiffness are assembled.
+    /// Measures the forces at a displacement, at which forces and stiffness are assembled.
     pub(super) fn at(
         discretization: &Discretization,
         assembled: &Assembled,
@@ -96,7 +96,7 @@ impl ForceScale {
         if self.force() > 0.0 { residual / self.force() } else { 0.0 }
     }
 
-    /// What the run has met, with this point.
+    /// The largest forces of the run, with those of this point.
     pub fn met_here(&self) -> f64 {
         self.met.max(self.acting)
     }

@@ -13,7 +13,7 @@ pub struct Iterate {
     pub energy: f64,
     /// |Tᵀ (g − f)|, N.
     pub residual: f64,
-    /// What the residual is held against.
+    /// What the residual is compared with.
     pub forces: ForceScale,
     /// Negative pivots of the last factored stiffness.
     pub negative_pivots: usize,
@@ -48,7 +48,7 @@ impl Iterate {
         self.energy.is_finite() && self.residual.is_finite()
     }
 
-    /// |residual| over the forces that it is held against.
+    /// |residual| divided by the forces that it is compared with.
     pub fn relative_residual(&self) -> f64 {
         self.forces.share(self.residual)
     }
@@ -59,7 +59,7 @@ impl Iterate {
     }
 }
 
-/// What a solve cost.
+/// Iterations and factorizations spent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Effort {
     /// Newton iterations.

@@ -1,7 +1,7 @@
 //! The balance of energy of a solve: what the model stored before, and what has been done on it since.
 
 use crate::energy::Discretization;
-use crate::equilibrium::configuration::{Configuration, Standing};
+use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::Workspace;
 use crate::model::Placement;
@@ -19,21 +19,21 @@ pub(super) struct Before {
 }
 
 impl Before {
-    /// At an equilibrium.
-    pub fn at(work: &mut Workspace, from: Standing) -> Self {
+    /// Records the start of a solve at an equilibrium.
+    pub fn at(work: &mut Workspace, from: Configuration) -> Self {
         let forces = work.forces(from);
-        let Configuration { placement, .. } = Configuration::of(&work.discretization.unknowns, from);
+        let Coordinates { placement, .. } = Coordinates::of(&work.discretization.unknowns, from);
         Self::with(&placement, &forces, from, work.assembled.energy)
     }
 
     /// At an equilibrium whose forces (internal less loads, N, on all control points) and energy are known.
-    pub fn with(placement: &Placement, forces: &[[f64; 3]], from: Standing, energy: f64) -> Self {
-        let Standing { displacement, parameter, .. } = from;
+    pub fn with(placement: &Placement, forces: &[[f64; 3]], from: Configuration, energy: f64) -> Self {
+        let Configuration { displacement, parameter, .. } = from;
         Self { parameter, reactions: placement.reactions(forces), energy, displacement: displacement.to_vec() }
     }
 
-    /// Where forces do not balance and no given motion follows.
-    pub fn unbalanced(work: &Workspace, from: Standing) -> Self {
+    /// Records a start where forces do not balance and no given motion follows.
+    pub fn unbalanced(work: &Workspace, from: Configuration) -> Self {
         let reactions = vec![0.0; work.discretization.unknowns.given_count()];
         let energy = work.energy(from.displacement, from.parameter);
         Self { parameter: from.parameter, reactions, energy, displacement: from.displacement.to_vec() }

@@ -1,6 +1,6 @@
 //! The energy that a state out of balance releases on its way to equilibrium, to first order.
 
-use crate::equilibrium::configuration::{Configuration, Standing};
+use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::Workspace;
@@ -20,21 +20,21 @@ pub struct LinearRelease {
 }
 
 impl Workspace {
-    /// Of a state.
+    /// Computes the release of a state.
     ///
     /// # Errors
     /// Where the stiffness has no factor.
-    pub fn linear_release(&mut self, at: Standing) -> Result<LinearRelease, SolveError> {
+    pub fn linear_release(&mut self, at: Configuration) -> Result<LinearRelease, SolveError> {
         self.factorize_at(at)?;
         let forces = self.forces(at);
         let unknowns = &self.discretization.unknowns;
-        let Configuration { free, placement, .. } = Configuration::of(unknowns, at);
+        let Coordinates { free, placement, .. } = Coordinates::of(unknowns, at);
         let residual = placement.restrict(&forces);
         let mut step = residual.clone();
         self.tangent.solver.solve(&mut step);
         let motion_mm = placement.velocity(&step, &[]).iter().map(|motion| norm(*motion)).fold(0.0, f64::max);
         let moved: Vec<f64> = free.iter().zip(&step).map(|(value, change)| value + change).collect();
-        let relaxed = Configuration::at(unknowns, moved, at.parameter);
+        let relaxed = Coordinates::at(unknowns, moved, at.parameter);
         let energy = 0.5 * product(&residual, &step);
         let turns = relaxed.placement.turns();
         Ok(LinearRelease { energy, motion_mm, displacement: relaxed.displacement, turns })

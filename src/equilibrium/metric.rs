@@ -18,12 +18,12 @@ pub(super) struct Metric {
 }
 
 impl Metric {
-    /// Of a mesh.
+    /// Computes the masses of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         Self { weights: mesh.basis_integrals() }
     }
 
-    /// Σ m a·b.
+    /// Inner product Σ m a·b of two motions.
     pub fn product(&self, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
         self.weights.iter().zip(a.iter().zip(b)).map(|(m, (a, b))| m * dot(*a, *b)).sum()
     }

@@ -47,7 +47,7 @@ mod workspace;
 
 pub use assembly::Assembled;
 pub use condition::Condition;
-pub use configuration::{Configuration, Standing};
+pub use configuration::{Configuration, Coordinates};
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};
 pub use force_scale::ForceScale;
 pub use iterate::{Effort, Iterate, Observer};

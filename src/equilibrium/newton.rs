@@ -8,7 +8,7 @@
 //! Corrector: [`Descent`].
 
 use crate::equilibrium::assembly::subtract;
-use crate::equilibrium::configuration::{Configuration, Standing};
+use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::descent::Descent;
 use crate::equilibrium::iterate::Observer;
 use crate::equilibrium::ledger::Before;
@@ -37,7 +37,7 @@ pub struct Equilibrium<'a> {
 }
 
 impl<'a> Equilibrium<'a> {
-    /// Works in these buffers.
+    /// Creates a solver that uses the buffers of `work`.
     pub fn new(scene: &'a Scene, work: &'a mut Workspace) -> Self {
         Self { scene, work, previous: None }
     }
@@ -47,11 +47,11 @@ impl<'a> Equilibrium<'a> {
         Self { previous, ..self }
     }
 
-    /// From an equilibrium to one at another parameter.
+    /// Solves from an equilibrium to one at another parameter.
     ///
     /// # Errors
     /// Where none is found within the limits, or the observer stops the solve.
-    pub fn advance(&mut self, from: Standing, to: f64, observer: Observer) -> Result<Solved, SolveError> {
+    pub fn advance(&mut self, from: Configuration, to: f64, observer: Observer) -> Result<Solved, SolveError> {
         let (start, bent, before) = self.predict(from, to);
         self.minimize(start, bent, from, to, &before, observer)
     }
@@ -60,7 +60,7 @@ impl<'a> Equilibrium<'a> {
     ///
     /// # Errors
     /// As for [`Self::advance`].
-    pub fn relax(&mut self, from: Standing, observer: Observer) -> Result<Solved, SolveError> {
+    pub fn relax(&mut self, from: Configuration, observer: Observer) -> Result<Solved, SolveError> {
         let start = from.free(&self.work.discretization.unknowns);
         let before = Before::unbalanced(self.work, from);
         self.minimize(start, None, from, from.parameter, &before, observer)
@@ -73,7 +73,7 @@ impl<'a> Equilibrium<'a> {
     /// As for [`Self::advance`].
     pub fn leave(
         &mut self,
-        from: Standing,
+        from: Configuration,
         mode: &SoftMode,
         amplitude: f64,
         observer: Observer,
@@ -89,12 +89,12 @@ impl<'a> Equilibrium<'a> {
 
     /// Unknowns at `to`: along the tangent of the path where it is stable, or the old ones, whichever has less energy; and
     /// those along the parabola where they have even less.
-    fn predict(&mut self, from: Standing, to: f64) -> (Vec<f64>, Option<Vec<f64>>, Before) {
+    fn predict(&mut self, from: Configuration, to: f64) -> (Vec<f64>, Option<Vec<f64>>, Before) {
         // Where the stiffness has no factor (exactly at a limit point), the old unknowns are as good a start.
         let negative = self.work.factorize_at(from).unwrap_or(usize::MAX);
         let Workspace { discretization, tangent: TangentStiffness { solver, .. }, assembled, .. } = &mut *self.work;
         let unknowns = &discretization.unknowns;
-        let Configuration { free: old, placement, .. } = Configuration::of(unknowns, from);
+        let Coordinates { free: old, placement, .. } = Coordinates::of(unknowns, from);
         let forces = assembled.forces();
         let before = Before::with(&placement, &forces, from, assembled.energy);
         if negative > 0 {
@@ -162,7 +162,7 @@ impl<'a> Equilibrium<'a> {
         &mut self,
         unknowns: Vec<f64>,
         bent: Option<Vec<f64>>,
-        from: Standing,
+        from: Configuration,
         parameter: f64,
         before: &Before,
         observer: Observer,

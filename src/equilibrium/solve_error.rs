@@ -65,7 +65,7 @@ impl SolveError {
         if last.is_finite() { Ok(last) } else { Err(Self::NotANumber { last, effort }) }
     }
 
-    /// What the failed solve cost.
+    /// Iterations and factorizations spent by the failed solve.
     pub fn effort(&self) -> Effort {
         match self {
             Self::TooManyIterations { effort, .. }

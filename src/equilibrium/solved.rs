@@ -1,7 +1,7 @@
 //! What a solve leaves.
 
 use crate::energy::{At, Balance, Discretization};
-use crate::equilibrium::configuration::Standing;
+use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::ledger::Before;
 use crate::equilibrium::vector::{length, product};
@@ -21,7 +21,7 @@ pub struct Solved {
     pub moment: f64,
     /// Negative pivots of the stiffness there; 0 where the equilibrium is stable.
     pub negative_pivots: usize,
-    /// |residual| over the forces that it is held against.
+    /// |residual| over the forces that it is compared with.
     pub residual: f64,
     /// The largest force met so far, N; see [`super::ForceScale::met`].
     pub largest_force: f64,
@@ -54,7 +54,7 @@ impl Workspace {
         last: &Iterate,
     ) -> Solved {
         let largest_force = last.forces.met_here();
-        let at = Standing { displacement: &ended.displacement, turns: &ended.turns, parameter, largest_force };
+        let at = Configuration { displacement: &ended.displacement, turns: &ended.turns, parameter, largest_force };
         let put_in = before.put_in(&self.discretization, parameter, &ended.displacement);
         let rounding = last.forces.rounding * length(&ended.displacement);
         self.factored_at = Some(Factored::new(at, last.negative_pivots));

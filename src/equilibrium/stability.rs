@@ -8,7 +8,7 @@
 //! stable) then gives the mode. Of a part of a symmetric shell it is the lowest of the modes that share its symmetry.
 
 use crate::energy::Discretization;
-use crate::equilibrium::configuration::{Configuration, Standing};
+use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::metric::Metric;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
@@ -46,13 +46,13 @@ pub struct SoftMode {
     pub factorizations: usize,
 }
 
-/// Finds it at a state.
+/// Finds the softest mode at a state.
 ///
 /// # Errors
 /// Where the stiffness has no factor.
-pub fn soft_mode(work: &mut Workspace, at: Standing) -> Result<SoftMode, SolveError> {
+pub fn soft_mode(work: &mut Workspace, at: Configuration) -> Result<SoftMode, SolveError> {
     let Formed { discretization, tangent, configuration } = work.form_at(at);
-    let Configuration { free, placement, .. } = configuration;
+    let Coordinates { free, placement, .. } = configuration;
     let mass = mass(discretization, tangent, &placement);
     let mut slicing = Slicing { mass, stiffness: tangent.matrix(), tangent, tried: 0 };
     // A start that no symmetry is orthogonal to, the same in every run.
@@ -92,7 +92,7 @@ impl LinearBuckling {
     ///
     /// # Errors
     /// Where the stiffness has no factor.
-    pub fn of(work: &mut Workspace, at: Standing) -> Result<Option<Self>, SolveError> {
+    pub fn of(work: &mut Workspace, at: Configuration) -> Result<Option<Self>, SolveError> {
         let negative = work.factorize_at(at)?;
         if negative == 0 || !work.is_in_proportion(at) {
             return Ok(None);
@@ -100,7 +100,7 @@ impl LinearBuckling {
         let mode = soft_mode(work, at)?.free;
         let here = work.stiffness_along(&mode, at);
         let (still, unturned) = (vec![[0.0; 3]; at.displacement.len()], vec![[0.0; 3]; at.turns.len()]);
-        let rest = Standing { displacement: &still, turns: &unturned, parameter: 0.0, largest_force: 0.0 };
+        let rest = Configuration { displacement: &still, turns: &unturned, parameter: 0.0, largest_force: 0.0 };
         let at_rest = work.stiffness_along(&mode, rest);
         let parameter = at.parameter * at_rest / (at_rest - here);
         Ok((here < 0.0 && at_rest > 0.0).then_some(Self { negative, parameter }))
@@ -108,14 +108,14 @@ impl LinearBuckling {
 }
 
 impl Workspace {
-    fn is_in_proportion(&self, at: Standing) -> bool {
+    fn is_in_proportion(&self, at: Configuration) -> bool {
         let small: Vec<[f64; 3]> = at.displacement.iter().map(|u| u.map(|value| SMALL * value)).collect();
         let energy = self.energy(at.displacement, at.parameter);
         (self.energy(&small, 0.0) / (SMALL * SMALL) - energy).abs() <= IN_PROPORTION * energy
     }
 
     /// vᵀKv of a direction in the free unknowns.
-    fn stiffness_along(&mut self, direction: &[f64], at: Standing) -> f64 {
+    fn stiffness_along(&mut self, direction: &[f64], at: Configuration) -> f64 {
         let Formed { tangent, .. } = self.form_at(at);
         let stiffness = tangent.matrix();
         product(direction, &tangent.solver.multiply(&stiffness, direction))
@@ -156,7 +156,7 @@ impl Slicing<'_> {
         if self.count_below(0.0)? == 0 {
             return Ok(());
         }
-        // A scale to begin with. The vector itself will not do to go on from: it has little of the lowest mode.
+        // A scale to begin with. The vector itself will not do to continue from: it has little of the lowest mode.
         let (_, nearest, _) = self.iterate(start.to_vec(), ROUGH);
         let (mut above, mut below) = (0.0, -2.0 * nearest.abs());
         while self.count_below(below)? > 0 && self.tried < MAX_SHIFTS {

@@ -7,7 +7,7 @@
 
 use crate::energy::{Discretization, Want};
 use crate::equilibrium::assembly::Assembled;
-use crate::equilibrium::configuration::Standing;
+use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::workspace::Workspace;
 use crate::model::{PointTable, Tables};
 use crate::shell::{Hessian, PointReference, dot};
@@ -22,8 +22,8 @@ pub struct SymmetryError {
 }
 
 impl SymmetryError {
-    /// At a state.
-    pub fn at(work: &mut Workspace, at: Standing) -> Self {
+    /// Measures the errors at a state.
+    pub fn at(work: &mut Workspace, at: Configuration) -> Self {
         let mut half = Assembled::new(&work.discretization);
         let natural = work.discretization.shell.free_strains.at(at.parameter);
         half.assemble_shell(&work.discretization, at.displacement, natural, Want::Stiffness);
@@ -32,7 +32,7 @@ impl SymmetryError {
         })
     }
 
-    /// The larger of the two.
+    /// The larger of the two errors.
     pub fn largest(&self) -> f64 {
         // `max` would drop what is not a number.
         if self.hessians >= self.assembled || self.hessians.is_nan() { self.hessians } else { self.assembled }

@@ -99,7 +99,7 @@ mod tests {
     use super::*;
     use crate::digest::Hash;
     use crate::energy::{At, Tangent, Term, TermSource, Want};
-    use crate::equilibrium::{Equilibrium, Standing, Workspace};
+    use crate::equilibrium::{Configuration, Equilibrium, Workspace};
     use crate::model::{ModelError, Tables, starting_mesh};
     use crate::scene::{Scene, parse};
     use crate::spline::Mesh;
@@ -230,7 +230,7 @@ mod tests {
             for tangent in of_both_kinds(&work.discretization) {
                 work.tangent = tangent;
                 let still = vec![[0.0; 3]; work.discretization.mesh.control_points.len()];
-                let rest = Standing { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
+                let rest = Configuration { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
                 let solved = Equilibrium::new(&scene, &mut work).advance(rest, 0.5, &mut |_| false).unwrap();
                 let [one, other] = points.map(|point| solved.displacement[point][2]);
                 stretches.push((other - one).abs());

@@ -1,12 +1,12 @@
 //! The pieces of a Newton iteration one by one, for timing.
 
 use crate::energy::Want;
-use crate::equilibrium::configuration::Standing;
+use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::workspace::Workspace;
 use crate::model::PointTable;
 
-/// What the pieces have to do.
+/// Operations and bytes of the pieces of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KernelCost {
     /// Floating-point operations of Σ Fᵀ H F, upper half.
@@ -25,17 +25,17 @@ pub struct KernelCost {
 #[derive(Debug)]
 pub struct KernelRun<'a> {
     work: &'a mut Workspace,
-    at: Standing<'a>,
+    at: Configuration<'a>,
     free: Vec<f64>,
     right_hand_side: Vec<f64>,
 }
 
 impl<'a> KernelRun<'a> {
-    /// At a state whose stiffness has a factor.
+    /// Prepares the pieces at a state whose stiffness has a factor.
     ///
     /// # Errors
     /// Where it has none.
-    pub fn new(work: &'a mut Workspace, at: Standing<'a>) -> Result<Self, SolveError> {
+    pub fn new(work: &'a mut Workspace, at: Configuration<'a>) -> Result<Self, SolveError> {
         let free = at.free(&work.discretization.unknowns);
         let right_hand_side = (0..free.len()).map(|i| 1.0 + (i % 7) as f64).collect();
         let mut run = Self { work, at, free, right_hand_side };
@@ -43,7 +43,7 @@ impl<'a> KernelRun<'a> {
         Ok(run)
     }
 
-    /// Cost of the pieces.
+    /// Counts the operations and bytes of the pieces.
     pub fn cost(&self) -> KernelCost {
         let tables = &self.work.discretization.shell.tables;
         let [p1, p2] = self.work.discretization.mesh.degree;
@@ -64,7 +64,7 @@ impl<'a> KernelRun<'a> {
         }
     }
 
-    /// Stiffness and residual on the control points.
+    /// Assembles stiffness and residual on the control points.
     pub fn assemble(&mut self) {
         self.work.assembled.assemble(
             &self.work.discretization,
@@ -74,7 +74,7 @@ impl<'a> KernelRun<'a> {
         );
     }
 
-    /// Residual alone.
+    /// Assembles the residual alone.
     pub fn residual(&mut self) {
         self.work.assembled.assemble(
             &self.work.discretization,
@@ -91,7 +91,7 @@ impl<'a> KernelRun<'a> {
         tangent.form(discretization, &placement, assembled);
     }
 
-    /// Its factor, in place of it.
+    /// Factorizes the formed matrix in place.
     ///
     /// # Errors
     /// Where it has none.
@@ -99,13 +99,13 @@ impl<'a> KernelRun<'a> {
         self.work.tangent.factorize_formed().map(|_| ())
     }
 
-    /// One right-hand side.
+    /// Solves for one right-hand side.
     pub fn solve(&mut self) {
         let mut right_hand_side = self.right_hand_side.clone();
         self.work.tangent.solver.solve(&mut right_hand_side);
     }
 
-    /// All of it.
+    /// Runs a whole Newton iteration.
     ///
     /// # Errors
     /// As for [`Self::factor`].

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::energy::{Discretization, TermSource, Want};
 use crate::equilibrium::assembly::Assembled;
-use crate::equilibrium::configuration::{Configuration, Standing};
+use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
 use crate::equilibrium::sparse::FactorError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
@@ -25,7 +25,7 @@ pub struct Workspace {
 pub(super) struct Formed<'w> {
     pub discretization: &'w Discretization,
     pub tangent: &'w mut TangentStiffness,
-    pub configuration: Configuration<'w>,
+    pub configuration: Coordinates<'w>,
 }
 
 #[derive(Debug)]
@@ -37,7 +37,7 @@ pub(super) struct Factored {
 }
 
 impl Workspace {
-    /// Tables, structure and symbolic factor for a mesh.
+    /// Builds tables, structure and symbolic factor for a mesh.
     ///
     /// # Errors
     /// Where supports or loads do not fit the mesh, or the factor does not fit in memory.
@@ -45,7 +45,7 @@ impl Workspace {
         Self::with_terms(scene, mesh, &[])
     }
 
-    /// The same with terms of the caller's own.
+    /// Builds the same with terms of the caller's own.
     ///
     /// # Errors
     /// Where supports, loads or those terms do not fit the mesh, or the factor does not fit in memory.
@@ -63,7 +63,7 @@ impl Workspace {
         Ok(Self { discretization, tangent, assembled, factored_at: None })
     }
 
-    /// The mesh's tables and unknowns.
+    /// The scene on the mesh: its tables, unknowns and terms.
     pub fn discretization(&self) -> &Discretization {
         &self.discretization
     }
@@ -74,7 +74,7 @@ impl Workspace {
     }
 
     /// Internal forces less loads on the control points, N: at equilibrium, the reactions of the supports.
-    pub fn forces(&mut self, at: Standing) -> Vec<[f64; 3]> {
+    pub fn forces(&mut self, at: Configuration) -> Vec<[f64; 3]> {
         let known = self.factored_at.as_ref().is_some_and(|known| known.is_at(&at));
         if !known {
             self.factored_at = None;
@@ -85,7 +85,7 @@ impl Workspace {
 
     /// Stiffness and factor at a displacement, unless the last solve left them there; returns the negative pivots. Not
     /// counted in the effort of a solve, which would then depend on what ran before in the same process.
-    pub(super) fn factorize_at(&mut self, at: Standing) -> Result<usize, SolveError> {
+    pub(super) fn factorize_at(&mut self, at: Configuration) -> Result<usize, SolveError> {
         // Where sections turn freely the state decides the unknowns to rounding only: those that a solve ended with would
         // give other bits than those of the same state read from a log.
         let exact = !self.discretization.unknowns.turns_are_unknown();
@@ -98,23 +98,23 @@ impl Workspace {
     }
 
     /// The matrix on the free unknowns at a state, not factored.
-    pub(super) fn form_at(&mut self, at: Standing) -> Formed<'_> {
+    pub(super) fn form_at(&mut self, at: Configuration) -> Formed<'_> {
         self.factored_at = None;
         let Self { discretization, tangent, assembled, .. } = self;
         assembled.assemble(discretization, at.displacement, at.parameter, Want::Stiffness);
-        let configuration = Configuration::of(&discretization.unknowns, at);
+        let configuration = Coordinates::of(&discretization.unknowns, at);
         tangent.form(discretization, &configuration.placement, assembled);
         Formed { discretization, tangent, configuration }
     }
 }
 
 impl Factored {
-    pub(super) fn new(at: Standing, negative: usize) -> Self {
+    pub(super) fn new(at: Configuration, negative: usize) -> Self {
         let (displacement, turns) = (at.displacement.to_vec(), at.turns.to_vec());
         Self { parameter: at.parameter, displacement, turns, negative }
     }
 
-    fn is_at(&self, at: &Standing) -> bool {
+    fn is_at(&self, at: &Configuration) -> bool {
         self.parameter == at.parameter && self.displacement == at.displacement && self.turns == at.turns
     }
 }

@@ -11,7 +11,7 @@ pub struct IndexBisection {
 }
 
 impl IndexBisection {
-    /// Nothing is known yet of `len` items.
+    /// Begins with `len` items, of which nothing is known.
     pub fn new(len: usize) -> Self {
         Self { low: 0, high: len }
     }
@@ -21,7 +21,7 @@ impl IndexBisection {
         (self.low < self.high).then_some(self.low + (self.high - self.low) / 2)
     }
 
-    /// What was seen at `index`.
+    /// Narrows the search by what was seen at `index`.
     #[must_use]
     pub fn told(self, index: usize, holds: bool) -> Self {
         if holds {
@@ -40,33 +40,33 @@ impl IndexBisection {
 /// Narrows a bracket of loads: below it the shell is where it was, beyond it has jumped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadBisection {
-    below_deg: f64,
-    beyond_deg: f64,
-    tolerance_deg: f64,
+    below: f64,
+    beyond: f64,
+    tolerance: f64,
 }
 
 impl LoadBisection {
-    /// A bracket to be narrowed to `tolerance_deg`.
-    pub fn new(below_deg: f64, beyond_deg: f64, tolerance_deg: f64) -> Self {
-        Self { below_deg, beyond_deg, tolerance_deg }
+    /// Begins with a bracket to be narrowed to `tolerance`.
+    pub fn new(below: f64, beyond: f64, tolerance: f64) -> Self {
+        Self { below, beyond, tolerance }
     }
 
     /// The load to try next; `None` where the bracket is narrow enough, or no number lies within it.
     pub fn next(&self) -> Option<f64> {
-        let middle = 0.5 * (self.below_deg + self.beyond_deg);
-        let within = middle > self.below_deg && middle < self.beyond_deg;
-        (within && self.beyond_deg - self.below_deg > self.tolerance_deg).then_some(middle)
+        let middle = 0.5 * (self.below + self.beyond);
+        let within = middle > self.below && middle < self.beyond;
+        (within && self.beyond - self.below > self.tolerance).then_some(middle)
     }
 
-    /// What a try showed.
+    /// Narrows the bracket by what a solve showed.
     #[must_use]
     pub fn told(self, parameter: f64, jumped: bool) -> Self {
-        if jumped { Self { beyond_deg: parameter, ..self } } else { Self { below_deg: parameter, ..self } }
+        if jumped { Self { beyond: parameter, ..self } } else { Self { below: parameter, ..self } }
     }
 
-    /// (last load below, first load beyond), degrees.
+    /// (last load below, first load beyond), in the units of the scene's parameter.
     pub fn bracket(&self) -> [f64; 2] {
-        [self.below_deg, self.beyond_deg]
+        [self.below, self.beyond]
     }
 }
 

@@ -16,7 +16,7 @@ pub struct Difference {
     pub place: Option<([usize; 2], [f64; 3])>,
     /// The two values there; for vectors the component that differs most.
     pub values: [f64; 2],
-    /// Bits that agree, relative to what the field is held against, mostly its own largest magnitude: −log₂(|a − b| / scale).
+    /// Bits that agree, relative to what the field is compared with, mostly its own largest magnitude: −log₂(|a − b| / scale).
     /// Infinite for zeros of different sign.
     pub agreeing_bits: f64,
 }
@@ -138,7 +138,7 @@ impl Found<'_> {
     fn paths(&mut self, a: &PathMemory, b: &PathMemory, parameter: f64) {
         let PathMemory { heading, parameter_rate, first_mm, next_mm, travelled_mm, critical_ahead, at_bifurcation } = a;
         self.vectors("direction of the path", heading, &b.heading);
-        // A rate goes through 0 at a limit point: it is held against the mean rate as well.
+        // A rate goes through 0 at a limit point: it is compared with the mean rate as well.
         let mean_rate = if *travelled_mm > 0.0 { parameter / travelled_mm } else { 0.0 };
         self.beside("rate of the parameter", *parameter_rate, b.parameter_rate, mean_rate);
         self.number("length of the first step", *first_mm, b.first_mm);
@@ -169,7 +169,7 @@ impl Found<'_> {
     }
 
     fn controls(&mut self, a: &StepControl, b: &StepControl) {
-        let StepControl { halvings, jump_seen_at_deg, rejection: _ } = a;
+        let StepControl { halvings, jump_beyond, rejection: _ } = a;
         let size = |halvings: i32| match halvings {
             0 => "the scene's increment".to_string(),
             halvings @ 1.. => format!("an increment halved {halvings} times"),
@@ -178,7 +178,7 @@ impl Found<'_> {
         if *halvings != b.halvings {
             self.kinds.push(format!("{} for the next step against {}", size(*halvings), size(b.halvings)));
         }
-        if let Some((x, y)) = self.both("a jump seen ahead", jump_seen_at_deg, &b.jump_seen_at_deg) {
+        if let Some((x, y)) = self.both("a jump seen ahead", jump_beyond, &b.jump_beyond) {
             self.number("jump seen at", *x, *y);
         }
     }
@@ -197,12 +197,12 @@ impl Found<'_> {
         }
     }
 
-    /// A number that is held against its own magnitude.
+    /// A number that is compared with its own magnitude.
     fn number(&mut self, field: &'static str, a: f64, b: f64) {
         self.beside(field, a, b, 0.0);
     }
 
-    /// A number that is held against its own magnitude or another, whichever is larger.
+    /// A number that is compared with its own magnitude or another, whichever is larger.
     fn beside(&mut self, field: &'static str, a: f64, b: f64, scale: f64) {
         if a.to_bits() != b.to_bits() {
             let agreeing_bits = agreeing_bits(a, b, a.abs().max(b.abs()).max(scale.abs()));
@@ -210,7 +210,7 @@ impl Found<'_> {
         }
     }
 
-    /// Numbers that are held against the largest of them.
+    /// Numbers that are compared with the largest of them.
     fn list(&mut self, field: &'static str, a: &[f64], b: &[f64]) {
         if a.len() != b.len() {
             return self.kinds.push(format!("{} {field} against {}", a.len(), b.len()));
@@ -291,7 +291,7 @@ mod tests {
             strain_energy_n_mm: 50.0,
             negative_pivots: 0,
             drive: DriveMemory {
-                control: StepControl { halvings: 1, jump_seen_at_deg: Some(9.0), rejection: None },
+                control: StepControl { halvings: 1, jump_beyond: Some(9.0), rejection: None },
                 course: Course::Path(PathMemory {
                     heading: vec![[0.5, 0.25, 0.125]; 16],
                     parameter_rate: 0.5,
@@ -348,7 +348,7 @@ mod tests {
             ("moment_n_mm", |s, f| f(&mut s.moment_n_mm)),
             ("strain_energy_n_mm", |s, f| f(&mut s.strain_energy_n_mm)),
             ("largest_force_n", |s, f| f(&mut s.largest_force_n)),
-            ("jump seen at", |s, f| f(s.drive.control.jump_seen_at_deg.as_mut().unwrap())),
+            ("jump seen at", |s, f| f(s.drive.control.jump_beyond.as_mut().unwrap())),
             ("direction of the path", |s, f| f(&mut path(s).heading[2][0])),
             ("rate of the parameter", |s, f| f(&mut path(s).parameter_rate)),
             ("length of the first step", |s, f| f(&mut path(s).first_mm)),
@@ -388,7 +388,7 @@ mod tests {
             ("an increment halved 1 times for the next step against the scene's increment", |s| {
                 s.drive.control.halvings = 0
             }),
-            ("a jump seen ahead in the first only", |s| s.drive.control.jump_seen_at_deg = None),
+            ("a jump seen ahead in the first only", |s| s.drive.control.jump_beyond = None),
             ("a solve that reached 8 against a solve that found no equilibrium", |s| {
                 s.drive.control.rejection = Some(Rejection::NoEquilibrium)
             }),

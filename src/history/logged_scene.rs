@@ -50,7 +50,7 @@ pub enum LoggedSceneError {
     Unreadable(#[from] SceneInLogError),
 }
 
-/// The scene that stage `index` was run with beside these terms of the caller's own, with settings laid over it: that of its
+/// The scene that stage `index` was run with beside these terms of the caller's own, with settings applied to it: that of its
 /// stretch, and held with them against the hash in its commit, so that no other takes its place where it is lost.
 ///
 /// # Errors

@@ -1,10 +1,10 @@
-//! What a log can be asked: go on with it, run its stages again, find where two runs part, where a run jumped.
+//! What a log can be asked: continue it, run its stages again, find where two runs part, where a run jumped.
 //!
 //! | file | what |
 //! |---|---|
 //! | `logged_scene` | the scene of a stage |
 //! | `states` | states that a log holds, or that are made again |
-//! | `resume` | where a run goes on |
+//! | `resume` | where a run continues |
 //! | `replay` | stages run again |
 //! | `mending` | lost stages run again |
 //! | `part`, `compare` | where two runs part; two states in bits |
@@ -36,7 +36,7 @@ pub use mending::mended;
 pub use part::{Parting, find_parting};
 pub use probes::{ProbeError, Redefined, keep_apart, read_probes, redefined_probes};
 pub use replay::{ReplayError, Replayed, Verdict, replay_stage, verdict};
-pub use resume::{Basis, BasisError, NothingStands, ResumePlan, basis, plan, restored_scene};
+pub use resume::{Basis, BasisError, NothingKept, ResumePlan, basis, plan, restored_scene};
 pub use snap::{SnapError, SnapReport, find_snap, first_loss_of_stability, no_jump};
 pub use stability::{StabilityError, StabilityReport, stability_at};
 pub use states::{RemakeError, States};

@@ -1,4 +1,4 @@
-//! From a log to the state that a run goes on from, and what a changed scene does to it.
+//! From a log to the state that a run continues from, and what a changed scene does to it.
 
 use std::cmp::Ordering;
 
@@ -14,7 +14,7 @@ const TARGETS: [&str; 2] = ["load.rotation_deg", "load.factor"];
 /// Targets that differ by less than this, relatively, are one.
 const TARGET_ROUNDING: f64 = 1e-12;
 
-/// What a run goes on from.
+/// What a run continues from.
 #[derive(Clone, Debug)]
 pub struct Basis {
     /// The state.
@@ -23,7 +23,7 @@ pub struct Basis {
     pub commit: Option<Commit>,
 }
 
-/// Why there is nothing to go on from.
+/// Why there is nothing to continue from.
 #[derive(Debug, thiserror::Error)]
 pub enum BasisError {
     /// The log's own state cannot be used.
@@ -45,7 +45,7 @@ pub fn basis(log: &Log, keep: usize, stages: &mut Stages) -> Result<Basis, Basis
     }
 }
 
-/// How much of a log a scene can go on from.
+/// How much of a log a scene can continue from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResumePlan {
     /// Stages that stand, counted from the start of the log.
@@ -57,20 +57,20 @@ pub struct ResumePlan {
 /// Changes of the scene that no state of the log survives.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}: nothing can be kept; write to another log with -o", changes.join("\n  "))]
-pub struct NothingStands {
+pub struct NothingKept {
     /// A line for each: key of the scene file, value in the log, and value now.
     pub changes: Vec<String>,
 }
 
-/// What stands of a log written for `old` when it goes on with `new`.
+/// What stands of a log written for `old` when it is continued with `new`.
 ///
 /// Output, probes and names may change freely. The target may: what was cut short at the old target goes, and what lies beyond a
 /// nearer one. A change of what steps are made with keeps every complete step and drops a step in hand; one of a history keeps what
 /// lies before the load where it sets in. A change of geometry, material, mesh, symmetry or sense keeps nothing.
 ///
 /// # Errors
-/// [`NothingStands`] in the last case; [`StateError`] where a state that decides it cannot be read.
-pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, NothingStands>, StateError> {
+/// [`NothingKept`] in the last case; [`StateError`] where a state that decides it cannot be read.
+pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, NothingKept>, StateError> {
     let differences = old.differences(new);
     let has = |reach: Reach| differences.iter().any(|difference| difference.reach == reach);
     let mut keep = match has(Reach::LaterLoads) {
@@ -84,7 +84,7 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     });
     let fatal: Vec<String> = fatal.map(|difference| why_nothing_stands(difference, old, new)).collect();
     if !fatal.is_empty() {
-        return Ok(Err(NothingStands { changes: fatal }));
+        return Ok(Err(NothingKept { changes: fatal }));
     }
     if old.load.target() != new.load.target() {
         keep = keep.min(before_clipped_step(log, old, new)?);

@@ -2,7 +2,7 @@
 //! known. What kind of critical point it is says the path beyond it, followed by arc length.
 
 use crate::equilibrium::{
-    Continuation, Equilibrium, Iterate, Observer, Sense, SoftMode, SolveError, Standing, Workspace, WorkspaceError,
+    Configuration, Continuation, Equilibrium, Iterate, Observer, Sense, SoftMode, SolveError, Workspace, WorkspaceError,
 };
 use crate::history::bisection::LoadBisection;
 use crate::history::logged_scene::{LoggedSceneError, check_terms};
@@ -16,8 +16,8 @@ use crate::state::State;
 /// A jump, located.
 #[derive(Clone, Debug)]
 pub struct SnapReport {
-    /// Last rotation at which the shell is stable where it was, and the first at which it is not, degrees.
-    pub bracket_deg: [f64; 2],
+    /// Last value of the parameter at which the shell is stable where it was, and the first at which it is not.
+    pub bracket: [f64; 2],
     /// Moment on both sides, N·mm.
     pub moment_n_mm: [f64; 2],
     /// Energy released at the end of the bracket, N·mm; `None` where it is not known.
@@ -98,13 +98,13 @@ pub fn no_jump(scene: &Scene, farthest: f64) -> SnapError {
     SnapError::NoJump { farthest: Parameter::of(scene).shown(farthest) }
 }
 
-/// Locates the first jump or loss of stability of a log to `tolerance_deg`, on the mesh of the last stable state before it;
+/// Locates the first jump or loss of stability of a log to `tolerance`, on the mesh of the last stable state before it;
 /// `states` are those of the log, or of a part of it that begins before the jump, with the terms of the caller's own that it was
 /// made with.
 ///
 /// # Errors
 /// Where the log holds no such thing, was made with other terms, or a solve fails.
-pub fn find_snap(states: &mut States, scene: &Scene, tolerance_deg: f64) -> Result<SnapReport, SnapError> {
+pub fn find_snap(states: &mut States, scene: &Scene, tolerance: f64) -> Result<SnapReport, SnapError> {
     let log = states.log();
     let shown = |value: f64| Parameter::of(scene).shown(value);
     let Some(jump) = first_loss_of_stability(log) else {
@@ -138,7 +138,7 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance_deg: f64) -> Resu
             Some(_) => return Err(SnapError::OnRefinedMesh { from: shown(stable.parameter), to: shown(beyond) }),
         }
     }
-    let mut search = LoadBisection::new(stable.parameter, beyond, tolerance_deg);
+    let mut search = LoadBisection::new(stable.parameter, beyond, tolerance);
     while let Some(parameter) = search.next() {
         let next = tries.gently(&stable, parameter)?;
         search = search.told(parameter, next.is_none());
@@ -146,9 +146,9 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance_deg: f64) -> Resu
             stable = next;
         }
     }
-    let bracket_deg = search.bracket();
-    let (after, work_done, most_negative) = tries.through(&stable, bracket_deg[1])?;
-    let critical = tries.what_is_passed(&stable, bracket_deg);
+    let bracket = search.bracket();
+    let (after, work_done, most_negative) = tries.through(&stable, bracket[1])?;
+    let critical = tries.what_is_passed(&stable, bracket);
     let solves = tries.count;
     let (mode, mode_at) = mode_of(scene, &mut work, &stable).map_err(|source| SnapError::Solve {
         from: shown(stable.parameter),
@@ -156,7 +156,7 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance_deg: f64) -> Resu
         source: Box::new(source),
     })?;
     Ok(SnapReport {
-        bracket_deg,
+        bracket,
         moment_n_mm: [stable.moment_n_mm, after.moment_n_mm],
         energy_released_n_mm: known_release(stable.strain_energy_n_mm + work_done - after.strain_energy_n_mm),
         negative_pivots: [stable.negative_pivots as usize, most_negative, after.negative_pivots as usize],
@@ -200,13 +200,13 @@ impl Tries<'_> {
     /// the length of the path to a limit point goes with the square root of that.
     fn what_is_passed(&mut self, from: &State, bracket: [f64; 2]) -> Option<CriticalPoint> {
         let mut continuation = Continuation::new(self.scene, self.work);
-        let start = continuation.heading_at(Standing::of(from), Sense::Parameter { grows: true }).ok()?;
+        let start = continuation.heading_at(Configuration::of(from), Sense::Parameter { grows: true }).ok()?;
         let mut length = (bracket[1] - bracket[0]).abs().max(f64::EPSILON * bracket[1].abs()) / start.parameter;
         let mut heading = start;
         let mut at = from.clone();
         for _ in 0..MOST_TRIES {
             self.count += 1;
-            let Ok(point) = continuation.step(Standing::of(&at), &heading.motion, length, &mut |_| false) else {
+            let Ok(point) = continuation.step(Configuration::of(&at), &heading.motion, length, &mut |_| false) else {
                 length *= 0.5;
                 continue;
             };
@@ -247,7 +247,7 @@ impl Tries<'_> {
 
     fn solve(&mut self, from: &State, parameter: f64, watch: Observer) -> Result<(State, f64), SolveError> {
         self.count += 1;
-        let solved = Equilibrium::new(self.scene, self.work).advance(Standing::of(from), parameter, watch)?;
+        let solved = Equilibrium::new(self.scene, self.work).advance(Configuration::of(from), parameter, watch)?;
         let reached = State {
             displacement: solved.displacement,
             turns: solved.turns,

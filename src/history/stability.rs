@@ -1,6 +1,6 @@
 //! How stable the states of a log are.
 
-use crate::equilibrium::{SoftMode, SolveError, Standing, Workspace, WorkspaceError, soft_mode};
+use crate::equilibrium::{Configuration, SoftMode, SolveError, Workspace, WorkspaceError, soft_mode};
 use crate::history::logged_scene::{LoggedSceneError, check_terms};
 use crate::history::states::{RemakeError, States};
 use crate::scene::Scene;
@@ -49,7 +49,7 @@ pub fn stability_at(states: &mut States, index: usize, scene: &Scene) -> Result<
 /// The softest mode of a state, with the eigenvalue of the whole shell, as energies are; and the undeformed place of the
 /// control point that moves most in it, mm.
 pub(super) fn mode_of(scene: &Scene, work: &mut Workspace, state: &State) -> Result<(SoftMode, [f64; 3]), SolveError> {
-    let mut mode = soft_mode(work, Standing::of(state))?;
+    let mut mode = soft_mode(work, Configuration::of(state))?;
     mode.eigenvalue *= scene.symmetry.copies() as f64;
     let place = state.mesh.point(mode.largest_at);
     Ok((mode, place))

@@ -71,7 +71,7 @@ pub struct States<'l> {
 }
 
 impl<'l> States<'l> {
-    /// Those of a log.
+    /// Creates access to the states of a log.
     pub fn of(log: &'l Log) -> Self {
         Self { log, own: Vec::new(), stages: None, made: None }
     }
@@ -81,12 +81,12 @@ impl<'l> States<'l> {
         Self { own: own.to_vec(), ..self }
     }
 
-    /// Terms of the caller's own.
+    /// The terms of the caller's own that stages run again with.
     pub fn own_terms(&self) -> &[Arc<dyn TermSource>] {
         &self.own
     }
 
-    /// The log.
+    /// The log whose states these are.
     pub fn log(&self) -> &'l Log {
         self.log
     }

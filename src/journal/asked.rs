@@ -22,7 +22,7 @@ pub enum AskedLog {
 }
 
 impl AskedLog {
-    /// Opens a log.
+    /// Opens a log, by its index where it is long.
     ///
     /// # Errors
     /// Where it cannot be read or is not a log.
@@ -42,12 +42,12 @@ impl AskedLog {
         }
     }
 
-    /// Stages of the run.
+    /// Number of stages of the run.
     pub fn commits(&self) -> usize {
         self.end().commits()
     }
 
-    /// What stage `ordinal` said.
+    /// Record of stage `ordinal`.
     ///
     /// # Errors
     /// Where there is no such stage, or it is not what it was.

@@ -34,7 +34,7 @@ pub trait Backend: Send {
     /// Where it is not certain that all of it is there.
     fn sync(&mut self) -> io::Result<()>;
 
-    /// Begins to force what was appended to durable storage, and goes on meanwhile: it takes as long as several commits.
+    /// Begins to force what was appended to durable storage, and continues meanwhile: it takes as long as several commits.
     ///
     /// # Errors
     /// Where that cannot be begun, or the one before has failed.
@@ -87,7 +87,7 @@ enum Coming {
         copy: WholeFile,
         original: File,
         original_len: u64,
-        /// Forces the copy to disk while the run already goes on; a 40 MB log takes 70 ms and more for that.
+        /// Forces the copy to disk while the run already continues; a 40 MB log takes 70 ms and more for that.
         synced: Option<Syncing>,
     },
 }
@@ -111,7 +111,7 @@ impl FileBackend {
         })
     }
 
-    /// A log that is gone on with in place. Of the `found` bytes that it has, those behind the first `length` are cut off before
+    /// A log that is continued in place. Of the `found` bytes that it has, those behind the first `length` are cut off before
     /// the first byte is added.
     ///
     /// # Errors
@@ -122,7 +122,7 @@ impl FileBackend {
         Ok(Self { file, path: path.to_owned(), coming: Coming::Named, folder_synced: true, cut_first, syncing: None })
     }
 
-    /// Cuts off what is not gone on with. That is durable before anything takes its place: half of the one and half of the other
+    /// Cuts off what is not continued. That is durable before anything takes its place: half of the one and half of the other
     /// would be neither.
     fn cut_first(&mut self) -> io::Result<()> {
         if let Some(Cut { length, .. }) = self.cut_first.filter(|cut| cut.found != cut.length) {
@@ -159,7 +159,7 @@ impl FileBackend {
     pub(super) fn replace(&mut self, original_len: u64) -> io::Result<()> {
         let original = File::open(&self.path)?;
         let metadata = original.metadata()?;
-        // Where only root could, the one who resumes has it from here on, as with any file that is written anew.
+        // Where only root could, the one who resumes has it from here on, as with any file that is written again.
         let _ = std::os::unix::fs::fchown(&self.file, Some(metadata.uid()), Some(metadata.gid()));
         let _ = self.file.set_permissions(metadata.permissions());
         let file = self.file.try_clone()?;

@@ -1,4 +1,4 @@
-//! What has to be known of a log before some commit to read on from there, or to go on with a run behind it.
+//! What has to be known of a log before some commit to read on from there, or to continue a run behind it.
 
 use super::chunk::Channels;
 use super::ledger::Ledger;

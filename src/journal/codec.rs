@@ -32,7 +32,7 @@ fn encode_field(vectors: &[[f64; 3]]) -> Vec<u8> {
     bytes
 }
 
-/// A mesh as bytes.
+/// Encodes a mesh.
 ///
 /// # Errors
 /// Where the mesh is unsound or larger than a log can hold.
@@ -83,7 +83,7 @@ pub struct EncodedState {
     pub fields: Vec<EncodedField>,
 }
 
-/// A state as bytes, without its mesh.
+/// Encodes a state, without its mesh.
 ///
 /// # Errors
 /// Where the state is unsound or larger than a log can hold.
@@ -107,7 +107,7 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField])
         moment_n_mm,
         strain_energy_n_mm,
         negative_pivots,
-        drive: DriveMemory { control: StepControl { halvings, jump_seen_at_deg, rejection }, course },
+        drive: DriveMemory { control: StepControl { halvings, jump_beyond, rejection }, course },
         largest_force_n,
         refinement,
     } = state;
@@ -134,7 +134,7 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField])
         strain_energy_n_mm: *strain_energy_n_mm,
         negative_pivots: *negative_pivots,
         halvings: *halvings,
-        jump_seen_at_deg: *jump_seen_at_deg,
+        jump_beyond: *jump_beyond,
         rejection: rejection.map(|rejection| match rejection {
             Rejection::NoEquilibrium => RejectionV1::NoEquilibrium,
             Rejection::Jump => RejectionV1::Jump,
@@ -205,7 +205,7 @@ pub fn decode_state<'a>(
         drive: DriveMemory {
             control: StepControl {
                 halvings: stored.halvings,
-                jump_seen_at_deg: stored.jump_seen_at_deg,
+                jump_beyond: stored.jump_beyond,
                 rejection: stored.rejection.map(|rejection| match rejection {
                     RejectionV1::NoEquilibrium => Rejection::NoEquilibrium,
                     RejectionV1::Jump => Rejection::Jump,

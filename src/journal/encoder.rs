@@ -370,7 +370,7 @@ impl Encoder {
         chunk::has_its_checksum(bytes, part) && chunk::records(bytes, part).into_iter().flatten().all(is_described)
     }
 
-    /// A chunk of which no more can be gone by than the hashes in its commit: its messages under topics described anew.
+    /// A chunk of which no more can be gone by than the hashes in its commit: its messages under topics described again.
     fn again_as_committed(
         &mut self,
         bytes: &[u8],

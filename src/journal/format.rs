@@ -10,7 +10,7 @@
 //! | `/foldline/finished` | `json` | `foldline.Finished` | at the end of a run that reached its end |
 //!
 //! A state names its mesh and its fields (displacements, those of the equilibrium before, the heading of a path) by hash, so a
-//! stage that changes none (indicators that mark nothing, a solve that is turned down) writes some hundred bytes and its report.
+//! stage that changes none (indicators that mark nothing, a solve that is rejected) writes some hundred bytes and its report.
 //!
 //! Before the first chunk, and again wherever a run was taken up again, stands a metadata record `foldline.manifest`: it
 //! begins a *stretch* of the run.
@@ -24,7 +24,7 @@
 //!
 //! | 3 | a state names each of its fields by its own hash, and a commit names them all; before, the displacements and those of the equilibrium before were one |
 //!
-//! A log may hold commits of several versions: one that is gone on with keeps those that it has.
+//! A log may hold commits of several versions: one that is continued keeps those that it has.
 //!
 //! # Why nothing is compressed
 //! Measured on the chunks of three runs, one by one, as they would have to be written: zstd at level 1

@@ -22,7 +22,7 @@ pub(super) struct Frame {
     pub body: Range<usize>,
 }
 
-/// A record that goes on beyond the bytes there are.
+/// A record that continues beyond the bytes there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cut {
     /// What the record is and how long it says that it is, where that much is left.

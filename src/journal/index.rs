@@ -1,8 +1,8 @@
 //! `LOG.index`: where the commits of a long log lie and the numbers of their reports, in blocks of a thousand or so.
 //!
 //! It is a cache. A block carries the hash of its head, and its head those of its columns; the head marks the block's last
-//! commit, which is read from the log and held against its own seal and chain hash before anything behind it is. Where a block
-//! is missing, torn or does not fit, the log is read instead, and the index written anew. No log is shorter for having none.
+//! commit, which is read from the log and compared with its own seal and chain hash before anything behind it is. Where a block
+//! is missing, torn or does not fit, the log is read instead, and the index written again. No log is shorter for having none.
 //!
 //! A column holds eight bytes for each commit: where its chunk lies, or a field of its report ([`fields_of`]) as a number.
 
@@ -91,7 +91,7 @@ pub(super) struct Builder {
 const ABSENT: u64 = f64::NAN.to_bits();
 
 impl Builder {
-    /// The next commit is number `ordinal`.
+    /// Begins a block whose first commit is number `ordinal`.
     pub fn at(ordinal: u64) -> Self {
         Self { first: ordinal, ..Self::default() }
     }
@@ -168,7 +168,7 @@ fn number(value: &serde_json::Value) -> u64 {
     }
 }
 
-/// What stands for a word.
+/// The number that stands for a word in a column.
 pub fn word_number(word: &str) -> u64 {
     blake3::hash(word.as_bytes()).as_bytes().first_chunk().map_or(ABSENT, |bytes| u64::from_le_bytes(*bytes))
 }
@@ -224,12 +224,12 @@ impl Index {
         self.heads.push(head);
     }
 
-    /// An index without blocks in a file.
+    /// Creates an index without blocks in a file.
     pub fn empty(file: File) -> Self {
         Self { file, heads: Vec::new(), length: 0 }
     }
 
-    /// Commits that it knows.
+    /// Number of commits that the index knows.
     pub fn commits(&self) -> u64 {
         self.heads.last().map_or(0, |head| head.first + head.commits)
     }

@@ -25,12 +25,12 @@ pub(super) struct IndexKeeper {
 }
 
 impl IndexKeeper {
-    /// For a log that begins.
+    /// Creates a keeper for a log that begins.
     pub fn new(path: PathBuf) -> Self {
         Self { path, builder: Builder::at(0), waiting: Vec::new(), file: None }
     }
 
-    /// For a log that is gone on with, and has an index.
+    /// Creates a keeper for a log that is continued and has an index.
     pub fn behind(path: PathBuf, index: &Index, builder: Builder) -> Option<Self> {
         let file = OpenOptions::new().append(true).open(&path).ok()?;
         file.set_len(index.length).ok()?;
@@ -44,7 +44,7 @@ impl IndexKeeper {
 
     /// Takes a commit; `None` where the index cannot be kept any longer.
     pub fn take(mut self, place: ChunkPlace, record: &Record, mark: impl FnOnce() -> Option<Mark>) -> Option<Self> {
-        // What is missing of a log that is gone on with is indexed by whoever reads it next.
+        // What is missing of a log that is continued is indexed by whoever reads it next.
         if self.builder.next() != record.commit.ordinal {
             return None;
         }
@@ -78,7 +78,7 @@ pub(super) fn is_index(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|metadata| metadata.is_file()) && read.is_ok() && start == *INDEX_MAGIC
 }
 
-/// An index that is written anew or made longer: under a temporary name until it is whole.
+/// An index that is written again or made longer: under a temporary name until it is whole.
 #[derive(Debug)]
 pub(super) struct Rewritten {
     file: WholeFile,
@@ -86,7 +86,7 @@ pub(super) struct Rewritten {
 }
 
 impl Rewritten {
-    /// Begins with what is there.
+    /// Begins with the blocks that are there.
     pub fn of(path: &Path, old: Option<&Index>) -> Option<Self> {
         let file = WholeFile::beside(path).ok()?;
         let mut index = Index::empty(file.file().try_clone().ok()?);

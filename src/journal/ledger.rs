@@ -70,7 +70,7 @@ impl Ledger {
         self.close(open);
     }
 
-    /// Messages of each channel.
+    /// Number of messages of each channel.
     pub fn messages(&self) -> BTreeMap<u16, u64> {
         let mut chunks = vec![0_u64; self.patterns.len()];
         self.chunks.iter().for_each(|chunk| chunks[chunk.pattern as usize] += 1);
@@ -83,7 +83,7 @@ impl Ledger {
         messages
     }
 
-    /// The channels that it has the records of.
+    /// The channels whose records the ledger has.
     pub fn channels_described(&self) -> Channels {
         let parsed = self.channels.values().filter_map(|record| {
             let found = frame::next(record, 0)?.ok()?;

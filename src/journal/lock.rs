@@ -4,7 +4,7 @@
 //! file system has no such locks, the lease in `LOG.lease` stands in: of several who claim it one gets it, and keeps it
 //! while its process lives. Where locks seem to work and another machine does not see them, whoever comes takes the
 //! lease over: a writer looks before every commit whether it is still its own, and stops where it is not, or where the file is
-//! no longer the one of the length that it left. Under the system's lock a log is gone on with in place, and else in a copy
+//! no longer the one of the length that it left. Under the system's lock a log is continued in place, and else in a copy
 //! that takes its place.
 
 use std::fs::{self, File, OpenOptions, TryLockError};

@@ -32,7 +32,7 @@ pub struct Entry {
     pub(super) names_stretch: bool,
 }
 
-/// Something worth telling that costs no commit.
+/// A remark about a log that costs no commit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// Where it is, bytes.
@@ -96,7 +96,7 @@ pub(super) struct Part {
     pub kept: Kept,
 }
 
-/// What is good of a log, or of its last part. Holds the file, or that part, in memory; states are decoded, and held against
+/// What is good of a log, or of its last part. Holds the file, or that part, in memory; states are decoded, and compared with
 /// their hashes, when asked for.
 #[derive(Debug)]
 pub struct Log {
@@ -126,7 +126,7 @@ pub struct Log {
     pub(super) later: Vec<LaterCommit>,
     pub(super) notes: Vec<Note>,
     pub(super) last_mesh: Mutex<Option<(Hash, Arc<Mesh>)>>,
-    /// The scenes of the manifests, once a state was held against them; `None` for one that does not read.
+    /// The scenes of the manifests, once a state was compared with them; `None` for one that does not read.
     pub(super) scenes: OnceLock<Vec<Option<Scene>>>,
     pub(super) bytes: Vec<u8>,
 }
@@ -145,7 +145,7 @@ impl Log {
         let lost = self.lost_manifests().iter().rfind(|lost| lost.ordinal <= index as u64);
         let may = move |place: usize, manifest: &Manifest| match named {
             Some(Some(stretch)) => stretch == place,
-            // One that was given anew once it was lost.
+            // One that was given again once it was lost.
             Some(None) => lost.is_some_and(|lost| place >= lost.before),
             None => manifest.first_ordinal <= index as u64,
         };
@@ -173,7 +173,7 @@ impl Log {
         &self.stretches.lost
     }
 
-    /// Those of them whose place none takes: the run was not gone on with, behind them, with a scene that makes the same states.
+    /// Those of them whose place none takes: the run was not continued, behind them, with a scene that makes the same states.
     pub fn missed_manifests(&self) -> impl Iterator<Item = &LostManifest> {
         self.lost_manifests().iter().filter(|lost| {
             let behind = &self.manifests()[lost.before..];
@@ -190,7 +190,7 @@ impl Log {
         self.notes.iter().rfind(|note| note.at == at)
     }
 
-    /// Whether the last of them is behind the last good one: what the run last went on with is not known.
+    /// Whether the last of them is behind the last good one: what the run last continued with is not known.
     pub fn last_manifest_is_lost(&self) -> bool {
         self.stretches.last_is_lost
     }
@@ -205,7 +205,7 @@ impl Log {
         self.first
     }
 
-    /// Stages of the run, whether they were read or not.
+    /// Number of stages of the run, whether they were read or not.
     pub fn commits(&self) -> usize {
         self.first + self.entries.len()
     }
@@ -220,7 +220,7 @@ impl Log {
         self.entries.last().map(|entry| &entry.record.commit)
     }
 
-    /// What the log is worth.
+    /// How complete the log is.
     pub fn completeness(&self) -> Completeness {
         let at = self.good_end();
         let dropped = self.file_len - at;
@@ -248,7 +248,7 @@ impl Log {
         &self.later
     }
 
-    /// What is worth telling and costs no commit.
+    /// Remarks that cost no commit.
     pub fn notes(&self) -> &[Note] {
         &self.notes
     }
@@ -276,7 +276,7 @@ impl Log {
         self.base + self.walked as u64 >= self.file_len
     }
 
-    /// Whether every byte up to the end of the good part is as it was written, and no manifest is lost: a run may go on right
+    /// Whether every byte up to the end of the good part is as it was written, and no manifest is lost: a run may continue right
     /// behind it.
     pub(super) fn is_clean(&self) -> bool {
         let good_end = self.good_end();

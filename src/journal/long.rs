@@ -16,7 +16,7 @@ use super::parts::read_in_parts;
 use super::reader::open_regular;
 use crate::pipeline::Record;
 
-/// Why a long log cannot be asked.
+/// Why stages of a long log cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum LongLogError {
     /// The log or its index cannot be read.
@@ -116,7 +116,7 @@ impl LongLog {
         &self.tail
     }
 
-    /// Stages of the run.
+    /// Number of stages of the run.
     pub fn commits(&self) -> usize {
         self.tail.commits()
     }

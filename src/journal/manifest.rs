@@ -17,7 +17,7 @@ use crate::printable::one_line;
 use crate::scene::{Scene, SceneError, parse_with_settings};
 use crate::state::Hash;
 
-/// What stood at the start of one stretch of a run.
+/// Scene, program and machine of one stretch of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Manifest {
     /// Version of the log's layout.
@@ -74,7 +74,7 @@ pub enum ManifestError {
     Check,
 }
 
-/// Why the scene in a log is none.
+/// Why the text in a manifest is not a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneInLogError {
     /// It does not stand for itself.
@@ -97,7 +97,7 @@ fn own_terms(entries: &BTreeMap<String, String>) -> Vec<(String, String)> {
 }
 
 impl Manifest {
-    /// A manifest of this program on this machine, now.
+    /// Creates a manifest of this program on this machine, now.
     pub fn here(scene_file: &Path, scene_text: &str, threads: usize) -> Self {
         Self {
             format_version: FORMAT_VERSION,
@@ -117,7 +117,7 @@ impl Manifest {
         }
     }
 
-    /// The same of a run with terms of the caller's own.
+    /// Creates the same for a run with terms of the caller's own.
     pub fn with_terms(self, own: &[Arc<dyn TermSource>]) -> Self {
         let own_terms = own.iter().map(|source| (source.name().to_owned(), source.hash().to_string())).collect();
         Self { own_terms, ..self }
@@ -158,7 +158,7 @@ impl Manifest {
         }
     }
 
-    /// The scene, with settings laid over it. It stands for itself: one that names a file is none that this program wrote, and
+    /// The scene, with settings applied to it. It stands for itself: one that names a file is none that this program wrote, and
     /// no file is opened.
     ///
     /// # Errors
@@ -178,7 +178,7 @@ impl Manifest {
         Ok(parse_with_settings(&self.scene_text, "the scene in the log", settings).map_err(Box::new)?)
     }
 
-    /// Looks whether a log can hold it.
+    /// Checks that a log can hold the manifest.
     ///
     /// # Errors
     /// Where the scene is larger than any that a reader takes.

@@ -66,7 +66,7 @@ pub struct MessageHash {
 }
 
 impl MessageHash {
-    /// The name of this data on this topic.
+    /// Names this data on this topic by its hash.
     pub fn of(topic: &str, data: &[u8]) -> Self {
         Self::hashed(topic, data, blake3::hash(data))
     }
@@ -213,7 +213,7 @@ struct NotFinite {
 }
 
 impl ReportMessage {
-    /// The message for a finished stage.
+    /// Creates the message of a finished stage.
     pub fn new(record: &Record) -> Self {
         let mut message = Self {
             report: record.report.clone(),
@@ -250,7 +250,7 @@ impl ReportMessage {
         numbers.into_iter().chain(released).collect()
     }
 
-    /// The message as JSON.
+    /// Writes the message as JSON.
     ///
     /// # Errors
     /// None that a report can cause; serde has no infallible way.
@@ -366,7 +366,7 @@ fn seal_of(body: &[u8]) -> Hash {
     blake3::Hasher::new().update(b"foldline seal").update(body).finalize()
 }
 
-/// A message as JSON with its seal.
+/// Writes a message as JSON with its seal.
 ///
 /// # Errors
 /// None that a message can cause; serde has no infallible way.
@@ -378,7 +378,7 @@ pub fn seal(message: &impl Sealed) -> Result<Vec<u8>, serde_json::Error> {
     Ok(json)
 }
 
-/// The message that the sealed JSON holds.
+/// Reads a sealed message and checks its seal.
 ///
 /// # Errors
 /// Where any byte is not as it was sealed.

@@ -9,7 +9,7 @@
 //!    hash of every other message in the chunk and of the manifest of its stretch; its chain hash follows from the commit
 //!    before it. A log that was cut or
 //!    changed anywhere is read up to the last commit for which all of that holds, and [`Log::completeness`] says what
-//!    lies behind. States are decoded only when they are asked for, and held against their content hash.
+//!    lies behind. States are decoded only when they are asked for, and compared with their content hash.
 //! 3. **The end is explicit.** MCAP's footer proves nothing (its writer adds one even while a panic unwinds), so a run
 //!    that reached its end says so in a message of its own.
 //!
@@ -22,35 +22,35 @@
 //! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
 //! | `checkpoint`, `parts`, `index`, `index_keeper`, `long`, `asked` | a long log, of which only what is asked for is read |
 //! | `portions` | a log of any length, read through without holding it |
-//! | `resume`, `recovery` | going on with a log, copying what is good of one |
+//! | `resume`, `recovery` | continuing a log, copying what is good of one |
 //! | `new_log`, `thin` | a log that is made of another, without some of its states |
 //! | `mending`, `lost_manifest` | a log with stages put back that it had lost; what is not known without a manifest |
 //! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
 //! | `rewriting`, `agreement`, `verify` | all that can be checked, all of it |
 //! | `trace` | what a solve did, iterate by iterate, as a log of its own |
 //!
-//! # Writing, stopping, going on
+//! # Writing, stopping, continuing
 //!
 //! [`JournalWriter::create`] begins a log and never overwrites one. It is a [`Sink`](crate::pipeline::Sink): the loop
 //! hands it every stage. At the end [`JournalWriter::finish`]; where a run is stopped on purpose
 //! [`JournalWriter::close`], which leaves the end open but adds what viewers look for. [`Resume`] claims a log, reads
-//! it, and goes on behind its last good commit.
+//! it, and continues behind its last good commit.
 //!
-//! A log that is as it was written is gone on with in place, under a lock that no other process can hold; any other is
+//! A log that is as it was written is continued in place, under a lock that no other process can hold; any other is
 //! copied (`resume` says how both survive a kill and a power cut).
 //!
 //! # Long logs
 //!
 //! From some four thousand commits on, `LOG.index` lies beside a log: where its commits are and the numbers of their
-//! reports, written as the run goes on. [`LongLog`] and [`Resume`] read the end of such a log alone, and through the index
+//! reports, written as the run continues. [`LongLog`] and [`Resume`] read the end of such a log alone, and through the index
 //! what they are asked for, and check the seals and hashes of what they read. The index is a cache: without it, or where it
-//! does not fit, the log is read through, in parts that fit in memory, and the index is written anew. [`verify()`] reads all
+//! does not fit, the log is read through, in parts that fit in memory, and the index is written again. [`verify()`] reads all
 //! of a log and none of its index.
 //!
 //! What goes through a log from front to back reads [`Portions`], of which one is in memory: [`recover()`], [`thin()`], tables and
 //! curves.
 //!
-//! [`thin()`] writes a log anew without the states between some load steps; commits and reports, and with them the chain,
+//! [`thin()`] writes a log again without the states between some load steps; commits and reports, and with them the chain,
 //! stay.
 //!
 //! # Checking that other programs can read a log

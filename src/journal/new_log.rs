@@ -108,7 +108,7 @@ pub(super) struct ClosedLog {
 }
 
 impl ClosedLog {
-    /// What a reader makes of it.
+    /// Reads the new log as any reader would.
     pub fn read(&self) -> Result<Log, ReadError> {
         let io = |source| ReadError::Io { path: self.target.display().to_string(), source };
         let file = self.file.file();
@@ -117,7 +117,7 @@ impl ClosedLog {
         Log::from_bytes(bytes)
     }
 
-    /// Gives it its name; gives back its length, bytes.
+    /// Gives the new log its name and returns its length, bytes.
     pub fn keep(self) -> Result<u64, NewLogError> {
         let Self { target, file } = self;
         let kept = file.file().metadata().and_then(|metadata| file.keep_as(&target).map(|()| metadata.len()));

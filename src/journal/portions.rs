@@ -31,7 +31,7 @@ pub struct Portion {
 }
 
 impl Portions {
-    /// The portions of the log in a file.
+    /// Opens the log in a file to be read in portions.
     ///
     /// # Errors
     /// Where the file cannot be opened.
@@ -67,7 +67,7 @@ impl Portions {
 }
 
 impl Portion {
-    /// Its stages.
+    /// The stages of the portion.
     pub fn entries(&self) -> &[Entry] {
         &self.log.entries[..self.own]
     }

@@ -1,8 +1,8 @@
-//! A log read front to back: every record walked, every chunk opened, every commit held against the one before it.
+//! A log read front to back: every record walked, every chunk opened, every commit compared with the one before it.
 //!
 //! A commit is good where its seal holds, its messages have the hashes that it names, and its chain hash follows from
 //! the good commit before it. Whatever is not as it was written is listed as a problem. One that costs no commit (in an
-//! index, or in a manifest) leaves the chain whole, and reading goes on past it. One that costs a commit breaks the
+//! index, or in a manifest) leaves the chain whole, and reading continues past it. One that costs a commit breaks the
 //! chain: what stands behind it is looked through only to say what was lost.
 
 use std::fs::File;

@@ -1,16 +1,16 @@
 //! Going on with a log.
 //!
-//! A log that is as it was written is gone on with in place: what a killed process left half done, the summary and the record
+//! A log that is as it was written is continued in place: what a killed process left half done, the summary and the record
 //! of the end are cut off, that is made durable, and then the new stretch is added with its first commit, in one write. Before
 //! that write nothing changes. A cut leaves every commit whole, and a write that does not get through leaves what a killed
 //! process leaves, so a log is good up to its last commit whenever the process, or the power, goes.
 //!
 //! That asks for a lock which no other process can hold at once. Where the file system has none, where bytes before the last
-//! commit are not as they were written, and where the run goes on from an earlier commit, the good records are copied instead:
-//! to `LOG.new`, which is forced to disk while the run already goes on, and takes the log's place before the first new commit
+//! commit are not as they were written, and where the run continues from an earlier commit, the good records are copied instead:
+//! to `LOG.new`, which is forced to disk while the run already continues, and takes the log's place before the first new commit
 //! is added. A process that has lost the log only ever writes to the old file then.
 //!
-//! What a log loses when it is gone on with is kept beside it as `LOG.dropped-N` wherever it might still be worth something:
+//! What a log loses when it is continued is kept beside it as `LOG.dropped-N` wherever it might still be worth something:
 //! after damage always, after a cut only if whole commits lie behind it. The torn rest of the stage that was in flight is worth
 //! nothing, and goes.
 
@@ -39,7 +39,7 @@ use crate::scene::SyncPolicy;
 use crate::state::Hash;
 use crate::whole_file::write_new;
 
-/// Why a run cannot go on from a log.
+/// Why a log cannot be continued.
 #[derive(Debug, thiserror::Error)]
 pub enum ResumeError {
     /// There is no such file.
@@ -85,7 +85,7 @@ pub enum ResumeError {
     },
 }
 
-/// A log that this process, and no other, may go on with.
+/// A log that this process, and no other, may continue.
 #[derive(Debug)]
 pub struct Resume {
     path: PathBuf,
@@ -105,12 +105,12 @@ struct Before {
     builder: Builder,
 }
 
-/// A log that is being gone on with.
+/// A log that is being continued.
 #[derive(Debug)]
 pub struct Resumed {
     /// Takes the stages that follow.
     pub writer: JournalWriter,
-    /// The log as it was, for the state to go on from, or the end of it. Holds the file, or its end, in memory; drop it once
+    /// The log as it was, for the state to continue from, or the end of it. Holds the file, or its end, in memory; drop it once
     /// that is taken.
     pub log: Log,
     /// Where the part that was dropped is kept, if it might still be worth something.
@@ -153,7 +153,7 @@ impl Resume {
         Self { copies: true, ..self }
     }
 
-    /// What the log holds.
+    /// The log as far as it was read.
     pub fn log(&self) -> &Log {
         &self.log
     }
@@ -184,7 +184,7 @@ impl Resume {
     }
 
     /// Puts back the scene of a manifest that is lost, of which `manifest` has the file, and behind it that of the last stretch, with
-    /// which the log is gone on with as before. No stage is added.
+    /// which the log is continued as before. No stage is added.
     ///
     /// # Errors
     /// Where the copy cannot be made; the log is then as it was.
@@ -292,7 +292,7 @@ impl JournalWriter {
     }
 }
 
-/// Keeps a log that goes on from an earlier stage than its last as `LOG.replaced-N`.
+/// Keeps a log that continues from an earlier stage than its last as `LOG.replaced-N`.
 fn keep_whole(path: &Path) -> Result<PathBuf, ResumeError> {
     for number in 1_u32.. {
         let kept = beside(path, &format!(".replaced-{number}"));

@@ -1,4 +1,4 @@
-//! The walk over the bytes of a log: every record, every chunk opened, every commit held against the one before it.
+//! The walk over the bytes of a log: every record, every chunk opened, every commit compared with the one before it.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -33,7 +33,7 @@ const HEADER_BYTES_LIMIT: usize = 4 << 10;
 pub(super) struct Scan {
     /// Place of the first byte in the file.
     base: u64,
-    /// Where reading goes on from, other than the start of the file.
+    /// Where reading continues from, other than the start of the file.
     from: Option<(u64, Hash)>,
     channels: Channels,
     pub header: Option<(String, String)>,
@@ -314,7 +314,7 @@ impl Scan {
         }
     }
 
-    /// Holds a commit against the one before it, and keeps it.
+    /// Compares a commit with the one before it, and keeps it.
     fn commit(&mut self, frame: &Frame, content: CommitContent) -> Result<(), Damage> {
         if self.finished.is_some() {
             return Err(Damage::AfterEnd);

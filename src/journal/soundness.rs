@@ -172,7 +172,7 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
         moment_n_mm,
         strain_energy_n_mm,
         negative_pivots: _,
-        drive: DriveMemory { control: StepControl { halvings: _, jump_seen_at_deg, rejection: _ }, course },
+        drive: DriveMemory { control: StepControl { halvings: _, jump_beyond, rejection: _ }, course },
         largest_force_n,
         refinement,
     } = state;
@@ -233,7 +233,7 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
             finite("length or rate of the path", lengths.into_iter().chain(ahead))?;
         }
     }
-    finite("rotation of a known jump", *jump_seen_at_deg)
+    finite("rotation of a known jump", *jump_beyond)
 }
 
 /// Checks that a state may have been made by a run of these scenes: those of its log up to its own, which is the last. What one
@@ -286,7 +286,7 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
     let at_least = |what, value: f64, least: f64| {
         if value >= least { Ok(()) } else { Err(Flaw::Absurd { what, value }) }
     };
-    let StepControl { halvings, jump_seen_at_deg: _, rejection: _ } = control;
+    let StepControl { halvings, jump_beyond: _, rejection: _ } = control;
     if halvings.unsigned_abs() > HALVINGS {
         return Err(Flaw::Absurd { what: "the number of halvings", value: f64::from(*halvings) });
     }

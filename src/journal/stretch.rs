@@ -39,7 +39,7 @@ pub(super) struct Stretches {
 }
 
 impl Stretches {
-    /// A manifest that follows on the commits before it.
+    /// Takes a manifest that follows on the commits before it.
     pub fn begin(&mut self, manifest: Manifest, hash: Hash) {
         self.manifests.push(manifest);
         self.hashes.push(hash);
@@ -103,7 +103,7 @@ impl Stretches {
         self.manifests.len().checked_sub(1).filter(|_| is_last)
     }
 
-    /// A commit behind a loss.
+    /// Takes a commit behind a loss.
     pub fn of_later_commit(&mut self, at: u64, hash: Option<Hash>) {
         let known = |hash| self.hashes.last() == Some(&hash) || self.later.iter().any(|(_, later, _)| *later == hash);
         match hash {

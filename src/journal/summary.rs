@@ -1,7 +1,7 @@
 //! MCAP's end of a file: the summary that viewers go by, in pieces, so that a log of a million commits needs no memory for
 //! it. The MCAP project's own writer keeps some 350 bytes for each chunk until the end, this one what
 //! [`Ledger`] takes. The data section's checksum is left out, as MCAP allows: it would have every
-//! byte of a log read that is gone on with.
+//! byte of a log read that is continued.
 
 use super::format::log_time_ns;
 use super::frame::{CHUNK_HEADER_LEN, PREFIX_LEN, op};

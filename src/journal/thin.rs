@@ -1,6 +1,6 @@
 //! A log without the states between some load steps: every commit and every report stays, and with them the chain.
 //!
-//! A commit names its messages by their hashes, and goes on naming those that are left out. So a thinned chunk lacks a state,
+//! A commit names its messages by their hashes, and continues naming those that are left out. So a thinned chunk lacks a state,
 //! and a mesh or fields that no kept state stands on, and nothing else; its commit, sealed as ever, says what the state
 //! hashed to. A metadata record in front says that this was meant, so that a state which is lost otherwise is told from one that
 //! was dropped.
@@ -56,7 +56,7 @@ pub enum ThinError {
     New(#[from] NewLogError),
 }
 
-/// Writes a log anew with the states that end the load steps which `keeps` takes, and the last one; `kept_as` says in words
+/// Writes a log again with the states that end the load steps which `keeps` takes, and the last one; `kept_as` says in words
 /// which. The new log is whole or not there.
 ///
 /// # Errors

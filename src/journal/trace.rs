@@ -26,7 +26,7 @@ pub struct TraceRow {
     pub energy_n_mm: f64,
     /// |residual|, N.
     pub residual_n: f64,
-    /// |residual| over the forces that it is held against.
+    /// |residual| over the forces that it is compared with.
     pub relative_residual: f64,
     /// Length of the last step along its direction; 1 is a full Newton step.
     pub step_length: f64,

@@ -26,7 +26,7 @@ pub enum Level {
     Error,
 }
 
-/// Something that was found out about a log.
+/// One result of checking a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     /// How much it matters.

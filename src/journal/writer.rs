@@ -114,7 +114,7 @@ pub enum WriteError {
         "cannot {action} {log}; it holds {commits} stages. `foldline resume {log}` goes on behind the last good one"
     )]
     Io {
-        /// "write", "sync" or "begin anew".
+        /// "write", "sync" or "begin again".
         action: &'static str,
         /// The log.
         log: String,
@@ -333,7 +333,7 @@ impl JournalWriter {
         self.backend.check(self.length, self.commits()).is_ok()
     }
 
-    /// Keeps a stage: one commit, one write, and a sync where the policy asks for it. The state is held against the hash that
+    /// Keeps a stage: one commit, one write, and a sync where the policy asks for it. The state is compared with the hash that
     /// the commit names.
     ///
     /// # Errors

@@ -53,12 +53,12 @@ impl BlockPattern {
         slots
     }
 
-    /// Control points.
+    /// Number of control points.
     pub fn points(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Blocks.
+    /// Number of blocks.
     pub fn blocks(&self) -> usize {
         self.columns.len()
     }

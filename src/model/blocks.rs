@@ -18,12 +18,12 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// A matrix of zeros.
+    /// Creates a matrix of zeros.
     pub fn zeros(pattern: &BlockPattern) -> Self {
         Self { values: vec![0.0; pattern.blocks() * BLOCK] }
     }
 
-    /// Puts zero everywhere.
+    /// Sets all numbers to zero.
     pub fn clear(&mut self) {
         self.values.par_chunks_mut(SHARE).for_each(|share| share.fill(0.0));
     }

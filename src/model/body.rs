@@ -33,14 +33,14 @@ pub struct HeldMotions {
 }
 
 impl Body {
-    /// The body of some points.
+    /// Creates the body of some points.
     pub fn around(points: &[[f64; 3]]) -> Self {
         let count = points.len() as f64;
         let middle = points.iter().fold([0.0; 3], |sum, x| [0, 1, 2].map(|c| sum[c] + x[c] / count));
         Self { middle, size: points.iter().map(|x| norm(sub(*x, middle))).fold(0.0, f64::max) }
     }
 
-    /// What each motion does to a point.
+    /// Displacement of a point by each of the six motions.
     pub fn fields(&self, point: [f64; 3]) -> [[f64; 3]; 6] {
         let arm = scaled(1.0 / self.size, sub(point, self.middle));
         let unit = |k: usize| [0, 1, 2].map(|c| f64::from(u8::from(c == k)));

@@ -82,12 +82,12 @@ impl Connectivity {
         Self::new(points, &elements, &lengths, self.colours.len())
     }
 
-    /// Control points that there are.
+    /// Number of control points.
     pub fn points(&self) -> usize {
         self.points
     }
 
-    /// Elements.
+    /// Number of elements.
     pub fn elements(&self) -> usize {
         self.starts.len() - 1
     }
@@ -97,12 +97,12 @@ impl Connectivity {
         &self.controls[self.starts[element]..self.starts[element + 1]]
     }
 
-    /// All strands.
+    /// The strands, in the order of sums.
     pub fn strands(&self) -> &[Strand] {
         &self.strands
     }
 
-    /// Strands of each colour.
+    /// The strands of each colour, by their numbers.
     pub fn colours(&self) -> &[Vec<usize>] {
         &self.colours
     }

@@ -44,7 +44,7 @@ impl Source {
 }
 
 impl FreeStrains {
-    /// Of a scene's actions on a mesh.
+    /// Computes the free strains of a scene's actions on a mesh.
     pub fn new(scene: &Scene, mesh: &Mesh) -> Self {
         let sources: Vec<Source> = scene.actions.iter().filter_map(Source::of).collect();
         // A scene is checked for expansions where the temperature changes.

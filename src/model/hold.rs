@@ -6,7 +6,7 @@ use crate::model::elimination::Expression;
 use crate::model::expressions::control_expressions;
 use crate::model::mirror::Mirror;
 use crate::model::scene_supports::supports_of;
-use crate::model::supports::{Law, Section, Supports, Trace};
+use crate::model::supports::{Footprint, PrescribedMotion, Section, Supports};
 use crate::model::symmetric_line::Line;
 use crate::model::ties::Ties;
 use crate::scene::{Hold, Motion, Place, Scene, Support};
@@ -14,7 +14,7 @@ use crate::shell::{add, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
 impl Supports {
-    /// Supports of a scene on a mesh.
+    /// Finds the constraints of a scene's supports on a mesh.
     ///
     /// # Errors
     /// Where one does not fit the surface, or two contradict each other.
@@ -25,7 +25,7 @@ impl Supports {
             section_of: vec![None; count],
             constraints: Vec::new(),
             displacements: Vec::new(),
-            traces: Vec::new(),
+            footprints: Vec::new(),
             owner: Vec::new(),
             held_motions: None,
         };
@@ -34,7 +34,7 @@ impl Supports {
         let points: Vec<[f64; 3]> = mesh.points().collect();
         // Sections first: what else holds their control points must know their frames.
         for (index, support) in all.iter().enumerate() {
-            supports.traces.push(Trace {
+            supports.footprints.push(Footprint {
                 name: support.name.clone(),
                 points: vec![],
                 mirrored: vec![],
@@ -93,10 +93,10 @@ impl Supports {
                 Motion::Free(_) => None,
                 Motion::Given(value) => {
                     let at_one = if k < 3 { *value } else { value.to_radians() * size };
-                    Some(Law { at_one, history: support.history.clone() })
+                    Some(PrescribedMotion { at_one, history: support.history.clone() })
                 }
             };
-            let laws: Vec<Option<Law>> = motions.iter().enumerate().map(law).collect();
+            let laws: Vec<Option<PrescribedMotion>> = motions.iter().enumerate().map(law).collect();
             let section = self.sections.len();
             self.sections.push(Section {
                 centre,
@@ -106,14 +106,14 @@ impl Supports {
             });
             for point in &held {
                 if let Some(other) = self.section_of[*point].replace(section) {
-                    let first = self.traces.iter().find(|trace| trace.section == Some(other));
+                    let first = self.footprints.iter().find(|trace| trace.section == Some(other));
                     return Err(ModelError::SectionShared {
                         support: support.name.clone(),
                         other: first.map_or_else(String::new, |trace| trace.name.clone()),
                     });
                 }
             }
-            self.traces[index].section = Some(section);
+            self.footprints[index].section = Some(section);
         }
         for point in &rows.outer {
             (0..3).for_each(|c| self.push(Some(index), vec![(3 * point + c, 1.0)]));
@@ -123,12 +123,12 @@ impl Supports {
                 self.push(Some(index), along(*point, *normal));
             }
         }
-        self.traces[index].points = held;
-        self.traces[index].pole = centre;
+        self.footprints[index].points = held;
+        self.footprints[index].pole = centre;
         Ok(())
     }
 
-    /// A plane of symmetry: no displacement across it, and slopes that go on evenly behind it.
+    /// A plane of symmetry: no displacement across it, and slopes that continue evenly behind it.
     fn mirror(&mut self, index: usize, rows: &EdgeRows, mirror: &Mirror) -> Result<(), ModelError> {
         let normal = mirror.normal;
         self.check_sections_keep(&rows.outer, mirror)?;
@@ -141,9 +141,9 @@ impl Supports {
                 self.push(Some(index), expression);
             }
         }
-        self.traces[index].points = rows.outer.iter().chain(&rows.inner).copied().collect();
-        self.traces[index].pole = rows.centroid;
-        self.traces[index].mirrored = rows.outer.clone();
+        self.footprints[index].points = rows.outer.iter().chain(&rows.inner).copied().collect();
+        self.footprints[index].pole = rows.centroid;
+        self.footprints[index].mirrored = rows.outer.clone();
         Ok(())
     }
 
@@ -167,7 +167,7 @@ impl Supports {
         let curve = line.points(mesh);
         let share = 1.0 / curve.len() as f64;
         let middle = curve.iter().fold([0.0; 3], |sum, x| add(sum, scaled(share, *x)));
-        let trace = &mut self.traces[index];
+        let trace = &mut self.footprints[index];
         (trace.points, trace.pole, trace.is_inner_mirror) = (points, middle, true);
         Ok(())
     }
@@ -188,7 +188,7 @@ impl Supports {
         for (c, value) in displacement.into_iter().enumerate() {
             let Some(value) = value else { continue };
             let given = (value != 0.0).then(|| {
-                self.displacements.push(Law { at_one: value, history: support.history.clone() });
+                self.displacements.push(PrescribedMotion { at_one: value, history: support.history.clone() });
                 3 * points.len() + self.displacements.len() - 1
             });
             for place in places {
@@ -203,15 +203,15 @@ impl Supports {
         for (point, factor) in places.iter().flatten() {
             (0..3).for_each(|c| pole[c] += factor * points[*point][c] / weight);
         }
-        self.traces[index].points = held;
-        self.traces[index].pole = pole;
+        self.footprints[index].points = held;
+        self.footprints[index].pole = pole;
         Ok(())
     }
 
     fn overlap(&self, index: usize, section: usize) -> ModelError {
-        let other = self.traces.iter().find(|trace| trace.section == Some(section));
+        let other = self.footprints.iter().find(|trace| trace.section == Some(section));
         ModelError::SectionShared {
-            support: self.traces[index].name.clone(),
+            support: self.footprints[index].name.clone(),
             other: other.map_or_else(String::new, |trace| trace.name.clone()),
         }
     }

@@ -113,7 +113,7 @@ fn place_of(mesh: &Mesh, way: usize, along: usize, across: usize) -> [f64; 3] {
     mesh.point(mesh.grid().index_along(way, along, across))
 }
 
-/// Weights of a joint, held against the geometry on every line across it.
+/// Weights of a joint, compared with the geometry on every line across it.
 fn smooth(mesh: &Mesh, way: usize, joint: Joint, spans: [f64; 2]) -> Result<Joint, ModelError> {
     let across = 0..mesh.control_counts()[1 - way];
     let legs: Vec<[[f64; 3]; 2]> = across

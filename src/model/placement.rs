@@ -171,7 +171,7 @@ impl<'a> Placement<'a> {
         &self.directions[self.unknowns.start[point]..][..self.unknowns.entries_of(point).len()]
     }
 
-    /// u, one vector a control point.
+    /// Displacement u of every control point, mm.
     pub fn displacement(&self) -> Vec<[f64; 3]> {
         let unknowns = self.unknowns;
         (0..unknowns.points.len())

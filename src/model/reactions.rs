@@ -31,7 +31,7 @@ pub type PointForces = BTreeMap<usize, [f64; 3]>;
 /// What supports and joints exert on the control points of a shell in equilibrium.
 #[derive(Clone, Debug)]
 pub struct Exerted {
-    /// By each support, in the order of [`Supports::traces`].
+    /// By each support, in the order of [`Supports::footprints`].
     pub by_supports: Vec<PointForces>,
     /// By the joints: between control points of the shell itself.
     pub by_joints: PointForces,
@@ -46,7 +46,7 @@ impl Placement<'_> {
         let constraints: Vec<&Expression> = turn.iter().map(|index| &supports.constraints[*index]).collect();
         let local: Vec<f64> =
             forces.iter().enumerate().flat_map(|(point, force)| self.seen_in_frame(point, *force)).collect();
-        let mut by_supports = vec![PointForces::new(); supports.traces.len()];
+        let mut by_supports = vec![PointForces::new(); supports.footprints.len()];
         let mut by_joints = PointForces::new();
         for (index, multiplier) in turn.iter().zip(multipliers(&constraints, &local)) {
             let holder = supports.owner[*index].map_or(&mut by_joints, |support| &mut by_supports[support]);
@@ -65,13 +65,13 @@ impl Placement<'_> {
 /// Constraints in the order in which they carry.
 fn in_turn(supports: &Supports) -> Vec<usize> {
     let mut mirrors = vec![0; supports.section_of.len()];
-    for point in supports.traces.iter().flat_map(|trace| &trace.mirrored) {
+    for point in supports.footprints.iter().flat_map(|trace| &trace.mirrored) {
         mirrors[*point] += 1;
     }
     let key = |index: &usize| {
         let class = match supports.owner[*index] {
-            Some(support) if !supports.traces[support].mirrored.is_empty() => 0,
-            Some(support) if supports.traces[support].is_inner_mirror => 2,
+            Some(support) if !supports.footprints[support].mirrored.is_empty() => 0,
+            Some(support) if supports.footprints[support].is_inner_mirror => 2,
             Some(_) => 1,
             None => 3,
         };

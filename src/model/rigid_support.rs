@@ -43,13 +43,13 @@ impl Supports {
         let spread = self.spread_points(scene, mesh)?;
         let positions: Vec<[f64; 3]> = spread.iter().map(|point| point.position).collect();
         if on_one_line(&positions) {
-            let support = self.traces[index].name.clone();
+            let support = self.footprints[index].name.clone();
             return Err(ModelError::TooFewPoints { support, count: spread.len() });
         }
         let body = Body::around(&positions);
         let free = free_motions(body, self, points);
         if free.basis.ncols() == 0 {
-            return Err(ModelError::NoFreeMotion { support: self.traces[index].name.clone() });
+            return Err(ModelError::NoFreeMotion { support: self.footprints[index].name.clone() });
         }
         for motion in free.basis.column_iter() {
             let mut expression = Expression::new();
@@ -63,7 +63,7 @@ impl Supports {
             }
             self.push(Some(index), expression);
         }
-        let trace = &mut self.traces[index];
+        let trace = &mut self.footprints[index];
         trace.points = spread.iter().flat_map(|point| &point.sum).map(|(control, _)| *control).collect();
         trace.pole = body.middle;
         self.held_motions = Some(HeldMotions { support: index, free });

@@ -19,7 +19,7 @@ pub struct Rotation {
 }
 
 impl Rotation {
-    /// At a rotation vector, radians.
+    /// Computes exp(ω) and its derivatives at a rotation vector ω, radians.
     pub fn new(vector: [f64; 3]) -> Self {
         let square: f64 = vector.iter().map(|x| x * x).sum();
         let [a, b] = [series(square, 1), series(square, 2)];

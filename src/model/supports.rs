@@ -14,21 +14,21 @@ const KEPT: f64 = 1e-9;
 /// Motions of a rigid section, as they stand in a scene.
 const MOTIONS: [&str; 6] = ["x_mm", "y_mm", "z_mm", "rotation_x_deg", "rotation_y_deg", "rotation_z_deg"];
 
-/// A given motion as a function of the scene's parameter.
+/// A prescribed motion as a function of the scene's parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Law {
+pub struct PrescribedMotion {
     /// At factor 1, mm.
     pub(super) at_one: f64,
     pub(super) history: History,
 }
 
-impl Law {
-    /// At a parameter, mm.
+impl PrescribedMotion {
+    /// Motion at a value of the parameter, mm.
     pub fn at(&self, parameter: f64) -> f64 {
         self.at_one * self.history.at(parameter)
     }
 
-    /// Derivative with respect to the parameter, mm.
+    /// Derivative of the motion with respect to the parameter, mm.
     pub fn rate(&self, parameter: f64) -> f64 {
         self.at_one * self.history.rate(parameter)
     }
@@ -41,15 +41,15 @@ pub struct Section {
     pub centre: [f64; 3],
     /// Largest distance of its control points from there, mm.
     pub size: f64,
-    /// Laws of translations and rotation vector (times the size), mm; `None` where free.
-    pub motions: [Option<Law>; 6],
+    /// Prescribed translations and rotation vector (times the size), mm; `None` where free.
+    pub motions: [Option<PrescribedMotion>; 6],
     /// Control points of the edge.
     pub rigid_row: Vec<usize>,
 }
 
-/// A support on the mesh, for its reactions.
+/// The control points that a support holds, for its reactions.
 #[derive(Clone, Debug)]
-pub struct Trace {
+pub struct Footprint {
     /// Name of the support.
     pub name: String,
     /// Control points that it holds.
@@ -74,10 +74,10 @@ pub struct Supports {
     /// Expressions in components (3 · control point + c, or 3 · control points + k for given displacement k) that are
     /// zero.
     pub constraints: Vec<Expression>,
-    /// Laws of the given displacements.
-    pub displacements: Vec<Law>,
+    /// The prescribed displacements.
+    pub displacements: Vec<PrescribedMotion>,
     /// Where the supports act, in the order of the scene.
-    pub traces: Vec<Trace>,
+    pub footprints: Vec<Footprint>,
     /// For each constraint, the support that it comes from; `None` for a joint.
     pub(super) owner: Vec<Option<usize>>,
     /// What a support that holds rigid motions alone holds.
@@ -87,11 +87,12 @@ pub struct Supports {
 impl Supports {
     /// The error for a constraint that contradicts those before it.
     pub fn contradiction(&self, constraint: usize) -> ModelError {
-        let support = self.owner[constraint].map_or("the joints", |index| self.traces[index].name.as_str()).to_owned();
+        let support =
+            self.owner[constraint].map_or("the joints", |index| self.footprints[index].name.as_str()).to_owned();
         let points: Vec<usize> = self.constraints[constraint].iter().map(|(component, _)| component / 3).collect();
         // On one mesh those beside share a few control points with it; the one in the way shares most.
-        let shared = |trace: &Trace| points.iter().filter(|point| trace.points.contains(point)).count();
-        let others = self.traces.iter().filter(|trace| trace.name != support && shared(trace) > 0);
+        let shared = |trace: &Footprint| points.iter().filter(|point| trace.points.contains(point)).count();
+        let others = self.footprints.iter().filter(|trace| trace.name != support && shared(trace) > 0);
         let other = others.rev().max_by_key(|trace| shared(trace));
         ModelError::Contradiction { support, other: other.map(|trace| trace.name.clone()) }
     }
@@ -106,7 +107,7 @@ impl Supports {
         for section in points.iter().filter_map(|point| self.section_of[*point]) {
             let motions = self.sections[section].motions_out_of_plane(mirror.normal);
             if !motions.is_empty() {
-                let held = self.traces.iter().find(|trace| trace.section == Some(section));
+                let held = self.footprints.iter().find(|trace| trace.section == Some(section));
                 return Err(ModelError::SectionLeavesPlane {
                     section: held.map_or_else(String::new, |trace| trace.name.clone()),
                     support: mirror.support.clone(),
@@ -124,9 +125,11 @@ impl Supports {
             let mut frames = expression.iter().filter_map(|(component, _)| self.section_of.get(component / 3));
             let Some(first) = frames.next() else { continue };
             let Some(other) = frames.find(|frame| *frame != first) else { continue };
-            let section = self.traces.iter().find(|trace| trace.section.is_some() && trace.section == first.or(*other));
+            let section =
+                self.footprints.iter().find(|trace| trace.section.is_some() && trace.section == first.or(*other));
             return Err(ModelError::TiedToSection {
-                tie: owner.map_or("a joint of the surface".into(), |index| format!("\"{}\"", self.traces[index].name)),
+                tie: owner
+                    .map_or("a joint of the surface".into(), |index| format!("\"{}\"", self.footprints[index].name)),
                 section: section.map_or_else(String::new, |trace| trace.name.clone()),
             });
         }

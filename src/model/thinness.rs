@@ -20,7 +20,7 @@ const POINTS: usize = 2;
 /// Share of the area whose radii are left aside: the tip of a cone, a small hole at a pole.
 const TIPS: f64 = 0.01;
 
-/// The lengths of a surface that its thickness is held against.
+/// The lengths of a surface that its thickness is compared with.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
     /// Smallest radius of curvature but for tips, mm; infinite for a plane.

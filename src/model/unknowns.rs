@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 use crate::model::ModelError;
 use crate::model::elimination::{Expression, eliminate};
-use crate::model::supports::{Law, Section, Supports};
+use crate::model::supports::{PrescribedMotion, Section, Supports};
 
 use crate::scene::Scene;
 use crate::spline::{Grid, Mesh};
@@ -67,14 +67,14 @@ pub struct Unknowns {
     /// Coordinate of each motion of each section.
     pub(super) motions: Vec<[usize; 6]>,
     /// Laws of the given coordinates.
-    given: Vec<Law>,
+    given: Vec<PrescribedMotion>,
     /// Undeformed control points, mm.
     pub(crate) points: Vec<[f64; 3]>,
     pub(super) home: Vec<Home>,
 }
 
 impl Unknowns {
-    /// Constraints of the scene on this mesh, eliminated.
+    /// Eliminates the constraints of the scene on this mesh.
     ///
     /// # Errors
     /// Where the supports contradict each other, or do not fit the surface.

@@ -1,7 +1,7 @@
 //! Switch-branch: the way from an unstable equilibrium to a stable one at the same load.
 
 use crate::energy::Balance;
-use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, soft_mode};
+use crate::equilibrium::{Configuration, Effort, Equilibrium, Iterate, SolveError, Solved, soft_mode};
 use crate::pipeline::step::{Step, out_of_order, settle};
 use crate::pipeline::step_control::{is_jump, known_release};
 use crate::pipeline::{Report, StageError};
@@ -63,7 +63,7 @@ fn leave(step: &mut Step, from: &State, effort: &mut Effort) -> Result<Solved, S
         observer(iterate);
         false
     };
-    let from = Standing::of(from);
+    let from = Configuration::of(from);
     let mode = soft_mode(work, from)?;
     let amplitude = SWITCHING_AMPLITUDE * scene.material.thickness_mm();
     let left = Equilibrium::new(scene, work).leave(from, &mode, amplitude, &mut watch)?;

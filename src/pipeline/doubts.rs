@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::adapt::{Halved, evaluate_indicators, largest_strain};
 use crate::energy::TermSource;
-use crate::equilibrium::{Equilibrium, LinearBuckling, Solved, Standing, Workspace};
+use crate::equilibrium::{Configuration, Equilibrium, LinearBuckling, Solved, Workspace};
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step_control::next_stage;
 use crate::pipeline::warning::LARGE;
@@ -19,7 +19,7 @@ const SMALL: f64 = 0.01;
 /// Change of a probe, relative to the larger of both readings, from which on it is said.
 const OFF: f64 = 0.1;
 /// Readings smaller than this share of the largest displacement, of the largest force, or of that times the longest side,
-/// are not held against another.
+/// are not compared with another.
 const SMALL_READING: f64 = 1e-3;
 /// Iterations at most to the equilibrium of the halved mesh.
 const MOST_ITERATIONS: usize = 8;
@@ -69,7 +69,7 @@ pub(super) struct Doubts<'a> {
 }
 
 impl Doubts<'_> {
-    /// What is to be said of it.
+    /// Warnings about the state.
     pub fn all(mut self, looked: Looked) -> Vec<Warning> {
         let large_strains = self.large_strains();
         large_strains.into_iter().chain(self.coarse(looked)).collect()
@@ -114,12 +114,12 @@ impl Doubts<'_> {
     /// be solved for, on the halved mesh is not looked at: on the mesh in hand a stage has read it.
     fn probe_off(&mut self, mut halved: Halved) -> Option<Warning> {
         let Self { scene, work, state, .. } = self;
-        let here = read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm).ok()?;
+        let here = read_probes(scene, work, Configuration::of(state), state.strain_energy_n_mm).ok()?;
         let [largest, side] = halved.halving().sizes_mm;
         let (work, at) = halved.relaxed();
         let solved = Equilibrium::new(scene, work).relax(at, &mut |last| last.iteration > MOST_ITERATIONS).ok()?;
         let Solved { displacement, turns, balance, .. } = solved;
-        let at = Standing { displacement: &displacement, turns: &turns, ..Standing::of(state) };
+        let at = Configuration { displacement: &displacement, turns: &turns, ..Configuration::of(state) };
         let there = read_probes(scene, work, at, balance.stored).ok()?;
         let smallest = |reading: &Reading| match reading.unit.as_str() {
             "mm" => SMALL_READING * largest,

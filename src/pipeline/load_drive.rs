@@ -1,6 +1,6 @@
 //! The load as drive: increments of the parameter, cut where they fail or jump.
 
-use crate::equilibrium::{Continuation, Equilibrium, Observer, SolveError, Solved, Standing, Workspace};
+use crate::equilibrium::{Configuration, Continuation, Equilibrium, Observer, SolveError, Solved, Workspace};
 use crate::pipeline::branch_switch::switch_branch;
 use crate::pipeline::ripple::{Watch, is_ripple};
 use crate::pipeline::step::{Drives, Step, settle};
@@ -27,14 +27,14 @@ impl Drives for LoadDrive<'_> {
         let Step { scene, work, state, observer, .. } = &mut self.step;
         let attempt = next_attempt(scene, state);
         let mut watch = Watch::new(state, scene.symmetry.copies() as f64);
-        let solved = reach(scene, work, state, attempt.target_deg, &mut |iterate| {
+        let solved = reach(scene, work, state, attempt.target, &mut |iterate| {
             observer(iterate);
             watch.sees_jump(iterate) && !attempt.may_jump
         });
         let solved = match solved {
             Ok(solved) => solved,
             Err(cause @ SolveError::Stopped { .. }) => {
-                let report = self.step.failed(Outcome::RejectedJump, attempt.target_deg, &cause);
+                let report = self.step.failed(Outcome::RejectedJump, attempt.target, &cause);
                 return Ok((self.before_jump(attempt), report));
             }
             Err(cause) => return self.step.cut(attempt, cause),
@@ -46,7 +46,7 @@ impl Drives for LoadDrive<'_> {
             Way::OffPath => true,
         };
         if is_to_be_located && !attempt.may_jump {
-            let report = self.step.rejected(Outcome::RejectedJump, attempt.target_deg, solved.effort);
+            let report = self.step.rejected(Outcome::RejectedJump, attempt.target, solved.effort);
             return Ok((self.before_jump(attempt), report));
         }
         self.take(attempt, way, &solved)
@@ -74,7 +74,7 @@ impl LoadDrive<'_> {
         let released = energy_released(state, solved);
         let mut next = settle(state, solved);
         next.step = state.step + 1;
-        next.parameter = attempt.target_deg;
+        next.parameter = attempt.target;
         // The path bends on from an equilibrium before only where it is one path, and where displacements say all.
         let onwards = way == Way::Along && state.negative_pivots == 0 && next.turns.is_empty();
         next.drive = DriveMemory {
@@ -123,8 +123,8 @@ impl Way {
     fn of(state: &State, attempt: &Attempt, watch: &Watch, solved: &Solved) -> Self {
         let released = energy_released(state, solved);
         let ripples = watch.unstable && solved.negative_pivots == 0 && is_ripple(state, released);
-        let bracketed = watch.unstable && state.drive.control.jump_seen_at_deg.is_some();
-        let left = (ripples || bracketed) && leaves_path(state, attempt.target_deg, solved);
+        let bracketed = watch.unstable && state.drive.control.jump_beyond.is_some();
+        let left = (ripples || bracketed) && leaves_path(state, attempt.target, solved);
         if left || is_jump(released, solved.balance.scale(state.strain_energy_n_mm), solved.balance.stored) {
             Way::OffPath
         } else if ripples {
@@ -144,7 +144,7 @@ fn reach(
     target: f64,
     observer: Observer,
 ) -> Result<Solved, SolveError> {
-    let from = Standing::of(state);
+    let from = Configuration::of(state);
     if state.negative_pivots > 0 {
         match Continuation::new(scene, work).begin(from, target, observer) {
             Ok(point) => return Ok(point.solved),

@@ -2,7 +2,7 @@
 //!
 //! | the last step | the next one |
 //! |---|---|
-//! | went on | as long as its iterations and its turn say, between the scene's shortest and longest |
+//! | continued | as long as its iterations and its turn say, between the scene's shortest and longest |
 //! | found no equilibrium, turned too sharply or ended too far away | half as long |
 //! | passed a limit point or a bifurcation | half as long, then on with the rest: bisection until the parameter changes by less than the snap tolerance over what is left; then past it |
 //!
@@ -62,7 +62,7 @@ impl CriticalPoint {
         passed.filter(|critical| critical.pivots_changed > 0)
     }
 
-    /// What it is.
+    /// Name of the critical point: limit point or bifurcation.
     pub fn name(&self) -> &'static str {
         match (self.limit_point, self.is_bifurcation()) {
             // The parameter turns back, and stability stays as it is.
@@ -90,7 +90,7 @@ impl CriticalPoint {
     }
 }
 
-/// A step to try.
+/// A step along the path to attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathAttempt {
     /// Its length, mm.
@@ -101,7 +101,7 @@ pub struct PathAttempt {
     pub can_be_halved: bool,
 }
 
-/// The step that follows.
+/// The step that follows a state.
 pub fn next_path_attempt(scene: &Scene, limits: &ArcLength, path: &PathMemory) -> PathAttempt {
     let shortest = limits.shortest_step * path.first_mm;
     let attempt = |length_mm: f64, may_pass| {
@@ -119,7 +119,7 @@ pub fn next_path_attempt(scene: &Scene, limits: &ArcLength, path: &PathMemory) -
 /// Critical points are not located more finely than this, relative to the first step: rounding decides there.
 const LOCATED: f64 = 1e-7;
 
-/// What to do with a point that a step has found.
+/// Whether a point that a step has found is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Judgement {
     /// Go on from it.
@@ -151,7 +151,7 @@ impl PathAttempt {
         }
     }
 
-    /// Memory at the point that was taken.
+    /// The path's memory at the point that was taken.
     pub fn after(
         &self,
         limits: &ArcLength,
@@ -194,7 +194,7 @@ impl PathAttempt {
     }
 }
 
-/// Memory after the first step of a path.
+/// The path's memory after its first step.
 pub fn path_begun(limits: &ArcLength, point: &ContinuedPoint) -> PathMemory {
     let by_iterations = (AIMED_ITERATIONS / point.solved.effort.iterations.max(1) as f64).sqrt();
     PathMemory {

@@ -1,6 +1,6 @@
 //! The path of equilibria as drive, followed by arc length.
 
-use crate::equilibrium::{Continuation, ContinuedPoint, Direction, Iterate, Sense, SolveError, Standing};
+use crate::equilibrium::{Configuration, Continuation, ContinuedPoint, Direction, Iterate, Sense, SolveError};
 use crate::pipeline::branch_switch::switch_branch;
 use crate::pipeline::path_control::{CriticalPoint, Judgement, PathAttempt, next_path_attempt, path_begun};
 use crate::pipeline::step::{Drives, Step, settle};
@@ -40,7 +40,7 @@ impl Drives for PathDrive<'_> {
         }
     }
 
-    /// The path goes on along the branch.
+    /// The path continues along the branch.
     fn switch_branch(&mut self) -> Result<(State, Report), StageError> {
         let state = self.step.state;
         switch_branch(&mut self.step, |step, branch| match state.drive.path() {
@@ -55,7 +55,7 @@ impl PathDrive<'_> {
     fn begin(&mut self) -> Result<(State, Report), StageError> {
         let Step { scene, work, state, observer, .. } = &mut self.step;
         let attempt = next_attempt(scene, state);
-        let found = Continuation::new(scene, work).begin(Standing::of(state), attempt.target_deg, &mut |iterate| {
+        let found = Continuation::new(scene, work).begin(Configuration::of(state), attempt.target, &mut |iterate| {
             observer(iterate);
             false
         });
@@ -67,7 +67,7 @@ impl PathDrive<'_> {
         let passed = CriticalPoint::between((1.0, state.negative_pivots), (1.0, pivots));
         if let (Some(_), Some(control)) = (passed, attempt.control_after_failure(scene, state)) {
             let course = state.drive.course.clone();
-            let report = self.step.rejected(Outcome::RejectedCriticalPoint, attempt.target_deg, point.solved.effort);
+            let report = self.step.rejected(Outcome::RejectedCriticalPoint, attempt.target, point.solved.effort);
             return Ok((self.step.stay(control, course), report));
         }
         self.take(&point, path_begun(self.limits, &point), passed)
@@ -109,7 +109,7 @@ impl PathDrive<'_> {
             false
         };
         let target = scene.load.target();
-        let (from, mut continuation) = (Standing::of(state), Continuation::new(scene, work));
+        let (from, mut continuation) = (Configuration::of(state), Continuation::new(scene, work));
         let ahead = state.parameter + attempt.length_mm * path.parameter_rate;
         let found = match corner_between(scene, state.parameter, ahead) {
             Some(corner) => continuation.step_to_corner(from, corner, &mut watch),
@@ -199,7 +199,7 @@ impl PathDrive<'_> {
             false
         };
         let at_end = has_reached(scene, state, scene.load.target());
-        let found = Continuation::new(scene, work).correct(Standing::of(state), &heading, at_end, &mut watch);
+        let found = Continuation::new(scene, work).correct(Configuration::of(state), &heading, at_end, &mut watch);
         let point = match found {
             Ok(point) => point,
             Err(_) if state.negative_pivots == 0 => return self.let_down(path),
@@ -236,7 +236,7 @@ impl PathDrive<'_> {
 fn path_on_branch(step: &mut Step, before: &State, state: &State, path: &PathMemory) -> Result<PathMemory, SolveError> {
     let sense = Sense::Parameter { grows: path.parameter_rate > 0.0 };
     let mut continuation = Continuation::new(step.scene, step.work);
-    let heading = continuation.heading_at(Standing::of(state), sense)?;
+    let heading = continuation.heading_at(Configuration::of(state), sense)?;
     let moved = continuation.distance(&before.displacement, &state.displacement);
     Ok(PathMemory {
         first_mm: path.first_mm.max(moved),

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 
 use crate::adapt::largest_bending_strain;
 use crate::energy::{At, Discretization};
-use crate::equilibrium::{Configuration, Standing, Workspace};
+use crate::equilibrium::{Configuration, Coordinates, Workspace};
 use crate::model::{
     Exerted, ModelError, Placement, Site, control_expressions, direction_at, line_place, parameters_of,
 };
@@ -17,13 +17,18 @@ use crate::spline::mid_surface_point;
 ///
 /// # Errors
 /// Where a probe asks for what the scene does not have, or for a section moment that a term of the caller's own has no part of.
-pub fn read_probes(scene: &Scene, work: &mut Workspace, at: Standing, energy: f64) -> Result<Vec<Reading>, ModelError> {
+pub fn read_probes(
+    scene: &Scene,
+    work: &mut Workspace,
+    at: Configuration,
+    energy: f64,
+) -> Result<Vec<Reading>, ModelError> {
     if scene.probes.is_empty() {
         return Ok(Vec::new());
     }
     let forces = work.forces(at);
     let discretization = work.discretization();
-    let Configuration { placement, .. } = Configuration::of(&discretization.unknowns, at);
+    let Coordinates { placement, .. } = Coordinates::of(&discretization.unknowns, at);
     let reader = Reader { scene, discretization, at, placement, forces: &forces, exerted: OnceCell::new(), energy };
     scene.probes.iter().map(|probe| reader.read(probe)).collect()
 }
@@ -31,7 +36,7 @@ pub fn read_probes(scene: &Scene, work: &mut Workspace, at: Standing, energy: f6
 struct Reader<'a> {
     scene: &'a Scene,
     discretization: &'a Discretization,
-    at: Standing<'a>,
+    at: Configuration<'a>,
     placement: Placement<'a>,
     /// What supports and joints exert on the control points, N.
     forces: &'a [[f64; 3]],
@@ -85,11 +90,11 @@ impl Reader<'_> {
         support: &str,
         component: Reaction,
     ) -> Result<(f64, &'static str, Option<[f64; 2]>), ModelError> {
-        let traces = &self.discretization.unknowns.supports().traces;
-        let Some(index) = traces.iter().position(|trace| trace.name == support) else {
+        let footprints = &self.discretization.unknowns.supports().footprints;
+        let Some(index) = footprints.iter().position(|trace| trace.name == support) else {
             return Err(ModelError::NoSuchSupport { support: support.to_owned() });
         };
-        let trace = &traces[index];
+        let trace = &footprints[index];
         let pole = trace.section.map_or(trace.pole, |section| add(trace.pole, self.placement.translation(section)));
         let forces = self.exerted().by_supports[index].iter().map(|(point, force)| (*point, *force));
         let [force, moment] = self.resultant(forces, pole);

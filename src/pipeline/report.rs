@@ -15,13 +15,13 @@ pub struct Report {
     pub step: u64,
     /// The stage that ran.
     pub stage: Stage,
-    /// Whether the stage did what it set out to do; a solve that was turned down leaves the state where it was.
+    /// Whether the stage did what it set out to do; a solve that was rejected leaves the state where it was.
     pub outcome: Outcome,
     /// What the parameter is.
     pub driven_by: Parameter,
     /// Parameter of the state.
     pub parameter: f64,
-    /// Parameter that the stage worked at; differs from `parameter` where a solve was turned down.
+    /// Parameter that the stage worked at; differs from `parameter` where a solve was rejected.
     pub attempted_parameter: f64,
     /// Turning ends: end moment, N·mm.
     pub moment_n_mm: f64,
@@ -44,7 +44,7 @@ pub struct Report {
     pub factorizations: usize,
     /// Negative pivots of the tangent stiffness at the state; 0 where it is a stable equilibrium.
     pub negative_pivots: u64,
-    /// |residual| at the end of the stage over the forces that it is held against; 0 where it is rounding.
+    /// |residual| at the end of the stage over the forces that it is compared with; 0 where it is rounding.
     pub residual: f64,
     /// Energy that a jump, a ripple or leaving an unstable equilibrium (switch-branch) released in this stage, N·mm; 0 where
     /// there was none, and `None` where it is not known.
@@ -135,13 +135,13 @@ pub struct WrittenReport {
     step: u64,
     /// The stage that ran.
     stage: Stage,
-    /// Whether the stage did what it set out to do; a solve that was turned down leaves the state where it was.
+    /// Whether the stage did what it set out to do; a solve that was rejected leaves the state where it was.
     outcome: Outcome,
     /// Turning ends: rotation of each end in the state, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "f64")]
     rotation_deg: Option<f64>,
-    /// Turning ends: rotation that the stage worked at; differs from `rotation_deg` where a solve was turned down, degrees.
+    /// Turning ends: rotation that the stage worked at; differs from `rotation_deg` where a solve was rejected, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "f64")]
     attempted_rotation_deg: Option<f64>,
@@ -177,7 +177,7 @@ pub struct WrittenReport {
     factorizations: usize,
     /// Negative pivots of the tangent stiffness at the state; 0 where it is a stable equilibrium.
     negative_pivots: u64,
-    /// |residual| at the end of the stage over the forces that it is held against; 0 where it is rounding.
+    /// |residual| at the end of the stage over the forces that it is compared with; 0 where it is rounding.
     residual: f64,
     /// Energy that a jump released in this stage, N·mm; 0 where nothing jumped, and left out where it is not known: less than
     /// the rule of work resolves, or under loads that have no potential.

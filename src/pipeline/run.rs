@@ -30,7 +30,7 @@ pub enum Ending {
     Interrupted,
 }
 
-/// A run between two stages.
+/// The loop over stages, between two of them.
 #[derive(Debug)]
 pub struct Run {
     stages: Stages,
@@ -42,7 +42,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// A run that goes on from `state`, which the stage of `last` made (`None`: the scene's start).
+    /// A run that continues from `state`, which the stage of `last` made (`None`: the scene's start).
     pub fn new(stages: Stages, state: State, last: Option<Commit>) -> Self {
         let scene_hash = stages.hash();
         let mut mesh_hash = MeshHash::default();
@@ -50,7 +50,7 @@ impl Run {
         Self { state_hash, mesh_hash, scene_hash, stages, state, last }
     }
 
-    /// The state in hand.
+    /// The present state.
     pub fn state(&self) -> &State {
         &self.state
     }
@@ -77,21 +77,20 @@ impl Run {
         Ok(Some(record))
     }
 
-    /// Runs to the scene's target, to `until_deg` (the first completed step at or beyond it), or until `interrupted`.
+    /// Runs to the scene's target, to `until` (the first completed step at or beyond it), or until `interrupted`.
     ///
     /// # Errors
     /// As for [`Self::advance`].
     pub fn to_end(
         &mut self,
-        until_deg: Option<f64>,
+        until: Option<f64>,
         interrupted: &dyn Fn() -> bool,
         sink: &mut dyn Sink,
     ) -> Result<Ending, RunError> {
         loop {
             let next = self.next_stage();
             let Some(stage) = next else { return Ok(Ending::Finished) };
-            if stage == Stage::Solve
-                && until_deg.is_some_and(|until| has_reached(self.stages.scene(), &self.state, until))
+            if stage == Stage::Solve && until.is_some_and(|until| has_reached(self.stages.scene(), &self.state, until))
             {
                 return Ok(Ending::Until);
             }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::adapt::{evaluate_indicators, project_displacements};
 use crate::digest::{Feed, Hash};
 use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_energy};
-use crate::equilibrium::{Iterate, Standing, Workspace, WorkspaceError};
+use crate::equilibrium::{Configuration, Iterate, Workspace, WorkspaceError};
 use crate::model::{FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, starting_mesh};
 use crate::pipeline::doubts::{Doubts, doubtful};
 use crate::pipeline::load_drive::LoadDrive;
@@ -27,7 +27,7 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// Stages of a scene.
+    /// Creates the stages of a scene.
     pub fn new(scene: Scene) -> Self {
         Self::with_terms(scene, Vec::new())
     }
@@ -37,7 +37,7 @@ impl Stages {
         Self { scene, own, in_hand: MeshInHand::default() }
     }
 
-    /// Energies and loads of the caller's own.
+    /// The terms of the caller's own.
     pub fn own_terms(&self) -> &[Arc<dyn TermSource>] {
         &self.own
     }
@@ -48,7 +48,7 @@ impl Stages {
         run_hash(&self.scene, &terms)
     }
 
-    /// The scene.
+    /// The scene that the stages run.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -258,11 +258,8 @@ impl Stages {
     pub fn read_probes(&mut self, state: &State) -> Result<Vec<Reading>, StageError> {
         let made_by = state.stage.unwrap_or(Stage::Solve);
         let (scene, work) = self.workspace(&state.mesh, state.step, made_by)?;
-        read_probes(scene, work, Standing::of(state), state.strain_energy_n_mm).map_err(|cause| StageError::Model {
-            step: state.step,
-            stage: made_by,
-            cause,
-        })
+        read_probes(scene, work, Configuration::of(state), state.strain_energy_n_mm)
+            .map_err(|cause| StageError::Model { step: state.step, stage: made_by, cause })
     }
 }
 

@@ -1,6 +1,6 @@
 //! A step of a drive under way, and what every drive does alike.
 
-use crate::equilibrium::{Effort, Equilibrium, Iterate, SolveError, Solved, Standing, Workspace};
+use crate::equilibrium::{Configuration, Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step_control::{Attempt, energy_released, is_jump_on_refinement, known_release};
 use crate::pipeline::{Outcome, Report, StageError};
@@ -42,7 +42,7 @@ impl Step<'_> {
         State { drive: DriveMemory { control, course }, marked: Default::default(), ..self.state.clone() }
     }
 
-    /// Of a solve that was turned down.
+    /// Report of a solve that was rejected.
     pub fn rejected(&self, outcome: Outcome, attempted_parameter: f64, effort: Effort) -> Report {
         Report {
             step: self.state.step + 1,
@@ -54,16 +54,16 @@ impl Step<'_> {
         }
     }
 
-    /// Of a solve that found nothing.
+    /// Report of a solve that found no equilibrium.
     pub fn failed(&self, outcome: Outcome, attempted_parameter: f64, cause: &SolveError) -> Report {
         let residual = cause.last().map_or(f64::NAN, Iterate::relative_residual);
         Report { residual, ..self.rejected(outcome, attempted_parameter, cause.effort()) }
     }
 
-    /// Of the state at a new equilibrium, with its probes.
+    /// Report of the state at a new equilibrium, with its probes.
     pub fn arrived(&mut self, next: &State, solved: &Solved) -> Result<Report, StageError> {
         let Self { stage, scene, work, .. } = self;
-        let probes = read_probes(scene, work, Standing::of(next), next.strain_energy_n_mm)
+        let probes = read_probes(scene, work, Configuration::of(next), next.strain_energy_n_mm)
             .map_err(|cause| StageError::Model { step: next.step, stage: *stage, cause })?;
         Ok(Report {
             iterations: solved.effort.iterations,
@@ -80,7 +80,7 @@ impl Step<'_> {
     pub fn cut(&self, attempt: Attempt, cause: SolveError) -> Result<(State, Report), StageError> {
         match attempt.control_after_failure(self.scene, self.state) {
             Some(control) => {
-                let report = self.failed(Outcome::RejectedNoEquilibrium, attempt.target_deg, &cause);
+                let report = self.failed(Outcome::RejectedNoEquilibrium, attempt.target, &cause);
                 Ok((self.stay(control, self.state.drive.course.clone()), report))
             }
             None => Err(self.stopped(attempt, cause)),
@@ -90,9 +90,9 @@ impl Step<'_> {
     /// The error of a solve that cannot be tried with a smaller increment.
     fn stopped(&self, attempt: Attempt, cause: SolveError) -> StageError {
         let state = self.state;
-        let (reached, attempted) = (self.shown(state.parameter), self.shown(attempt.target_deg));
+        let (reached, attempted) = (self.shown(state.parameter), self.shown(attempt.target));
         let (step, cause) = (state.step + 1, Box::new(cause));
-        match state.drive.control.jump_seen_at_deg {
+        match state.drive.control.jump_beyond {
             Some(_) if state.step == 0 => StageError::NoStart { step, attempted, cause },
             Some(_) => StageError::JumpNotFollowed { step, reached, attempted, cause },
             None => {
@@ -106,7 +106,7 @@ impl Step<'_> {
         }
     }
 
-    /// Equilibrium on a refined mesh at the same load.
+    /// Finds the equilibrium on a refined mesh at the same load.
     pub fn relax(&mut self) -> Result<(State, Report), StageError> {
         let Self { scene, work, state, observer, .. } = self;
         let mut unstable_on_the_way = false;
@@ -115,7 +115,7 @@ impl Step<'_> {
             unstable_on_the_way |= iterate.negative_pivots > 0;
             false
         };
-        let solved = Equilibrium::new(scene, work).relax(Standing::of(state), &mut watch);
+        let solved = Equilibrium::new(scene, work).relax(Configuration::of(state), &mut watch);
         let solved = solved.map_err(|cause| self.not_re_equilibrated(cause))?;
         let released = energy_released(self.state, &solved);
         let mut next = settle(self.state, &solved);

@@ -5,11 +5,11 @@
 //!
 //! | the last solve | memory | the next solve |
 //! |---|---|---|
-//! | went on | forgets a jump; one halving less | the next multiple of the increment, or the target if that is nearer |
-//! | went on in at most [`EASY`] iterations, and the scene lets increments grow | the increment doubled | the next multiple of that |
-//! | went on in more than [`HARD`] with an increment that had grown | that halved | the next multiple of that |
+//! | continued | forgets a jump; one halving less | the next multiple of the increment, or the target if that is nearer |
+//! | continued in at most [`EASY`] iterations, and the scene lets increments grow | the increment doubled | the next multiple of that |
+//! | continued in more than [`HARD`] with an increment that had grown | that halved | the next multiple of that |
 //! | found no equilibrium | halvings, so that the increment is at most half of what was tried | the next multiple of that |
-//! | went on inside a bracket, or jumped, with an increment that had grown | the scene's own increment | the next multiple of that |
+//! | continued inside a bracket, or jumped, with an increment that had grown | the scene's own increment | the next multiple of that |
 //! | passed an unstable shape or released energy | the rotation where it did | the middle between here and there |
 //! | the same, within `snap_tolerance_deg` of here | the same | there, and the jump is taken |
 //!
@@ -28,7 +28,7 @@ use crate::state::{Rejection, State, StepControl};
 const JUMP_SHARE: f64 = 0.01;
 
 /// The same for re-equilibrating, where a finer mesh lowers the energy by itself: degree 2 on coarse meshes by up to 3
-/// %, the baseline's fold, when the snap goes on during refinement, by 6 to 17 %.
+/// %, the baseline's fold, when the snap continues during refinement, by 6 to 17 %.
 const REFINEMENT_JUMP_SHARE: f64 = 0.05;
 
 /// Increments grow after a solve that took no more iterations than this, where the scene says how far. The baseline's quarter
@@ -43,11 +43,11 @@ const HARD: usize = 6;
 /// Rotations closer than this, relative to the increment, are one: multiples of decimal numbers are not exact.
 const SAME: f64 = 1e-6;
 
-/// A solve to try.
+/// A solve to attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attempt {
     /// Rotation to reach, degrees.
-    pub target_deg: f64,
+    pub target: f64,
     /// Whether a jump on the way is accepted: it is located well enough.
     pub may_jump: bool,
 }
@@ -56,21 +56,21 @@ pub struct Attempt {
 pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
     let here = state.parameter;
     let tolerance = scene.snap_tolerance();
-    if let Some(beyond) = state.drive.control.jump_seen_at_deg {
+    if let Some(beyond) = state.drive.control.jump_beyond {
         let middle = 0.5 * (here + beyond);
         let located = beyond - here <= tolerance || middle <= here || middle >= beyond;
-        return Attempt { target_deg: if located { beyond } else { middle }, may_jump: located };
+        return Attempt { target: if located { beyond } else { middle }, may_jump: located };
     }
     let increment = increment_of(scene, state.drive.control.halvings);
     let multiple = ((here / increment + SAME).floor() + 1.0) * increment;
     let last = scene.load.target();
-    let mut target_deg = if multiple > last - SAME * increment { last } else { multiple };
+    let mut target = if multiple > last - SAME * increment { last } else { multiple };
     // An increment that has grown does not pass over what a history asks for.
     if state.drive.control.halvings < 0 {
         let point = scene.next_history_point(here + SAME * scene.load.increment());
-        target_deg = point.map_or(target_deg, |point| point.min(target_deg));
+        target = point.map_or(target, |point| point.min(target));
     }
-    Attempt { target_deg, may_jump: target_deg - here <= tolerance }
+    Attempt { target, may_jump: target - here <= tolerance }
 }
 
 /// The scene's increment, halved (or where negative, doubled) so many times.
@@ -115,16 +115,16 @@ fn is_to_be_left(scene: &Scene, state: &State) -> bool {
 }
 
 impl Attempt {
-    /// Size of the attempted step, degrees.
-    pub fn increment_deg(&self, state: &State) -> f64 {
-        self.target_deg - state.parameter
+    /// Size of the attempted step, in the units of the scene's parameter.
+    pub fn increment(&self, state: &State) -> f64 {
+        self.target - state.parameter
     }
 
     /// Step control after the attempt was taken, in so many iterations.
     pub fn control_after_success(&self, scene: &Scene, before: &StepControl, iterations: usize) -> StepControl {
         let twice = increment_of(scene, before.halvings.saturating_sub(1));
         let may_grow = iterations <= EASY && twice <= scene.load.longest_increment() * (1.0 + SAME);
-        let change = if before.jump_seen_at_deg.is_some() {
+        let change = if before.jump_beyond.is_some() {
             // Behind a jump, or a turn that looked like one, an increment that had grown was too large.
             before.halvings.min(0).saturating_neg()
         } else if before.halvings > 0 || may_grow {
@@ -133,28 +133,28 @@ impl Attempt {
             i32::from(before.halvings < 0 && iterations > HARD)
         };
         let halvings = before.halvings.saturating_add(change);
-        StepControl { halvings, jump_seen_at_deg: None, rejection: None }
+        StepControl { halvings, jump_beyond: None, rejection: None }
     }
 
     /// Step control after the attempt passed an unstable shape or released energy.
     pub fn control_after_jump(&self, before: &StepControl) -> StepControl {
-        StepControl { jump_seen_at_deg: Some(self.target_deg), rejection: Some(Rejection::Jump), ..*before }
+        StepControl { jump_beyond: Some(self.target), rejection: Some(Rejection::Jump), ..*before }
     }
 
     /// Step control after the attempt found no equilibrium; `None` where an increment below the scene's least one
     /// would be needed, or where a located jump could not be followed.
     pub fn control_after_failure(&self, scene: &Scene, state: &State) -> Option<StepControl> {
-        if state.drive.control.jump_seen_at_deg.is_some() && self.may_jump {
+        if state.drive.control.jump_beyond.is_some() && self.may_jump {
             return None;
         }
-        let half = 0.5 * self.increment_deg(state);
+        let half = 0.5 * self.increment(state);
         let mut halvings = state.drive.control.halvings;
         while increment_of(scene, halvings) > half * (1.0 + SAME) {
             halvings += 1;
         }
         let increment = increment_of(scene, halvings);
         let rejection = Some(Rejection::NoEquilibrium);
-        (increment >= scene.least_increment()).then_some(StepControl { halvings, jump_seen_at_deg: None, rejection })
+        (increment >= scene.least_increment()).then_some(StepControl { halvings, jump_beyond: None, rejection })
     }
 }
 
@@ -190,10 +190,15 @@ mod tests {
     use crate::spline::Mesh;
     use crate::state::{Course, DriveMemory};
 
-    fn scene(increment_deg: f64, rotation_deg: f64) -> Scene {
+    fn scene(increment: f64, rotation_deg: f64) -> Scene {
         let mut scene = parse(include_str!("../../pipelines/baseline-uniform.toml"), "baseline-uniform.toml").unwrap();
         let sense = scene.end_rotation().unwrap().sense;
-        scene.load = Load::EndRotation(EndRotation { sense, rotation_deg, increment_deg, longest_increment_deg: None });
+        scene.load = Load::EndRotation(EndRotation {
+            sense,
+            rotation_deg,
+            increment_deg: increment,
+            longest_increment_deg: None,
+        });
         scene.solver.snap_tolerance_deg = Some(0.01);
         scene.solver.least_increment_deg = Some(1e-4);
         scene
@@ -211,7 +216,7 @@ mod tests {
         let mut rotations = Vec::new();
         while next_stage(scene, &state).is_some() {
             let attempt = next_attempt(scene, &state);
-            state = at(attempt.target_deg, attempt.control_after_success(scene, &state.drive.control, 4));
+            state = at(attempt.target, attempt.control_after_success(scene, &state.drive.control, 4));
             rotations.push(state.parameter);
         }
         rotations
@@ -237,15 +242,15 @@ mod tests {
         let mut state = at(0.0, StepControl::default());
         for attempts in 1..10_000 {
             let attempt = next_attempt(scene, &state);
-            assert!(attempt.target_deg > state.parameter);
-            let jumps = state.parameter < critical && attempt.target_deg >= critical;
+            assert!(attempt.target > state.parameter);
+            let jumps = state.parameter < critical && attempt.target >= critical;
             if jumps && attempt.may_jump {
-                return ([state.parameter, attempt.target_deg], attempts);
+                return ([state.parameter, attempt.target], attempts);
             }
             state = if jumps {
                 at(state.parameter, attempt.control_after_jump(&state.drive.control))
             } else {
-                at(attempt.target_deg, attempt.control_after_success(scene, &state.drive.control, 4))
+                at(attempt.target, attempt.control_after_success(scene, &state.drive.control, 4))
             };
         }
         panic!("never located");
@@ -274,7 +279,7 @@ mod tests {
             let mut tries = 0;
             loop {
                 let attempt = next_attempt(&scene, &state);
-                let size = attempt.increment_deg(&state);
+                let size = attempt.increment(&state);
                 assert!(size <= 0.5 * before * (1.0 + 1e-5), "{start}: {size} after {before}");
                 before = size;
                 tries += 1;
@@ -294,8 +299,8 @@ mod tests {
         let mut sizes = Vec::new();
         for _ in 0..5 {
             let attempt = next_attempt(&scene, &state);
-            sizes.push((attempt.increment_deg(&state) * 1e6).round() / 1e6);
-            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.drive.control, 4));
+            sizes.push((attempt.increment(&state) * 1e6).round() / 1e6);
+            state = at(attempt.target, attempt.control_after_success(&scene, &state.drive.control, 4));
         }
         assert_eq!(sizes, [0.05, 0.05, 0.1, 0.2, 0.4]);
     }
@@ -309,18 +314,18 @@ mod tests {
         let mut sizes = Vec::new();
         for iterations in [3, 3, 3, 3, 3, 4, 6, 7, 7, 7, 7] {
             let attempt = next_attempt(&scene, &state);
-            let multiple = attempt.target_deg / 0.2;
+            let multiple = attempt.target / 0.2;
             assert!((multiple - multiple.round()).abs() < 1e-9, "steps are multiples of the increment in hand");
-            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.drive.control, iterations));
+            state = at(attempt.target, attempt.control_after_success(&scene, &state.drive.control, iterations));
             sizes.push(0.4 / 2.0_f64.powi(state.drive.control.halvings));
         }
         // Up to 1.6 (3.2 would be more than 2), steady between, and back to the scene's own, not below it.
         assert_eq!(sizes, [0.4, 0.8, 1.6, 1.6, 1.6, 1.6, 1.6, 0.8, 0.4, 0.4, 0.4]);
         // A turn that looked like a jump ends the growth.
-        let seen = StepControl { halvings: -2, jump_seen_at_deg: Some(9.6), rejection: None };
+        let seen = StepControl { halvings: -2, jump_beyond: Some(9.6), rejection: None };
         let bracketed = at(8.0, seen);
         let after = next_attempt(&scene, &bracketed).control_after_success(&scene, &bracketed.drive.control, 3);
-        assert_eq!((after.halvings, after.jump_seen_at_deg), (0, None));
+        assert_eq!((after.halvings, after.jump_beyond), (0, None));
         // A failure cuts what had grown.
         let grown = at(8.0, StepControl { halvings: -2, ..StepControl::default() });
         let attempt = next_attempt(&scene, &grown);
@@ -340,7 +345,7 @@ mod tests {
         let mut parameters = Vec::new();
         while next_stage(&scene, &state).is_some() {
             let attempt = next_attempt(&scene, &state);
-            state = at(attempt.target_deg, attempt.control_after_success(&scene, &state.drive.control, 2));
+            state = at(attempt.target, attempt.control_after_success(&scene, &state.drive.control, 2));
             parameters.push(state.parameter);
         }
         assert_eq!(parameters, [0.25, 0.5, 1.0, 1.1, 1.3, 2.0, 4.0]);
@@ -349,10 +354,10 @@ mod tests {
     #[test]
     fn a_located_jump_that_cannot_be_followed_is_not_tried_again() {
         let scene = scene(0.4, 20.0);
-        let control = StepControl { jump_seen_at_deg: Some(5.005), ..StepControl::default() };
+        let control = StepControl { jump_beyond: Some(5.005), ..StepControl::default() };
         let state = at(5.0, control);
         let attempt = next_attempt(&scene, &state);
-        assert_eq!((attempt.target_deg, attempt.may_jump), (5.005, true));
+        assert_eq!((attempt.target, attempt.may_jump), (5.005, true));
         assert_eq!(attempt.control_after_failure(&scene, &state), None);
     }
 }

@@ -105,7 +105,7 @@ impl Warning {
         Self::RefinementBlocked { parameter: state.parameter, spans, decay_lengths, over_threshold }
     }
 
-    /// What it is, in few words: one for each kind.
+    /// Name of the kind of warning, in few words.
     pub fn name(&self) -> &'static str {
         match self {
             Self::CoarseElements { .. } => "coarse elements",
@@ -117,7 +117,7 @@ impl Warning {
         }
     }
 
-    /// The scene's parameter that it is said of.
+    /// The value of the scene's parameter that the warning is about.
     pub fn parameter(&self) -> f64 {
         match *self {
             Self::CoarseElements { parameter, .. }
@@ -134,7 +134,7 @@ impl Warning {
         !matches!(self, Self::RefinementBlocked { .. })
     }
 
-    /// A sentence with the numbers, and the way out.
+    /// The warning as a sentence, with its numbers and what to do.
     pub fn in_words(&self) -> String {
         match self {
             &Self::CoarseElements { elements: [n1, n2], energy_share, .. } => {

@@ -1,5 +1,5 @@
 //! Energy, gradient and Hessian of four points at once: the formulas of [`PointReference`], which is the slow way that
-//! this one is held against, with the products of the Hessian's blocks written out.
+//! this one is compared with, with the products of the Hessian's blocks written out.
 //!
 //! With x_αi = ∂b_i/∂a_α (x_1i = a₂ × v_i, x_2i = v_i × a₁, v_i = (a_i − (a_i·n) n)/J, i over 11, 22, 12), D the bending
 //! stiffness with its shear rows and columns doubled, z_m = Σ_i D_im v_i, m the moments (the last doubled), M = Σ m a_i,
@@ -34,7 +34,7 @@ pub struct PointBatch {
 }
 
 impl PointBatch {
-    /// One to four points.
+    /// Packs one to four points.
     pub fn new(points: &[PointReference]) -> Self {
         let gather = |number: &dyn Fn(&PointReference) -> f64| lanes_of(points, number);
         let stiffness = |number: &dyn Fn(&PointReference) -> f64| stiffness_of(points, number);

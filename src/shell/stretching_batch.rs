@@ -18,7 +18,7 @@ pub struct StretchingBatch {
 }
 
 impl StretchingBatch {
-    /// One to four points.
+    /// Packs one to four points.
     pub fn new(points: &[PointReference]) -> Self {
         Self {
             tangents: std::array::from_fn(|k| {

@@ -24,7 +24,7 @@ pub struct Spans {
 }
 
 impl Spans {
-    /// Elements of an open knot vector.
+    /// Finds the elements of an open knot vector.
     pub fn of(knots: &[f64], degree: usize) -> Self {
         let index: Vec<usize> = (degree..knots.len() - degree - 1).filter(|s| knots[*s] < knots[s + 1]).collect();
         let bounds = index.iter().map(|s| [knots[*s], knots[s + 1]]).collect();

@@ -8,17 +8,17 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// With so many each way.
+    /// Creates a grid of these counts.
     pub fn new(counts: [usize; 2]) -> Self {
         Self { counts }
     }
 
-    /// How many in all.
+    /// Number of places.
     pub fn len(self) -> usize {
         self.counts[0] * self.counts[1]
     }
 
-    /// Whether there are none.
+    /// Whether there are no places.
     pub fn is_empty(self) -> bool {
         self.len() == 0
     }

@@ -1,6 +1,6 @@
 //! Whether a sequence of numbers is a knot vector that a surface can have.
 
-/// Why it is none.
+/// Why numbers are not a knot vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KnotFlaw {
     /// Fewer than two times degree + 1.

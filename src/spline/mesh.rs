@@ -15,12 +15,12 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Control points each way.
+    /// Number of control points in each direction.
     pub fn control_counts(&self) -> [usize; 2] {
         [0, 1].map(|k| control_count(&self.knots[k], self.degree[k]))
     }
 
-    /// Numbers of the control points.
+    /// The numbering of the control points.
     pub fn grid(&self) -> Grid {
         Grid::new(self.control_counts())
     }
@@ -40,7 +40,7 @@ impl Mesh {
         self.grid().window(first, self.degree.map(|p| p + 1))
     }
 
-    /// Non-empty knot spans (elements) each way.
+    /// Number of non-empty knot spans (elements) in each direction.
     pub fn element_counts(&self) -> [usize; 2] {
         [0, 1].map(|k| self.knots[k].windows(2).filter(|pair| pair[0] < pair[1]).count())
     }

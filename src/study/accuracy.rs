@@ -42,7 +42,7 @@ struct CurvePoint {
     behind: bool,
 }
 
-/// A run beside the reference.
+/// A run compared with the reference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AccuracyRow {
     /// Elements (along u, along v) of the model at the end.
@@ -148,7 +148,7 @@ pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
     let last = records.last().map(|record| &record.report);
     Ok(Measured {
         curve: curve(&equilibrium_path(&records), Parameter::of(scene)),
-        jump_at: snaps(&records).first().map(|snap| snap.after_deg),
+        jump_at: snaps(&records).first().map(|snap| snap.after),
         what,
         quantity: match records.iter().find_map(|record| record.report.probes.first()) {
             Some(reading) if Parameter::of(scene) == Parameter::LoadFactor => {
@@ -187,7 +187,7 @@ impl Measured {
         &self.quantity
     }
 
-    /// Beside a reference.
+    /// Compares the run with a reference.
     ///
     /// # Errors
     /// Where they have no load step in common.

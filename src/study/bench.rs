@@ -14,7 +14,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::equilibrium::{DenseProduct, Equilibrium, KernelRun, SolveError, Standing, Workspace, WorkspaceError};
+use crate::equilibrium::{Configuration, DenseProduct, Equilibrium, KernelRun, SolveError, Workspace, WorkspaceError};
 use crate::model::{ModelError, starting_mesh};
 use crate::pipeline::RunError;
 use crate::scene::Scene;
@@ -27,7 +27,7 @@ const COPY_LEN: usize = 16 * 1024 * 1024;
 /// Rotation of the deformed state, degrees.
 const ROTATION_DEG: f64 = 4.0;
 
-/// One figure.
+/// One measured figure.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figure {
     /// What was timed.
@@ -75,7 +75,7 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     let mesh = Arc::new(starting_mesh(scene)?);
     let mut work = Workspace::new(scene, &mesh)?;
     let flat = vec![[0.0; 3]; mesh.control_points.len()];
-    let start = Standing { displacement: &flat, turns: &[], parameter: 0.0, largest_force: 0.0 };
+    let start = Configuration { displacement: &flat, turns: &[], parameter: 0.0, largest_force: 0.0 };
     let target = ROTATION_DEG.min(scene.load.target());
     let solved = Equilibrium::new(scene, &mut work).advance(start, target, &mut |_| false)?;
     let unknowns = work.discretization().unknowns.count();
@@ -97,8 +97,12 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     let copy = copy_seconds(repeats, 1);
     let bytes_per_s = |threads: usize| 16.0 * COPY_LEN as f64 / copy_seconds(repeats, threads);
 
-    let deformed =
-        Standing { displacement: &solved.displacement, turns: &solved.turns, parameter: target, largest_force: 0.0 };
+    let deformed = Configuration {
+        displacement: &solved.displacement,
+        turns: &solved.turns,
+        parameter: target,
+        largest_force: 0.0,
+    };
     let mut kernels = KernelRun::new(&mut work, deformed)?;
     let cost = kernels.cost();
     let sharing = threads.min(cost.factor_threads);
@@ -144,7 +148,7 @@ pub fn run_figure(scene: &Scene, name: &str) -> Result<Figure, BenchError> {
     })
 }
 
-/// Numeric factorization alone: what it takes the place of is formed anew before each call.
+/// Numeric factorization alone: what it takes the place of is formed again before each call.
 fn factor_seconds(repeats: usize, kernels: &mut KernelRun) -> Result<f64, SolveError> {
     let mut times = Vec::new();
     for _ in 0..=repeats.max(1) {

@@ -16,7 +16,7 @@ const PARTS: usize = 2000;
 /// Limit points are located to this, degrees: a hundredth of what is asked of them.
 const LOCATED_DEG: f64 = 1e-4;
 
-/// What one mesh gives.
+/// Results of one mesh.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct ConvergenceRow {
     /// Degree each way.
@@ -43,7 +43,7 @@ pub struct ConvergenceRow {
     pub wall_s: f64,
 }
 
-/// Why a mesh gives nothing.
+/// Why a mesh gives no results.
 #[derive(Debug, thiserror::Error)]
 pub enum ConvergenceError {
     /// Not a tape spring whose ends turn.
@@ -68,7 +68,7 @@ struct Point {
     passed_limit: bool,
 }
 
-/// Whether a scene has what is looked for.
+/// Checks that a scene is a tape spring whose critical moment can be found.
 ///
 /// # Errors
 /// Where it is not one of a tape spring whose ends turn.

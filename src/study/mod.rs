@@ -1,4 +1,4 @@
-//! What a run says when it is held against theory: the closed-form laws of tape springs, the summary of a run, and suites
+//! What a run says when it is compared with theory: the closed-form laws of tape springs, the summary of a run, and suites
 //! of scenes that state how they end.
 //!
 //! | file | what |
@@ -8,17 +8,17 @@
 //! | `summary`, `summary_text` | what a run found |
 //! | `timed_run`, `bench` | what it costs |
 //! | `accuracy`, `convergence` | error against that |
-//! | `stress`, `stress_run`, `stress_curve`, `stress_fault` | scenes that state how they end |
+//! | `extremes`, `extremes_run`, `extremes_curve`, `extremes_fault` | scenes that state how they end |
 
 mod accuracy;
 mod bench;
 mod convergence;
+mod extremes;
+mod extremes_curve;
+mod extremes_fault;
+mod extremes_run;
 mod path;
 mod section_shape;
-mod stress;
-mod stress_curve;
-mod stress_fault;
-mod stress_run;
 mod summary;
 mod summary_text;
 mod timed_run;
@@ -27,9 +27,9 @@ mod wuest;
 pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_one_structure, measure};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use convergence::{ConvergenceError, ConvergenceRow, check_spring, converge};
+pub use extremes::{ExtremeRow, ExtremesSuite};
+pub use extremes_fault::ExtremeFault;
+pub use extremes_run::ExtremeEnd;
 pub use path::{Passed, PathPoint, Snap, equilibria, equilibrium_path, snaps};
-pub use stress::{StressRow, StressSuite};
-pub use stress_fault::StressFault;
-pub use stress_run::StressEnd;
 pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, Said, StageWork, Summary};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

@@ -43,9 +43,9 @@ pub struct Passed {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snap {
     /// Rotation of the last equilibrium before the jump, degrees.
-    pub before_deg: f64,
+    pub before: f64,
     /// Rotation of the first equilibrium after the jump, degrees; the same where a finer mesh set the jump off.
-    pub after_deg: f64,
+    pub after: f64,
     /// Moment before the jump, N·mm.
     pub moment_before_n_mm: f64,
     /// Moment at the end of the load step that jumped, N·mm.
@@ -101,8 +101,8 @@ pub fn snaps(records: &[Record]) -> Vec<Snap> {
             }
             None if report.jumped => {
                 let snap = Snap {
-                    before_deg: before.0,
-                    after_deg: report.parameter,
+                    before: before.0,
+                    after: report.parameter,
                     moment_before_n_mm: before.1,
                     moment_after_n_mm: report.moment_n_mm,
                     energy_released_n_mm: report.energy_released_n_mm,

@@ -12,7 +12,7 @@ const FAR_FROM_ENDS_DEG: f64 = 40.0;
 /// What a run found. Every number comes from the records; `Display` lays them out beside the closed-form laws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// The tape spring, for the laws that the run is held against.
+    /// The tape spring, for the laws that the run is compared with.
     pub spring: Option<TapeSpring>,
     /// What drives the run.
     pub driven_by: Parameter,
@@ -21,7 +21,7 @@ pub struct Summary {
     /// The scene's probes at the last equilibrium.
     pub probes: Vec<Reading>,
     /// Rotation that the scene asks for, degrees.
-    pub target_deg: f64,
+    pub target: f64,
     /// Elements of the whole shell for each element of the model: 1, 2 or 4.
     pub symmetric_parts: usize,
     /// dM/dθ at θ = 0, N·mm per radian of each end; `None` before the first equilibrium.
@@ -50,7 +50,7 @@ pub struct Summary {
     pub warnings: Vec<Said>,
     /// Whether a warning says that the peak is wrong.
     pub peak_in_doubt: bool,
-    /// Solves that were turned down.
+    /// Solves that were rejected.
     pub rejections: usize,
     /// Load steps that ended in an equilibrium.
     pub load_steps: usize,
@@ -131,7 +131,7 @@ pub struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    /// Where the work has gone, N·mm.
+    /// Energy that accounts for the work, N·mm.
     pub fn accounted_n_mm(&self) -> f64 {
         self.strain_energy_n_mm + self.taken_out_by_refinement_n_mm + self.released_in_ripples_n_mm
     }
@@ -145,7 +145,7 @@ impl EnergyBalance {
     }
 }
 
-/// What the runs of one stage have cost.
+/// Number and wall time of the runs of one stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageWork {
     /// The stage.
@@ -177,7 +177,7 @@ impl Summary {
                 .rev()
                 .find(|record| !record.report.probes.is_empty())
                 .map_or(vec![], |record| record.report.probes.clone()),
-            target_deg: scene.load.target(),
+            target: scene.load.target(),
             symmetric_parts: scene.symmetry.copies(),
             initial_stiffness_n_mm: initial_stiffness(&path[..before_jump]),
             peak: peak(&path[..before_jump], before_jump < path.len()),
@@ -207,7 +207,7 @@ impl Summary {
         self.work.iter().map(|work| work.wall_s).sum()
     }
 
-    /// How often any stage ran.
+    /// Number of stages that ran.
     pub fn stages(&self) -> usize {
         self.work.iter().map(|work| work.runs).sum()
     }
@@ -253,7 +253,7 @@ fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
                 sum.put_in_n_mm += report.put_in_n_mm;
                 sum.released_in_ripples_n_mm += report.energy_released_n_mm.unwrap_or(0.0);
             }
-            // Refining integrates the energy anew, and re-equilibrating lowers it: neither is work of the ends.
+            // Refining integrates the energy again, and re-equilibrating lowers it: neither is work of the ends.
             Stage::RefineKnots | Stage::ReEquilibrate => {
                 sum.taken_out_by_refinement_n_mm +=
                     report.work_n_mm + sum.strain_energy_n_mm - report.strain_energy_n_mm;
@@ -328,8 +328,8 @@ fn vertex(points: [&PathPoint; 3]) -> Option<MeasuredPeak> {
 /// over everything that is.
 fn fold_mean(path: &[PathPoint], snap: Option<&Snap>) -> Option<FoldMean> {
     let (snap, last) = (snap?, path.last()?);
-    let third = snap.after_deg + (last.parameter - snap.after_deg) * 2.0 / 3.0;
-    let from = if last.parameter > FAR_FROM_ENDS_DEG { FAR_FROM_ENDS_DEG.max(snap.after_deg) } else { third };
+    let third = snap.after + (last.parameter - snap.after) * 2.0 / 3.0;
+    let from = if last.parameter > FAR_FROM_ENDS_DEG { FAR_FROM_ENDS_DEG.max(snap.after) } else { third };
     let jump = path.iter().rposition(|point| point.jumped)?;
     let points: Vec<&PathPoint> = path[jump..].iter().filter(|point| point.parameter >= from).collect();
     let sum: f64 = points.iter().map(|point| point.moment_n_mm).sum();

@@ -62,12 +62,12 @@ impl Summary {
             };
             return writeln!(f, "no equilibrium yet{turned_down}");
         };
-        let reached = if last.parameter > self.target_deg * (1.0 + 1e-9) {
-            format!("{}, beyond the {} that the scene asks for", self.at(last.parameter), self.at(self.target_deg))
-        } else if last.parameter >= self.target_deg * (1.0 - 1e-9) {
-            format!("{}, as the scene asks", self.at(self.target_deg))
+        let reached = if last.parameter > self.target * (1.0 + 1e-9) {
+            format!("{}, beyond the {} that the scene asks for", self.at(last.parameter), self.at(self.target))
+        } else if last.parameter >= self.target * (1.0 - 1e-9) {
+            format!("{}, as the scene asks", self.at(self.target))
         } else {
-            format!("{} of {}", self.at(last.parameter), self.at(self.target_deg))
+            format!("{} of {}", self.at(last.parameter), self.at(self.target))
         };
         let (stages, steps) = (count(self.stages(), "stage"), count(self.load_steps, "load step"));
         writeln!(f, "{stages} in {steps} to {reached}, {}", duration(self.wall_s()))?;
@@ -94,8 +94,8 @@ impl Summary {
                 f,
                 "  {:<17}  from {} to {}, {}{}",
                 "snap",
-                self.at(snap.before_deg),
-                self.at(snap.after_deg),
+                self.at(snap.before),
+                self.at(snap.after),
                 released_in_words(snap.energy_released_n_mm, self.loads_follow, 3),
                 if self.loads_follow && snap.energy_released_n_mm.is_some() { " along the descent" } else { "" }
             )?;
@@ -137,18 +137,18 @@ impl Summary {
             Line { name: "snap", measured: "   none".into(), law: None, off: None, note: "" }.write(f)?;
         }
         for snap in &self.snaps {
-            let measured = if snap.after_deg > snap.before_deg {
-                format!("{:8.3}° to {:.3}°", snap.before_deg, snap.after_deg)
+            let measured = if snap.after > snap.before {
+                format!("{:8.3}° to {:.3}°", snap.before, snap.after)
             } else {
-                format!("{:8.3}° on refining", snap.after_deg)
+                format!("{:8.3}° on refining", snap.after)
             };
             let drop = format!(
                 "{:.2} → {:.2} N·mm, {}{}",
                 snap.moment_before_n_mm,
                 snap.moment_after_n_mm,
                 released_in_words(snap.energy_released_n_mm, self.loads_follow, 2),
-                if snap.after_deg > snap.before_deg {
-                    format!("; located to {:.3}°", snap.after_deg - snap.before_deg)
+                if snap.after > snap.before {
+                    format!("; located to {:.3}°", snap.after - snap.before)
                 } else {
                     String::new()
                 }
@@ -316,7 +316,7 @@ impl Summary {
     }
 }
 
-/// One finding beside the law that it is held against.
+/// One finding beside the law that it is compared with.
 struct Line<'a> {
     name: &'a str,
     measured: String,

@@ -1,6 +1,6 @@
 //! Parallel projection of points onto a canvas, and what hides what on it.
 
-/// Where the eye stands.
+/// The direction that a picture is seen from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewDirection {
     /// Angle about +z from +x towards +y of the direction to the eye, degrees.

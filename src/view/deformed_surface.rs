@@ -166,7 +166,7 @@ mod tests {
             assert_eq!(completed.counts, whole.counts);
             assert_eq!(completed.knot_lines.len(), whole.knot_lines.len());
             for (point, expected) in completed.points.iter().zip(&whole.points) {
-                // The arc is parametrized anew in each part: the same cylinder, points along it a little apart.
+                // The arc is parametrized again in each part: the same cylinder, points along it a little apart.
                 let off: f64 = (0..3).map(|k| (point[k] - expected[k]).powi(2)).sum::<f64>().sqrt();
                 assert!(off < 0.2, "{symmetry:?}: {point:?} for {expected:?}");
             }

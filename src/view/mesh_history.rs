@@ -29,7 +29,7 @@ pub struct MeshHistory {
 }
 
 impl MeshHistory {
-    /// The meshes of a run of this scene.
+    /// Creates the viewer messages of a run of this scene.
     pub fn new(scene: &Scene) -> Self {
         let list = |what: &str| json!({"type": "array", "items": {"type": "object"}, "description": what});
         let schema = json!({

@@ -9,7 +9,7 @@ use super::samples::SurfaceSamples;
 use super::ticks::ticks;
 use crate::printable::one_line;
 
-/// How a picture is made.
+/// Settings of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Where the eye stands.

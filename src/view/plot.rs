@@ -142,14 +142,14 @@ fn draw_moment(
     }
     draw_path(&mut chart, path, &measured)?;
     for snap in snaps(records) {
-        let (from, to) = ((snap.before_deg, snap.moment_before_n_mm), (snap.after_deg, snap.moment_after_n_mm));
+        let (from, to) = ((snap.before, snap.moment_before_n_mm), (snap.after, snap.moment_after_n_mm));
         chart.draw_series(DashedLineSeries::new([from, to], 3, 4, line(SNAP, 1)))?;
         chart.draw_series([from, to].map(|end| Circle::new(end, 4, line(SNAP, 2))))?;
         // On the side of the jump that has room.
         let (side, shift) = if from.0 > 0.6 * end_deg { (HPos::Right, -0.012) } else { (HPos::Left, 0.012) };
         let style = text(14).color(&SNAP).pos(Pos::new(side, VPos::Center));
         let place = (from.0 + shift * end_deg, 0.5 * (from.1 + to.1));
-        chart.draw_series([Text::new(format!("snap at {:.2}°", snap.after_deg), place, style)])?;
+        chart.draw_series([Text::new(format!("snap at {:.2}°", snap.after), place, style)])?;
     }
     let top = measured.iter().chain(&law).fold((0.0, 0.0), |top, point| if point.1 > top.1 { *point } else { top });
     let free_corner =

@@ -44,12 +44,12 @@ pub enum SamplesError {
 }
 
 impl SurfaceSamples {
-    /// Points of a grid of `counts` points.
+    /// Number of points of a grid.
     pub fn points_len(counts: [usize; 2]) -> usize {
         Grid::new(counts).len()
     }
 
-    /// Cells of a grid of `counts` points.
+    /// Number of cells of a grid.
     pub fn cell_values_len(counts: [usize; 2]) -> usize {
         cells_of(counts).len()
     }

@@ -1,12 +1,12 @@
 //! What a user sees, pinned by snapshots.
 
 mod binary;
+mod extremes;
 mod folded;
 mod pictures;
 mod progress;
 mod stability;
 mod stages;
-mod stress;
 mod study;
 mod summary;
 mod synthetic;

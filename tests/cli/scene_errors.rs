@@ -83,7 +83,7 @@ fn strip_colour(text: &str) -> String {
     parts.fold(first, |plain, part| plain + part.split_once('m').map_or("", |(_, rest)| rest))
 }
 
-/// Holds a text against the accepted one.
+/// Compares a text with the accepted one.
 fn pin(name: &str, text: &str) {
     let mut settings = insta::Settings::clone_current();
     settings.set_omit_expression(true);

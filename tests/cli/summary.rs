@@ -96,7 +96,7 @@ fn numbers_of_the_whole_run() {
             && (peak.parameter - 9.1).abs() < 0.2
     );
     let [snap] = summary.snaps[..] else { panic!("{:?}", summary.snaps) };
-    assert_eq!((snap.before_deg, snap.after_deg), (9.6, 9.615));
+    assert_eq!((snap.before, snap.after), (9.6, 9.615));
     assert_eq!(snap.moment_before_n_mm, 289.124724);
     let fold = summary.fold.unwrap();
     assert_eq!((fold.points, fold.range_deg), (2, [18.0, 20.0]));
@@ -118,7 +118,7 @@ fn a_fall_in_stages_is_one_jump() {
     (report.jumped, report.energy_released_n_mm, report.moment_n_mm) = (true, Some(7.5), 26.57);
     let summary = Summary::new(&synthetic::scene(), &records);
     let [snap] = summary.snaps[..] else { panic!("{:?}", summary.snaps) };
-    assert_eq!((snap.before_deg, snap.after_deg), (9.6, 9.615));
+    assert_eq!((snap.before, snap.after), (9.6, 9.615));
     assert_eq!((snap.moment_before_n_mm, snap.moment_after_n_mm), (289.124724, 26.57));
     assert!((snap.energy_released_n_mm.unwrap() - (63.055972 - 40.0 + 1.9 + 7.5)).abs() < 1e-9);
     let path = foldline::study::equilibrium_path(&records);

@@ -131,7 +131,7 @@ impl Script {
         self.records.push(Record { report, commit, wall_s });
     }
 
-    /// A solve that is turned down.
+    /// A solve that is rejected.
     pub fn rejected(&mut self, attempted_parameter: f64, outcome: Outcome) {
         let report = Report {
             step: self.last.step + 1,
@@ -204,7 +204,7 @@ impl Script {
     }
 }
 
-/// The whole run: three refinements, a solve without equilibrium, a jump turned down twice and then taken.
+/// The whole run: three refinements, a solve without equilibrium, a jump rejected twice and then taken.
 pub fn records() -> Vec<Record> {
     let mut script = Script::new();
     script.step(CURVE[0]);

@@ -290,7 +290,7 @@ fn numbers_that_no_axis_has() {
     }
 }
 
-/// Every number of a report that the state has too is held against it, in its last bit.
+/// Every number of a report that the state has too is compared with it, in its last bit.
 #[test]
 fn a_report_that_says_otherwise_than_its_state() {
     let ordinary = Ordinary::new();

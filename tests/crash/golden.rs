@@ -81,7 +81,7 @@ fn every_log_gives_what_the_table_says() {
         assert_eq!(recovered, row.recovered, "{name}");
         assert_eq!(Log::read(&new).unwrap().entries().len(), row.stages, "{name}");
 
-        // It can be gone on with, and the scene in it still means the same problem.
+        // It can be continued, and the scene in it still means the same problem.
         place.write("log.mcap", fs::read(&path).unwrap());
         place.foldline("resume log.mcap").ends(0);
         let resumed = place.log("log.mcap");
@@ -201,7 +201,7 @@ fn write_golden_logs_of_other_courses() {
     }
 }
 
-/// Not a test: writes a log that was gone on with to a farther target, where it is not there yet.
+/// Not a test: writes a log that was continued to a farther target, where it is not there yet.
 #[test]
 #[ignore = "writes to checkpoints/golden"]
 fn write_golden_log_of_two_stretches() {
@@ -230,11 +230,11 @@ fn write_golden_log_of_two_stretches() {
 fn write_golden_logs() {
     let (scene, manifest) = read_scene("scene.toml");
     let path = path_of;
-    for (what, until_deg) in [("finished", None), ("unfinished", Some(2.0))] {
+    for (what, until) in [("finished", None), ("unfinished", Some(2.0))] {
         let mut writer = JournalWriter::create(&path(what), &manifest, SyncPolicy::AtEnd).unwrap();
         let mut stages = Stages::new(scene.clone());
         let start = stages.start().unwrap();
-        match Run::new(stages, start, None).to_end(until_deg, &|| false, &mut writer).unwrap() {
+        match Run::new(stages, start, None).to_end(until, &|| false, &mut writer).unwrap() {
             Ending::Finished => writer.finish().unwrap(),
             _ => writer.close().unwrap(),
         }

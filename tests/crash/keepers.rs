@@ -97,7 +97,7 @@ fn a_lease_that_cannot_be_read_for_a_while_stops_nobody() {
     }
 }
 
-/// Three start at once where there are no locks: one goes on, and nothing is left that keeps the next one out.
+/// Three start at once where there are no locks: one continues, and nothing is left that keeps the next one out.
 #[test]
 fn without_locks_one_of_three_goes_on() {
     let whole = Straight::small();

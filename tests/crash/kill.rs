@@ -1,4 +1,4 @@
-//! The real program, killed at random instants: each run goes on without a hand, to the same end.
+//! The real program, killed at random instants: each run continues without a hand, to the same end.
 //!
 //! By default as many kills as fit into about half a minute. `FOLDLINE_KILLS=200` asks for that many, however long it
 //! takes; `FOLDLINE_SEED=0x…` repeats a seed that was printed.

@@ -53,7 +53,7 @@ stages = ["solve"]
 /// The moment of the stage that conditions look for.
 const LARGE_N_MM: f64 = 1.0e6;
 
-/// A log of so many commits: states near the third of a real run, and at the end that one itself, so that the program goes on
+/// A log of so many commits: states near the third of a real run, and at the end that one itself, so that the program continues
 /// from there. Three quarters on stands a large moment.
 pub fn write_long(path: &Path, commits: u64) {
     let scene = scene(SCENE);
@@ -230,7 +230,7 @@ fn a_thinned_long_log_has_an_index_too() {
     assert_eq!(place.foldline("inspect thin.mcap --step 5000 --json").ends(0).out, of_index);
 }
 
-/// A long log is gone on with from its end, in place, with the index or without; its index grows with it.
+/// A long log is continued from its end, in place, with the index or without; its index grows with it.
 #[test]
 fn a_long_log_goes_on() {
     const COMMITS: u64 = 6000;

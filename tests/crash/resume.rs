@@ -274,7 +274,7 @@ fn links_beside_a_log_are_not_followed() {
     assert_eq!(fs::read(&other).unwrap(), b"somebody's");
 }
 
-/// A file that held nothing is begun anew under the lock: what a rival has put there meanwhile is left alone.
+/// A file that held nothing is begun again under the lock: what a rival has put there meanwhile is left alone.
 #[test]
 fn an_empty_log_is_not_taken_from_a_rival() {
     let folder = Folder::new();
@@ -312,7 +312,7 @@ fn a_taken_over_log_is_another_file() {
     assert_prefix(&Log::read(&path).unwrap(), &run);
 }
 
-/// A log is gone on with in place: nothing of it is copied, and nothing changes before the first new stage.
+/// A log is continued in place: nothing of it is copied, and nothing changes before the first new stage.
 #[test]
 fn a_log_grows_in_place() {
     let folder = Folder::new();
@@ -337,7 +337,7 @@ fn a_log_grows_in_place() {
     }
 }
 
-/// Power goes while a log is gone on with: before the cut is durable, after it, and anywhere in the first write, of which any
+/// Power goes while a log is continued: before the cut is durable, after it, and anywhere in the first write, of which any
 /// beginning is there, or space without content.
 #[test]
 fn a_power_cut_while_a_log_is_gone_on_with() {

@@ -13,7 +13,7 @@ fn scene_to(target: &str) -> String {
     text.replace("increment_deg = 2.0", "increment_deg = 0.5")
 }
 
-/// Run to 1°, gone on with to 3°, of which it has come to 2°.
+/// Run to 1°, continued to 3°, of which it has come to 2°.
 struct Stretches {
     bytes: Vec<u8>,
     /// Where the second manifest lies.
@@ -135,7 +135,7 @@ fn a_lost_manifest_is_said_and_has_a_way_out() {
     has_its_scene_again(&place);
 }
 
-/// Nothing is missed of a log to which a lost scene was given anew.
+/// Nothing is missed of a log to which a lost scene was given again.
 #[track_caller]
 fn has_its_scene_again(place: &Place) {
     place.foldline("verify log.mcap").ends(0).says(&["makes the same states", "log.mcap: good"]);
@@ -230,7 +230,7 @@ fn an_older_scene_is_said_to_be_one() {
     }
 }
 
-/// A damaged manifest at the end under which no stage was run keeps nobody from going on; it is said, and kept aside.
+/// A damaged manifest at the end under which no stage was run keeps nobody from continuing; it is said, and kept aside.
 #[test]
 fn a_manifest_that_nothing_depends_on() {
     let whole = Stretches::new();

@@ -56,8 +56,8 @@ pub fn next(state: &State) -> (State, Report) {
             new.moment_n_mm = 100.0 * wave(new.parameter);
             new.strain_energy_n_mm = 50.0 * new.parameter * new.parameter;
             let rejection = (step % 4 == 3).then_some(Rejection::Jump);
-            let jump_seen_at_deg = rejection.map(|_| new.parameter + 0.3);
-            new.drive.control = StepControl { halvings: (step % 3) as i32, jump_seen_at_deg, rejection };
+            let jump_beyond = rejection.map(|_| new.parameter + 0.3);
+            new.drive.control = StepControl { halvings: (step % 3) as i32, jump_beyond, rejection };
         }
         Stage::EvaluateIndicators if step % 3 == 0 && state.mesh.knots[0].len() < 60 => {
             let spans = state.mesh.knots[0].windows(2).filter(|pair| pair[0] < pair[1]);

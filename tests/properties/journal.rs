@@ -53,7 +53,7 @@ fn stage() -> impl Strategy<Value = Option<Stage>> {
 }
 
 fn state() -> impl Strategy<Value = State> {
-    let control = (any::<i32>(), prop::option::of(number()), 0..5_u8).prop_map(|(halvings, jump_seen_at_deg, why)| {
+    let control = (any::<i32>(), prop::option::of(number()), 0..5_u8).prop_map(|(halvings, jump_beyond, why)| {
         let rejection = [
             None,
             Some(Rejection::Jump),
@@ -61,7 +61,7 @@ fn state() -> impl Strategy<Value = State> {
             Some(Rejection::CriticalPoint),
             Some(Rejection::SharpTurn),
         ][usize::from(why)];
-        StepControl { halvings, jump_seen_at_deg, rejection }
+        StepControl { halvings, jump_beyond, rejection }
     });
     let refined = any::<bool>();
     let marks = prop::collection::vec(0.001..0.999_f64, 0..3);

@@ -106,7 +106,7 @@ fn a_probe_that_is_another_under_the_same_name() {
     assert_eq!(place.read("pictures/load-probe.svg"), straight.read("pictures/load-probe.svg"));
 }
 
-/// Each probe that changed is a line, whatever else changed; all of them are read anew, and shown while the run goes on.
+/// Each probe that changed is a line, whatever else changed; all of them are read again, and shown while the run continues.
 #[test]
 fn many_probes_are_a_line_and_a_column_each() {
     let probe = |name: &str, on: &str| {
@@ -134,7 +134,7 @@ fn many_probes_are_a_line_and_a_column_each() {
     assert!(["left mm", "right mm", "end mm"].iter().all(|head| heads.contains(head)), "{heads}");
 }
 
-/// What supports and actions are called decides no state, nor does a history beyond the loads that were reached: the run goes on,
+/// What supports and actions are called decides no state, nor does a history beyond the loads that were reached: the run continues,
 /// and ends with the states of one that had the new scene from the start.
 #[test]
 fn names_and_later_loads() {
@@ -182,7 +182,7 @@ fn names_and_later_loads() {
     place.foldline("run path-later.toml -o path.mcap --resume").ends(1).says(&["a step by arc length looks beyond"]);
 }
 
-/// A finished run goes on to a farther target as if that had been the target from the start.
+/// A finished run continues to a farther target as if that had been the target from the start.
 #[test]
 fn a_farther_target() {
     let whole = Straight::small();
@@ -225,7 +225,7 @@ fn a_nearer_target() {
     }
 }
 
-/// What steps are made with: complete steps stand, a step in hand is begun anew, and the log says which scene made
+/// What steps are made with: complete steps stand, a step in hand is begun again, and the log says which scene made
 /// what.
 #[test]
 fn solver_tolerance() {

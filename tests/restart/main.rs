@@ -1,4 +1,4 @@
-//! A run is a function of its scene: the same chain of hashes however it is run, stopped, and gone on with.
+//! A run is a function of its scene: the same chain of hashes however it is run, stopped, and continued.
 
 mod bisect;
 mod changed;

@@ -1,4 +1,4 @@
-//! Runs with an energy of the caller's own: their logs say so, and are gone on with by who has it, and by nobody else.
+//! Runs with an energy of the caller's own: their logs say so, and are continued by who has it, and by nobody else.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -118,7 +118,7 @@ fn a_log_with_a_term_that_is_not_there_is_not_gone_on_with() {
     assert!(more.contains("\"elastic foundation\" was not there"), "{more}");
 }
 
-/// Who has the term goes on, runs stages again and locates the snap.
+/// Who has the term continues, runs stages again and locates the snap.
 #[test]
 fn a_log_is_gone_on_with_by_who_has_its_terms() {
     let place = Place::new();
@@ -135,11 +135,11 @@ fn a_log_is_gone_on_with_by_who_has_its_terms() {
     }
     assert!(matches!(find_snap(&mut States::of(&log), &scene, 0.01), Err(SnapError::Terms(_))));
     let jump = log.entries().iter().map(|entry| &entry.record.report).find(|report| report.jumped).unwrap();
-    let [low, high] = find_snap(&mut states, &scene, 0.01).unwrap().bracket_deg;
+    let [low, high] = find_snap(&mut states, &scene, 0.01).unwrap().bracket;
     assert!(high - low <= 0.01 && high <= jump.parameter && low > jump.parameter - 2.0, "{low} {high}");
 }
 
-/// A path over an elastic foundation, cut anywhere, goes on as if it had never stopped.
+/// A path over an elastic foundation, cut anywhere, continues as if it had never stopped.
 #[test]
 fn a_path_on_a_foundation_is_gone_on_with() {
     let text = include_str!("column.toml").replace("[-1.43932, 0.0, 0.0]", "[-4.0, 0.0, 0.004]");

@@ -50,7 +50,7 @@ fn the_runs_are_eventful() {
     assert!(report(first).parameter > report(second).parameter, "the load goes back");
     let bisected = stages_that(&log, |index| report(index).outcome == Outcome::RejectedCriticalPoint);
     assert!(bisected.iter().filter(|index| **index < first).count() >= 2, "{bisected:?}");
-    // Both kinds of states in a bisection: turned down, and taken with the rest still ahead.
+    // Both kinds of states in a bisection: rejected, and taken with the rest still ahead.
     let ahead = |index: usize| log.state(index).unwrap().drive.path().is_some_and(|path| path.critical_ahead.is_some());
     let done = |index: usize| report(index).outcome == Outcome::Done && report(index).stage == Stage::Solve;
     assert!(!stages_that(&log, |index| ahead(index) && done(index)).is_empty());
@@ -169,7 +169,7 @@ fn another_longest_step() {
     }
 }
 
-/// A run by load control goes on by arc length where it stood.
+/// A run by load control continues by arc length where it stood.
 #[test]
 fn from_load_control_to_arc_length() {
     let by_load = with(ROOF, &[("[continuation]\ncontrol = \"arc-length\"\nlongest_step = 8.0\n", "")]);

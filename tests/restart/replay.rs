@@ -88,7 +88,7 @@ fn a_trace_of_the_snap() {
     let all: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     assert!(all.iter().all(|row| row.len() == head.len()), "{csv}");
     said.says(&[&format!("{} iterates: snap.mcap, snap.csv", all.len())]);
-    // Solves of the same step that were turned down come before the one that jumped.
+    // Solves of the same step that were rejected come before the one that jumped.
     let rows: Vec<Vec<&str>> = all.iter().filter(|row| row[0] == jump.to_string()).cloned().collect();
     assert!(!rows.is_empty());
     let column = |name: &str| -> Vec<f64> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use foldline::energy::{Discretization, Want, strain_energy};
-use foldline::equilibrium::{Assembled, Equilibrium, Standing, Workspace};
+use foldline::equilibrium::{Assembled, Configuration, Equilibrium, Workspace};
 use foldline::model::starting_mesh;
 use foldline::scene::{Geometry, Load, Scene, Sense, Symmetry};
 
@@ -30,8 +30,8 @@ fn noise(count: usize) -> Vec<f64> {
         .collect()
 }
 
-fn flat(displacement: &[[f64; 3]]) -> Standing<'_> {
-    Standing { displacement, turns: &[], parameter: 0.0, largest_force: 0.0 }
+fn flat(displacement: &[[f64; 3]]) -> Configuration<'_> {
+    Configuration { displacement, turns: &[], parameter: 0.0, largest_force: 0.0 }
 }
 
 fn length(vector: &[f64]) -> f64 {
@@ -129,7 +129,7 @@ fn moment_is_the_derivative_of_the_energy_with_respect_to_the_rotation() {
         let mut work = Workspace::new(&scene, &mesh).unwrap();
         let start = vec![[0.0; 3]; mesh.control_points.len()];
         let mut solve = |from: &[[f64; 3]], a: f64, b: f64| {
-            let from = Standing { displacement: from, turns: &[], parameter: a, largest_force: 0.0 };
+            let from = Configuration { displacement: from, turns: &[], parameter: a, largest_force: 0.0 };
             Equilibrium::new(&scene, &mut work).advance(from, b, &mut |_| false).unwrap()
         };
         let middle = solve(&start, 0.0, 1.0);

@@ -1,9 +1,9 @@
-//! What equilibrium and released energy are held against: forces that are there where reactions vanish, and the work of
+//! What equilibrium and released energy are compared with: forces that are there where reactions vanish, and the work of
 //! moments that turn with the shell.
 
 use std::f64::consts::PI;
 
-use foldline::equilibrium::{Standing, Workspace};
+use foldline::equilibrium::{Configuration, Workspace};
 use foldline::pipeline::Record;
 use foldline::scene::{Scene, parse};
 use foldline::state::State;
@@ -17,10 +17,10 @@ fn scene(name: &str, text: &str) -> Scene {
 /// Reactions and residual together, N: internal forces less loads on all control points.
 fn forces(scene: &Scene, state: &State) -> f64 {
     let mut work = Workspace::new(scene, &state.mesh).unwrap();
-    work.forces(Standing::of(state)).iter().flatten().map(|force| force * force).sum::<f64>().sqrt()
+    work.forces(Configuration::of(state)).iter().flatten().map(|force| force * force).sum::<f64>().sqrt()
 }
 
-/// Newton iterations of every load step that went on.
+/// Newton iterations of every load step that continued.
 fn iterations(stages: &[(State, Record)]) -> Vec<usize> {
     steps(stages).iter().map(|(_, record)| record.report.iterations).collect()
 }

@@ -105,9 +105,9 @@ fn check_baseline(stages: &[(State, Record)]) {
 
 /// Up to the snap the work of the end moments is the strain energy: ∫ 2M dθ by the trapezoidal rule. Refinement
 /// takes energy out at fixed load, which is added back.
-fn check_work(settled: &[&(State, Record)], until_deg: f64) {
+fn check_work(settled: &[&(State, Record)], until: f64) {
     let (mut work, mut rotation, mut moment) = (0.0, 0.0_f64, 0.0);
-    for (state, _) in settled.iter().filter(|(state, _)| state.parameter <= until_deg) {
+    for (state, _) in settled.iter().filter(|(state, _)| state.parameter <= until) {
         let step = (state.parameter - rotation).to_radians();
         work += (state.moment_n_mm + moment) * step;
         (rotation, moment) = (state.parameter, state.moment_n_mm);

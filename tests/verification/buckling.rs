@@ -123,7 +123,7 @@ fn asymmetry(state: &State) -> [f64; 2] {
     worst
 }
 
-/// Equal-sense bending: two modes become soft at some 1.6°, and the run goes on, stable, twisted, with less energy than the
+/// Equal-sense bending: two modes become soft at some 1.6°, and the run continues, stable, twisted, with less energy than the
 /// symmetric path has there.
 #[test]
 fn equal_sense_bending_leaves_for_the_twisting_branch() {

@@ -1,7 +1,7 @@
 //! Meshes that cannot show what the shell does are said to be coarse, and those of the shipped scenes are not.
 
 use foldline::adapt::Halved;
-use foldline::equilibrium::{Equilibrium, Standing, Workspace};
+use foldline::equilibrium::{Configuration, Equilibrium, Workspace};
 use foldline::pipeline::{MemorySink, Record, Run, Stages, Warning};
 use foldline::scene::{LengthLimit, Quadrature, Scene, Stage, parse};
 use foldline::spline::Spans;
@@ -47,7 +47,7 @@ fn pulled_cylinder() -> Scene {
     parse(include_str!("scenes/pulled-cylinder.toml"), "pulled-cylinder.toml").unwrap()
 }
 
-/// An open cylinder pulled at two points (Sze, Liu & Lo 2004, section 3.6; R/t = 53), held against 32 x 48 quartic elements:
+/// An open cylinder pulled at two points (Sze, Liu & Lo 2004, section 3.6; R/t = 53), compared with 32 x 48 quartic elements:
 /// with a limit of √(R t) it is 6.3 % off and says so; with the default for such shells 1.6 %.
 #[test]
 fn refinement_that_the_limit_blocks_is_said() {
@@ -114,7 +114,7 @@ fn halving_is_foreseen() {
     let finer = std::sync::Arc::new(state.mesh.with_knots(&middles));
     let displacement = foldline::adapt::project_displacements(&state.mesh, &finer, &state.displacement);
     let mut work = Workspace::new(&scene, &finer).unwrap();
-    let at = Standing { displacement: &displacement, ..Standing::of(&state) };
+    let at = Configuration { displacement: &displacement, ..Configuration::of(&state) };
     let found = Equilibrium::new(&scene, &mut work).relax(at, &mut |_| false).unwrap();
     let model = found.balance.stored / scene.symmetry.copies() as f64;
     let released = foreseen.integrated - model;

@@ -88,7 +88,7 @@ fn a_large_plate_is_a_cylinder() {
     }
 }
 
-/// The path of the saddle goes on beyond its bifurcation, which lies at a temperature that goes with the inverse square of
+/// The path of the saddle continues beyond its bifurcation, which lies at a temperature that goes with the inverse square of
 /// the side (von Kármán's equations know curvature · side²/thickness alone).
 #[test]
 fn the_saddle_goes_on_unstable() {

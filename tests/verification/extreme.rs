@@ -1,4 +1,4 @@
-//! Quick scenes of `pipelines/extreme/` end as they state; `foldline stress` runs them all.
+//! Quick scenes of `pipelines/extreme/` end as they state; `foldline extremes` runs them all.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use foldline::pipeline::{MemorySink, Run, RunError, StageError, Stages};
 use foldline::scene::{ExpectedOutcome, Scene};
-use foldline::study::StressSuite;
+use foldline::study::ExtremesSuite;
 
 use crate::support::scene;
 
@@ -17,7 +17,7 @@ fn scenes() -> BTreeMap<String, Scene> {
 }
 
 fn end_as_stated(scenes: BTreeMap<String, Scene>, names: &[&str]) {
-    let mut suite = StressSuite::new(scenes, Duration::from_secs(120));
+    let mut suite = ExtremesSuite::new(scenes, Duration::from_secs(120));
     for name in names {
         let row = suite.run(name).unwrap();
         assert!(row.as_stated, "{name}: {:?} {:?}", row.outcome, row.faults);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use foldline::energy::Balance;
 use foldline::energy::{At, Tangent, Term, TermSource, Want};
-use foldline::equilibrium::{Assembled, Equilibrium, Standing, Workspace};
+use foldline::equilibrium::{Assembled, Configuration, Equilibrium, Workspace};
 use foldline::model::{ModelError, Tables, starting_mesh};
 use foldline::pipeline::{MemorySink, Record, Run, Stages};
 use foldline::scene::{Scene, Stage, parse};
@@ -368,8 +368,9 @@ fn it_stands_in_the_sums() {
     let step = 1e-5;
     let energy = |step: f64| work.energy(&at(step), 0.0);
     let slope = (energy(step) - energy(-step)) / (2.0 * step);
-    let mut forces =
-        |step: f64| work.forces(Standing { displacement: &at(step), turns: &[], parameter: 0.0, largest_force: 0.0 });
+    let mut forces = |step: f64| {
+        work.forces(Configuration { displacement: &at(step), turns: &[], parameter: 0.0, largest_force: 0.0 })
+    };
     let product = |a: &[[f64; 3]], b: &[[f64; 3]]| -> f64 {
         a.as_flattened().iter().zip(b.as_flattened()).map(|(a, b)| a * b).sum()
     };
@@ -400,7 +401,7 @@ fn the_balance_of_a_solve_tells_it_apart() {
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
     let mut work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
     let still = vec![[0.0; 3]; mesh.control_points.len()];
-    let rest = Standing { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
+    let rest = Configuration { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
     let solved = Equilibrium::new(&scene, &mut work).advance(rest, 1.0, &mut |_| false).unwrap();
     let Balance { stored, of_terms, work: done, .. } = &solved.balance;
     // The shell, the force, which stores nothing, and the foundation.

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use foldline::energy::{Discretization, Want};
-use foldline::equilibrium::{Assembled, Equilibrium, Standing, Workspace};
+use foldline::equilibrium::{Assembled, Configuration, Equilibrium, Workspace};
 use foldline::model::starting_mesh;
 use foldline::scene::{Scene, parse};
 use foldline::spline::{Mesh, Spans, mid_surface_point};
@@ -108,7 +108,7 @@ fn sizes(count: usize, graded: bool) -> Vec<f64> {
 fn solved(scene: &Scene, mesh: &Arc<Mesh>) -> Vec<[f64; 3]> {
     let mut work = Workspace::new(scene, mesh).unwrap();
     let still = vec![[0.0; 3]; mesh.control_points.len()];
-    let start = Standing { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
+    let start = Configuration { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
     Equilibrium::new(scene, &mut work).advance(start, scene.load.target(), &mut |_| false).unwrap().displacement
 }
 

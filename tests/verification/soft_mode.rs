@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use foldline::energy::{Discretization, Want};
-use foldline::equilibrium::{Assembled, SoftMode, Standing, Workspace, soft_mode};
+use foldline::equilibrium::{Assembled, Configuration, SoftMode, Workspace, soft_mode};
 use foldline::pipeline::Outcome;
 use foldline::scene::{Scene, parse};
 use foldline::spline::Mesh;
@@ -86,7 +86,7 @@ fn dense(scene: &Scene, state: &State) -> Vec<f64> {
 
 fn soft(scene: &Scene, state: &State) -> SoftMode {
     let mut work = Workspace::new(scene, &state.mesh).unwrap();
-    soft_mode(&mut work, Standing::of(state)).unwrap()
+    soft_mode(&mut work, Configuration::of(state)).unwrap()
 }
 
 #[test]

@@ -93,7 +93,7 @@ fn both_ends_agree_with_a_run_by_rotation() {
     }
 }
 
-/// The mesh refines on the way, and the path goes on: to the same limit, and to the same fold.
+/// The mesh refines on the way, and the path continues: to the same limit, and to the same fold.
 #[test]
 fn refined_on_the_way() {
     let scene = quarter();

@@ -178,7 +178,7 @@ fn a_closed_tube_widens_evenly() {
     }
 }
 
-/// Displacement and slope go on across both seams.
+/// Displacement and slope continue across both seams.
 #[test]
 fn a_torus_is_closed_both_ways() {
     let held = [

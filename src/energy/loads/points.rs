@@ -42,7 +42,7 @@ impl LoadPoint {
         mesh.window(self.first)
     }
 
-    /// a₁, a₂.
+    /// Tangents a₁, a₂ of the deformed surface.
     pub fn deformed(&self, mesh: &Mesh, displacement: &[[f64; 3]]) -> [[f64; 3]; 2] {
         let mut tangents = self.site.tangents;
         for (a, control) in self.controls(mesh).enumerate() {

@@ -23,7 +23,7 @@ use crate::spline::Mesh;
 const TURNED_ROUND: f64 = 1e-9;
 
 impl Kind {
-    /// Of a point, at weight 1.
+    /// Stroke of the load at a point of weight 1, N·mm.
     pub fn stroke(self, point: &LoadPoint, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
         let ends = [from, to].map(|displacement| point.deformed(mesh, displacement));
         let normals = ends.map(|[a1, a2]| cross(a1, a2));

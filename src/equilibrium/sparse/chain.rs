@@ -17,7 +17,7 @@ pub(super) struct Chain {
 }
 
 impl Chain {
-    /// From the first column of each row, own rows first.
+    /// Builds a chain from the first column of each row, own rows first.
     pub fn new(own: usize, separator: usize, first_of: impl Fn(usize) -> usize) -> Self {
         let own_strips = own.div_ceil(HEIGHT);
         let strips = own_strips + separator.div_ceil(HEIGHT);
@@ -34,23 +34,23 @@ impl Chain {
         Self { own, own_strips, first, start }
     }
 
-    /// Rows with the padding.
+    /// Number of rows, with the padding.
     pub fn rows(&self) -> usize {
         HEIGHT * self.first.len()
     }
 
-    /// Columns of all strips.
+    /// Number of columns of all strips.
     pub fn columns(&self) -> usize {
         self.start.last().copied().unwrap_or(0)
     }
 
-    /// Columns of all strips that lie in the chain's own.
+    /// Number of columns of all strips that lie in the chain's own.
     pub fn own_columns(&self) -> usize {
         let separator = self.first.len() - self.own_strips;
         self.columns() - HEIGHT * separator * (separator + 1) / 2
     }
 
-    /// Columns of the widest strip.
+    /// Number of columns of the widest strip.
     pub fn widest(&self) -> usize {
         self.start.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or(0)
     }

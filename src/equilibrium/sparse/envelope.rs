@@ -12,7 +12,7 @@ pub(super) struct Envelope {
 }
 
 impl Envelope {
-    /// Of a structure.
+    /// Finds the envelope of a structure.
     pub fn new(couplings: &Couplings) -> Self {
         let mut envelope = Self { first: (0..couplings.unknowns).collect(), last: (0..couplings.unknowns).collect() };
         let ends = |group: &Vec<usize>| Some((*group.iter().min()?, *group.iter().max()?));

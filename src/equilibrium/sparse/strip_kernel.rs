@@ -19,7 +19,7 @@ use crate::shell::lanes_x86::{Fma, HasFma};
 const WIDTH: usize = 4;
 /// Tiles of a square block.
 const TILES: usize = HEIGHT / WIDTH;
-/// Columns that a sum takes before it goes on to the next tile: those of both strips, 2 × 9 kB, stay in the first cache
+/// Columns that a sum takes before it continues to the next tile: those of both strips, 2 × 9 kB, stay in the first cache
 /// (32 kB) for all three tiles. With the whole depth at once a factorization for 128 × 16
 /// cubic elements took 16 ms in place of 14.
 const STRETCH: usize = 96;

@@ -217,7 +217,7 @@ pub struct DenseProduct {
 }
 
 impl DenseProduct {
-    /// Matrices of this size, ready to be multiplied.
+    /// Creates matrices of this size, ready to be multiplied.
     pub fn new(size: usize) -> Self {
         let matrix = faer::Mat::from_fn(size, size, |i, j| ((i * 7 + j * 3) % 11) as f64);
         Self { matrix, product: faer::Mat::zeros(size, size) }

@@ -73,7 +73,7 @@ pub enum CodecError {
         /// Hash of what was decoded.
         found: Hash,
     },
-    /// The content that was committed, but nothing that a run could go on from.
+    /// The content that was committed, but nothing that a run could continue from.
     #[error("the content is unusable")]
     Unsound(#[from] Flaw),
 }

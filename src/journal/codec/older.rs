@@ -26,7 +26,7 @@ pub(super) struct StateV1 {
     pub negative_pivots: u64,
     /// 0 where the increment has grown instead.
     pub halvings: u32,
-    pub jump_seen_at_deg: Option<f64>,
+    pub jump_beyond: Option<f64>,
     pub rejection: Option<RejectionV1>,
 }
 
@@ -141,7 +141,7 @@ impl StateV6 {
             negative_pivots: base.negative_pivots,
             // One of the two is 0; where a changed byte makes it another number, the hash sees it.
             halvings: base.halvings.wrapping_sub(doublings).cast_signed(),
-            jump_seen_at_deg: base.jump_seen_at_deg,
+            jump_beyond: base.jump_beyond,
             rejection: base.rejection,
             course,
             largest_force_n,

@@ -68,7 +68,7 @@ fn a_load_step_and_a_path_behind_one_state_are_refused() {
         strain_energy_n_mm: 0.0,
         negative_pivots: 0,
         halvings: 0,
-        jump_seen_at_deg: None,
+        jump_beyond: None,
         rejection: None,
     };
     let path = PathV3 {

@@ -52,7 +52,7 @@ pub(super) struct StateV7<'a> {
     pub strain_energy_n_mm: f64,
     pub negative_pivots: u64,
     pub halvings: i32,
-    pub jump_seen_at_deg: Option<f64>,
+    pub jump_beyond: Option<f64>,
     pub rejection: Option<RejectionV1>,
     pub course: CourseV7,
     pub largest_force_n: f64,

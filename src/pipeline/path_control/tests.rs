@@ -58,7 +58,7 @@ fn point(distance: f64, turn: f64, rate: f64, negative_pivots: usize, iterations
     }
 }
 
-/// Length of the step that follows one that went on.
+/// Length of the step that follows one that continued.
 fn length_after(iterations: usize, turn: f64, length_mm: f64) -> f64 {
     let attempt = PathAttempt { length_mm, may_pass: false, can_be_halved: true };
     let found = point(length_mm, turn, 1.0, 0, iterations);
@@ -211,7 +211,7 @@ fn bisection_ends() {
 }
 
 /// A step that ended on its own path turned round: the parameter runs the other way and the pivots are the same. That
-/// never happens on a path that goes on, so the step is not taken as long as it can be halved, whatever the tolerance.
+/// never happens on a path that continues, so the step is not taken as long as it can be halved, whatever the tolerance.
 #[test]
 fn a_reflected_step_is_never_taken_while_it_can_be_halved() {
     for tolerance in [1e-6, 0.01, 1.0, 1e3] {

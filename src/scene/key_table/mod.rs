@@ -28,7 +28,7 @@ pub static SECTIONS: [Section; 11] = [
     section("continuation", false, "How the path of equilibria is followed."),
     section("pipeline", false, "The stages of one load step."),
     section("output", false, "What is written beside the states; never changes a state."),
-    section("expect", false, "How the run is to end; `foldline stress` alone looks at it."),
+    section("expect", false, "How the run is to end; `foldline extremes` alone looks at it."),
 ];
 
 /// The keys of a scene file, table by table.

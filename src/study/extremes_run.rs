@@ -7,11 +7,11 @@ use serde::{Serialize, Serializer};
 use crate::pipeline::{Commit, Ending, MemorySink, Record, Run, RunError, StageError, Stages};
 use crate::scene::{ExpectedOutcome, Scene};
 use crate::state::State;
-use crate::study::stress_fault::StressFault;
+use crate::study::extremes_fault::ExtremeFault;
 
 /// How a scene ended.
 #[derive(Clone, Debug, PartialEq)]
-pub enum StressEnd {
+pub enum ExtremeEnd {
     /// At its target.
     Finished,
     /// Before, in a way that a scene can expect.
@@ -35,8 +35,8 @@ pub enum StressEnd {
     },
 }
 
-impl StressEnd {
-    /// One word.
+impl ExtremeEnd {
+    /// Name of the end, in one word.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Finished => ExpectedOutcome::Finished.name(),
@@ -65,7 +65,7 @@ impl StressEnd {
     }
 }
 
-impl Serialize for StressEnd {
+impl Serialize for ExtremeEnd {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name())
     }
@@ -73,7 +73,7 @@ impl Serialize for StressEnd {
 
 /// A run that came to an end.
 pub(super) struct Done {
-    pub end: StressEnd,
+    pub end: ExtremeEnd,
     start: Option<State>,
     /// The state that the run was left with.
     last: Option<State>,
@@ -90,15 +90,15 @@ impl Done {
         let start = match stages.start() {
             Ok(start) => start,
             Err(error) => {
-                let end = StressEnd::Stopped { outcome: ExpectedOutcome::Refused, message: error.to_string() };
+                let end = ExtremeEnd::Stopped { outcome: ExpectedOutcome::Refused, message: error.to_string() };
                 return Self { end, start: None, last: None, stages: vec![], wall_s: begin.elapsed().as_secs_f64() };
             }
         };
         let mut sink = MemorySink::default();
         let mut run = Run::new(stages, start.clone(), None);
         let end = match run.to_end(None, &|| begin.elapsed() > limit, &mut sink) {
-            Ok(Ending::Finished | Ending::Until) => StressEnd::Finished,
-            Ok(Ending::Interrupted) => StressEnd::OutOfTime,
+            Ok(Ending::Finished | Ending::Until) => ExtremeEnd::Finished,
+            Ok(Ending::Interrupted) => ExtremeEnd::OutOfTime,
             Err(error) => stop(&error),
         };
         let (last, wall_s) = (Some(run.state().clone()), begin.elapsed().as_secs_f64());
@@ -111,7 +111,7 @@ impl Done {
     }
 
     /// Whether the stages that were kept are the run: each on the one before it, the last the one that the run stands on.
-    pub fn lost(&self) -> Option<StressFault> {
+    pub fn lost(&self) -> Option<ExtremeFault> {
         let mut previous: Option<Commit> = None;
         let mut hash = self.start.as_ref()?.hash();
         for (state, record) in &self.stages {
@@ -125,16 +125,16 @@ impl Done {
                 state.hash(),
             );
             if commit != next {
-                return Some(StressFault::Lost { ordinal: next.ordinal });
+                return Some(ExtremeFault::Lost { ordinal: next.ordinal });
             }
             (previous, hash) = (Some(commit), commit.state_hash);
         }
         let left = self.last.as_ref().map(State::hash);
-        (left != Some(hash)).then_some(StressFault::Lost { ordinal: self.stages.len() as u64 })
+        (left != Some(hash)).then_some(ExtremeFault::Lost { ordinal: self.stages.len() as u64 })
     }
 }
 
-fn stop(error: &RunError) -> StressEnd {
+fn stop(error: &RunError) -> ExtremeEnd {
     let message = error.to_string();
     let outcome = match error {
         RunError::Stage(StageError::NoEquilibrium { .. }) => ExpectedOutcome::NoEquilibrium,
@@ -143,9 +143,9 @@ fn stop(error: &RunError) -> StressEnd {
         RunError::Stage(StageError::RefinedTooFar { .. }) => ExpectedOutcome::RefinedTooFar,
         RunError::Stage(StageError::PathLost { .. }) => ExpectedOutcome::PathLost,
         RunError::Stage(StageError::PathTooLong { .. }) => ExpectedOutcome::PathTooLong,
-        RunError::Stage(_) | RunError::Sink(_) => return StressEnd::Broken { message },
+        RunError::Stage(_) | RunError::Sink(_) => return ExtremeEnd::Broken { message },
     };
-    StressEnd::Stopped { outcome, message }
+    ExtremeEnd::Stopped { outcome, message }
 }
 
 #[cfg(test)]
@@ -162,12 +162,12 @@ mod tests {
         assert_eq!(whole().lost(), None);
         let mut changed = whole();
         changed.stages[1].0.displacement[20][0] += 1e-15;
-        assert_eq!(changed.lost(), Some(StressFault::Lost { ordinal: 1 }));
+        assert_eq!(changed.lost(), Some(ExtremeFault::Lost { ordinal: 1 }));
         let mut short = whole();
         short.stages.pop();
         assert!(short.lost().is_some());
         let mut gap = whole();
         gap.stages.remove(1);
-        assert_eq!(gap.lost(), Some(StressFault::Lost { ordinal: 1 }));
+        assert_eq!(gap.lost(), Some(ExtremeFault::Lost { ordinal: 1 }));
     }
 }

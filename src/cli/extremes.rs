@@ -1,4 +1,4 @@
-//! `foldline stress`: scenes at and beyond the edge, and whether each ends as it states.
+//! `foldline extremes`: scenes at and beyond the edge, and whether each ends as it states.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::output::{print, print_json, say};
 use super::scene_file::read_scene;
 use super::session::use_threads;
 use crate::scene::Scene;
-use crate::study::{StressRow, StressSuite};
+use crate::study::{ExtremeRow, ExtremesSuite};
 use crate::units::{count, duration};
 
 /// Run scenes at and beyond the edge, and say whether each ends as it states
@@ -65,12 +65,12 @@ impl Arguments {
         let names = self.chosen(files.keys())?;
         let scenes = read_scenes(&files, &names)?;
         use_threads(self.threads.map(usize::from))?;
-        let table = StressTable::new(names.iter().map(|name| stem(name)));
+        let table = ExtremesTable::new(names.iter().map(|name| stem(name)));
         if !self.json {
             print(&table.head())?;
         }
         let begin = Instant::now();
-        let mut suite = StressSuite::new(scenes, Duration::from_secs(self.limit));
+        let mut suite = ExtremesSuite::new(scenes, Duration::from_secs(self.limit));
         let mut failed = 0;
         for row in names.iter().filter_map(|name| suite.run(name)) {
             failed += usize::from(!row.as_stated);
@@ -113,7 +113,7 @@ fn list_folder(folder: &Path) -> Result<BTreeMap<String, PathBuf>, Failure> {
     Ok(files)
 }
 
-/// The scenes that are run, and those that they are held against; others in the folder may be as they are.
+/// The scenes that are run, and those that they are compared with; others in the folder may be as they are.
 fn read_scenes(files: &BTreeMap<String, PathBuf>, names: &[String]) -> Result<BTreeMap<String, Scene>, Failure> {
     let mut scenes = BTreeMap::new();
     let mut wanted: Vec<String> = names.to_vec();
@@ -132,12 +132,12 @@ fn stem(name: &str) -> &str {
 }
 
 /// The table of a suite, line by line as its scenes end.
-pub struct StressTable {
+pub struct ExtremesTable {
     name_width: usize,
 }
 
-impl StressTable {
-    /// Columns that are wide enough for these names.
+impl ExtremesTable {
+    /// Creates a table whose columns are wide enough for these names.
     pub fn new<'n>(names: impl Iterator<Item = &'n str>) -> Self {
         Self { name_width: names.map(|name| name.chars().count()).chain([5]).max().unwrap_or(5) }
     }
@@ -150,7 +150,7 @@ impl StressTable {
     }
 
     /// A scene; below it the error that ended it, and what is wrong.
-    pub fn row(&self, row: &StressRow) -> String {
+    pub fn row(&self, row: &ExtremeRow) -> String {
         let small = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0e}"));
         let balance = row.energy_balance.map_or_else(|| "-".to_owned(), |value| format!("{value:+.0e}"));
         let mut text = self.line(

@@ -1,14 +1,14 @@
-//! `foldline stress`: its table, its exit codes, its filter.
+//! `foldline extremes`: its table, its exit codes, its filter.
 
 use std::fs;
 use std::process::{Command, Output};
 
-use foldline::cli::StressTable;
+use foldline::cli::ExtremesTable;
 use foldline::scene::ExpectedOutcome;
-use foldline::study::{StressEnd, StressFault, StressRow};
+use foldline::study::{ExtremeEnd, ExtremeFault, ExtremeRow};
 
-fn row(scene: &str, outcome: StressEnd) -> StressRow {
-    StressRow {
+fn row(scene: &str, outcome: ExtremeEnd) -> ExtremeRow {
+    ExtremeRow {
         scene: format!("{scene}.toml"),
         message: outcome.message().map(str::to_owned),
         outcome,
@@ -29,8 +29,8 @@ fn row(scene: &str, outcome: StressEnd) -> StressRow {
 
 #[test]
 fn table() {
-    let stopped = |outcome| StressEnd::Stopped { outcome, message: "step 21, solve: the shell jumps".into() };
-    let refused = StressRow {
+    let stopped = |outcome| ExtremeEnd::Stopped { outcome, message: "step 21, solve: the shell jumps".into() };
+    let refused = ExtremeRow {
         error: None,
         load_steps: 0,
         iterations: 0,
@@ -40,34 +40,34 @@ fn table() {
         symmetry_error: None,
         significant_bits: None,
         wall_s: 0.001,
-        ..row("one-element", StressEnd::Stopped { outcome: ExpectedOutcome::Refused, message: "write 2".into() })
+        ..row("one-element", ExtremeEnd::Stopped { outcome: ExpectedOutcome::Refused, message: "write 2".into() })
     };
-    let broken = StressRow {
+    let broken = ExtremeRow {
         as_stated: false,
         faults: vec![
-            StressFault::EndedOtherwise { expected: ExpectedOutcome::Finished, limit_s: 120.0 },
-            StressFault::Noise { bits: 5.2, least: 10.0 },
+            ExtremeFault::EndedOtherwise { expected: ExpectedOutcome::Finished, limit_s: 120.0 },
+            ExtremeFault::Noise { bits: 5.2, least: 10.0 },
         ],
         error: Some(0.38),
         inexact: Some("elements of 1 mm, and the fold has layers of 0.14 mm".into()),
         significant_bits: Some(5.2),
         wall_s: 133.08,
-        ..row("radius-over-thickness-5000", StressEnd::OutOfTime)
+        ..row("radius-over-thickness-5000", ExtremeEnd::OutOfTime)
     };
     let rows = [
-        row("degree-3", StressEnd::Finished),
+        row("degree-3", ExtremeEnd::Finished),
         row("no-equilibrium", stopped(ExpectedOutcome::JumpNotFollowed)),
         refused,
         broken,
     ];
-    let table = StressTable::new(rows.iter().map(|row| row.scene.trim_end_matches(".toml")));
+    let table = ExtremesTable::new(rows.iter().map(|row| row.scene.trim_end_matches(".toml")));
     let text: String = rows.iter().map(|row| table.row(row)).collect();
     insta::assert_snapshot!(table.head() + &text);
 }
 
 #[test]
 fn json() {
-    let text = serde_json::to_string_pretty(&row("degree-3", StressEnd::Finished)).unwrap();
+    let text = serde_json::to_string_pretty(&row("degree-3", ExtremeEnd::Finished)).unwrap();
     insta::assert_snapshot!(text);
 }
 
@@ -81,16 +81,16 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-fn stress(folder: &tempfile::TempDir, arguments: &[&str]) -> Output {
+fn extremes(folder: &tempfile::TempDir, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_foldline"));
-    command.arg("stress").arg("--scenes").arg(folder.path()).args(arguments).output().unwrap()
+    command.arg("extremes").arg("--scenes").arg(folder.path()).args(arguments).output().unwrap()
 }
 
 #[test]
 fn the_exit_code_says_whether_all_ended_as_stated() {
     let folder = folder();
     for (filter, code) in [("right", 0), ("wrong", 1), ("r", 1)] {
-        let output = stress(&folder, &[filter, "--json"]);
+        let output = extremes(&folder, &[filter, "--json"]);
         assert_eq!(output.status.code(), Some(code), "{filter}");
         let text = String::from_utf8(output.stdout).unwrap();
         for line in text.lines() {
@@ -105,11 +105,11 @@ fn the_exit_code_says_whether_all_ended_as_stated() {
 #[test]
 fn a_filter_that_nothing_matches_lists_what_there_is() {
     let folder = folder();
-    let output = stress(&folder, &["steel"]);
+    let output = extremes(&folder, &["steel"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
     let place = folder.path().display().to_string();
     let text = String::from_utf8(output.stderr).unwrap().replace(&place, "FOLDER");
     insta::assert_snapshot!(text, @"foldline: no scene in FOLDER has `steel` in its name; there is right, wrong");
-    assert_eq!(stress(&tempfile::tempdir().unwrap(), &[]).status.code(), Some(2), "a folder without scenes");
+    assert_eq!(extremes(&tempfile::tempdir().unwrap(), &[]).status.code(), Some(2), "a folder without scenes");
 }

@@ -7,13 +7,13 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use crate::equilibrium::{Condition, Equilibrium, Standing, SymmetryError, Workspace};
+use crate::equilibrium::{Condition, Configuration, Equilibrium, SymmetryError, Workspace};
 use crate::pipeline::Record;
 use crate::scene::{Expectation, ExpectedOutcome, Scene};
 use crate::state::State;
-use crate::study::stress_curve::{Curve, energy_balance, is_equilibrium, largest_error, nudged, significant_bits};
-use crate::study::stress_fault::StressFault;
-use crate::study::stress_run::{Done, StressEnd};
+use crate::study::extremes_curve::{Curve, energy_balance, is_equilibrium, largest_error, nudged, significant_bits};
+use crate::study::extremes_fault::ExtremeFault;
+use crate::study::extremes_run::{Done, ExtremeEnd};
 
 /// Work that smooth steps may do beyond what goes into strain energy, as a share of the largest strain energy: a step
 /// that is off by 1 % of the energy counts as a jump and is cut, and smooth steps stay far below.
@@ -25,26 +25,26 @@ const STANDS: f64 = 1e-9;
 
 /// What came of a scene. Numbers are `None` where the scene did not get so far.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StressRow {
+pub struct ExtremeRow {
     /// Name of the scene.
     pub scene: String,
     /// How it ended.
-    pub outcome: StressEnd,
+    pub outcome: ExtremeEnd,
     /// The error that ended it.
     pub message: Option<String>,
     /// Whether it ended as it states, and nothing else is wrong with it.
     pub as_stated: bool,
     /// What is wrong.
-    pub faults: Vec<StressFault>,
+    pub faults: Vec<ExtremeFault>,
     /// Largest relative error of what the scene states: see [`Expectation::peak`] and [`Expectation::last`].
     pub error: Option<f64>,
     /// Why that may be large, as the scene states it.
     pub inexact: Option<String>,
     /// Load steps with an equilibrium.
     pub load_steps: usize,
-    /// Newton iterations, those of solves that were turned down included.
+    /// Newton iterations, those of solves that were rejected included.
     pub iterations: usize,
-    /// Largest |residual| of all equilibria over the forces that it is held against.
+    /// Largest |residual| of all equilibria over the forces that it is compared with.
     pub worst_residual: Option<f64>,
     /// Work less the change of strain energy over all smooth load steps, relative to the largest strain energy. Jumps
     /// release energy and refinement changes it at fixed load: neither is counted on either side.
@@ -60,8 +60,8 @@ pub struct StressRow {
     pub wall_s: f64,
 }
 
-impl StressRow {
-    fn new(scene: &str, outcome: StressEnd) -> Self {
+impl ExtremeRow {
+    fn new(scene: &str, outcome: ExtremeEnd) -> Self {
         Self {
             scene: scene.to_owned(),
             message: outcome.message().map(str::to_owned),
@@ -84,7 +84,7 @@ impl StressRow {
 
 /// A set of scenes by name, which may refer to each other.
 #[derive(Debug)]
-pub struct StressSuite {
+pub struct ExtremesSuite {
     scenes: BTreeMap<String, Scene>,
     /// Curves of scenes that ran.
     curves: BTreeMap<String, Curve>,
@@ -92,7 +92,7 @@ pub struct StressSuite {
     limit: Duration,
 }
 
-impl StressSuite {
+impl ExtremesSuite {
     /// Scenes by their file names; each run may take `limit`.
     pub fn new(scenes: BTreeMap<String, Scene>, limit: Duration) -> Self {
         Self { scenes, curves: BTreeMap::new(), limit }
@@ -100,27 +100,29 @@ impl StressSuite {
 
     /// Runs a scene and looks at what came of it; `None` where the suite has none of this name. Panics end the scene
     /// alone.
-    pub fn run(&mut self, name: &str) -> Option<StressRow> {
+    pub fn run(&mut self, name: &str) -> Option<ExtremeRow> {
         let scene = self.scenes.get(name)?.clone();
         let begin = Instant::now();
         let row = catch_unwind(AssertUnwindSafe(|| self.examine(name, &scene)));
         Some(row.unwrap_or_else(|payload| {
             let said = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
             let message = said.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
-            let mut row = StressRow::new(name, StressEnd::Panicked { message });
-            row.faults.push(StressFault::Panicked);
+            let mut row = ExtremeRow::new(name, ExtremeEnd::Panicked { message });
+            row.faults.push(ExtremeFault::Panicked);
             row.wall_s = begin.elapsed().as_secs_f64();
             row
         }))
     }
 
-    fn examine(&mut self, name: &str, scene: &Scene) -> StressRow {
+    fn examine(&mut self, name: &str, scene: &Scene) -> ExtremeRow {
         let done = Done::of(scene, self.limit);
-        let mut row = StressRow::new(name, done.end.clone());
+        let mut row = ExtremeRow::new(name, done.end.clone());
         let expectation = scene.expect.clone().unwrap_or_default();
         if !done.end.is(expectation.outcome) {
-            row.faults
-                .push(StressFault::EndedOtherwise { expected: expectation.outcome, limit_s: self.limit.as_secs_f64() });
+            row.faults.push(ExtremeFault::EndedOtherwise {
+                expected: expectation.outcome,
+                limit_s: self.limit.as_secs_f64(),
+            });
         }
         row.wall_s = done.wall_s;
         row.iterations = done.stages.iter().map(|(_, record)| record.report.iterations).sum();
@@ -136,17 +138,17 @@ impl StressSuite {
             stands(scene, state, record, &mut row);
             let again = Done::of(&nudged(scene), self.limit);
             if again.end.name() != done.end.name() {
-                row.faults.push(StressFault::NudgedEndedOtherwise { ended: again.end.name() });
+                row.faults.push(ExtremeFault::NudgedEndedOtherwise { ended: again.end.name() });
             }
             row.significant_bits = significant_bits(done.records(), again.records());
         } else if !matches!(expectation.outcome, ExpectedOutcome::Refused) {
-            row.faults.push(StressFault::NoStep);
+            row.faults.push(ExtremeFault::NoStep);
         }
         judge_numbers(scene, &done, &mut row);
         row.error = largest_error(&expectation, done.records());
         row.inexact = expectation.inexact.clone();
         if let (Some(error), None) = (row.error.filter(is_beyond(Expectation::MOST_ERROR)), &row.inexact) {
-            row.faults.push(StressFault::Inexact { error, most: Expectation::MOST_ERROR });
+            row.faults.push(ExtremeFault::Inexact { error, most: Expectation::MOST_ERROR });
         }
         let curve = Curve::of(scene, done.records());
         if let Some(other) = &expectation.same_as {
@@ -157,11 +159,11 @@ impl StressSuite {
         row
     }
 
-    /// Holds a curve against that of another scene.
-    fn compare(&mut self, curve: &Curve, other: &str) -> Option<StressFault> {
+    /// Compares a curve with that of another scene.
+    fn compare(&mut self, curve: &Curve, other: &str) -> Option<ExtremeFault> {
         if !self.curves.contains_key(other) {
             let Some(scene) = self.scenes.get(other) else {
-                return Some(StressFault::NoOtherScene { other: other.to_owned() });
+                return Some(ExtremeFault::NoOtherScene { other: other.to_owned() });
             };
             let done = Done::of(scene, self.limit);
             self.curves.insert(other.to_owned(), Curve::of(scene, done.records()));
@@ -181,34 +183,34 @@ fn worse(a: f64, b: f64) -> f64 {
 }
 
 /// Condition and symmetry of the stiffness at an equilibrium.
-fn diagnose(scene: &Scene, state: &State, row: &mut StressRow) {
+fn diagnose(scene: &Scene, state: &State, row: &mut ExtremeRow) {
     let Ok(mut work) = Workspace::new(scene, &state.mesh) else { return };
-    match Condition::at(&mut work, Standing::of(state)) {
+    match Condition::at(&mut work, Configuration::of(state)) {
         Ok(condition) => row.condition = Some(condition.number()),
-        Err(cause) => row.faults.push(StressFault::NoFactor { cause: Box::new(cause) }),
+        Err(cause) => row.faults.push(ExtremeFault::NoFactor { cause: Box::new(cause) }),
     }
-    let symmetry = SymmetryError::at(&mut work, Standing::of(state)).largest();
+    let symmetry = SymmetryError::at(&mut work, Configuration::of(state)).largest();
     row.symmetry_error = Some(symmetry);
     if symmetry.is_nan() || symmetry > MOST_ASYMMETRY {
-        row.faults.push(StressFault::NotSymmetric { error: symmetry, most: MOST_ASYMMETRY });
+        row.faults.push(ExtremeFault::NotSymmetric { error: symmetry, most: MOST_ASYMMETRY });
     }
 }
 
 /// An equilibrium stands where its state alone gives it again, within an iteration.
-fn stands(scene: &Scene, state: &State, record: &Record, row: &mut StressRow) {
+fn stands(scene: &Scene, state: &State, record: &Record, row: &mut ExtremeRow) {
     let Ok(mut work) = Workspace::new(scene, &state.mesh) else { return };
-    let again = Equilibrium::new(scene, &mut work).relax(Standing::of(state), &mut |_| false);
+    let again = Equilibrium::new(scene, &mut work).relax(Configuration::of(state), &mut |_| false);
     let energy = record.report.strain_energy_n_mm;
     let same = again.as_ref().is_ok_and(|again| {
         again.effort.iterations <= 1 && (again.balance.stored - energy).abs() <= STANDS * energy.abs()
     });
     if !same {
-        row.faults.push(StressFault::DoesNotStand { step: record.report.step });
+        row.faults.push(ExtremeFault::DoesNotStand { step: record.report.step });
     }
 }
 
 /// Numbers that are none, and those that say that the result is worth nothing.
-fn judge_numbers(scene: &Scene, done: &Done, row: &mut StressRow) {
+fn judge_numbers(scene: &Scene, done: &Done, row: &mut ExtremeRow) {
     for (state, record) in &done.stages {
         let report = &record.report;
         let shape = state.displacement.iter().chain(&state.turns).flatten();
@@ -216,23 +218,23 @@ fn judge_numbers(scene: &Scene, done: &Done, row: &mut StressRow) {
         let results = [&report.parameter, &report.moment_n_mm, &report.strain_energy_n_mm, &report.work_n_mm];
         let residual = is_equilibrium(record).then_some(&report.residual);
         if !shape.chain(probes).chain(results).chain(residual).all(|value| value.is_finite()) {
-            row.faults.push(StressFault::NotANumber { step: report.step, stage: report.stage });
+            row.faults.push(ExtremeFault::NotANumber { step: report.step, stage: report.stage });
             break;
         }
     }
     let tolerance = scene.solver.tolerance;
     if let Some(residual) = row.worst_residual.filter(|residual| residual.is_nan() || *residual > tolerance) {
-        row.faults.push(StressFault::OutOfBalance { residual, tolerance });
+        row.faults.push(ExtremeFault::OutOfBalance { residual, tolerance });
     }
     if let Some(balance) = row.energy_balance.filter(|balance| balance.is_nan() || balance.abs() > MOST_UNACCOUNTED) {
-        row.faults.push(StressFault::EnergyOutOfBalance { balance, most: MOST_UNACCOUNTED });
+        row.faults.push(ExtremeFault::EnergyOutOfBalance { balance, most: MOST_UNACCOUNTED });
     }
     let least = scene.expect.as_ref().map_or(Expectation::LEAST_BITS, |expect| expect.least_bits) as f64;
     if let Some(bits) = row.significant_bits.filter(|bits| bits.is_nan() || *bits < least) {
-        row.faults.push(StressFault::Noise { bits, least });
+        row.faults.push(ExtremeFault::Noise { bits, least });
     }
     if let Some(condition) = row.condition.filter(|condition| !condition.is_finite()) {
-        row.faults.push(StressFault::Singular { condition });
+        row.faults.push(ExtremeFault::Singular { condition });
     }
 }
 
@@ -247,9 +249,9 @@ mod tests {
         scene
     }
 
-    fn row(scene: Scene) -> StressRow {
+    fn row(scene: Scene) -> ExtremeRow {
         let scenes = BTreeMap::from([("a.toml".to_owned(), scene)]);
-        StressSuite::new(scenes, Duration::from_secs(60)).run("a.toml").unwrap()
+        ExtremesSuite::new(scenes, Duration::from_secs(60)).run("a.toml").unwrap()
     }
 
     #[test]
@@ -258,9 +260,9 @@ mod tests {
         // No kernel is made for it, and no scene file can ask for it.
         beyond.mesh.degree = [7, 7];
         let scenes = BTreeMap::from([("a.toml".to_owned(), beyond), ("b.toml".to_owned(), scene())]);
-        let mut suite = StressSuite::new(scenes, Duration::from_secs(60));
+        let mut suite = ExtremesSuite::new(scenes, Duration::from_secs(60));
         let panicked = suite.run("a.toml").unwrap();
-        assert!(matches!(panicked.outcome, StressEnd::Panicked { .. }) && !panicked.as_stated);
+        assert!(matches!(panicked.outcome, ExtremeEnd::Panicked { .. }) && !panicked.as_stated);
         assert!(panicked.message.is_some_and(|message| !message.is_empty()));
         assert!(suite.run("b.toml").unwrap().as_stated);
         assert_eq!(suite.run("c.toml"), None);
@@ -272,7 +274,7 @@ mod tests {
         let mut wrong = scene();
         wrong.expect = Some(Expectation { outcome: ExpectedOutcome::NoEquilibrium, ..Expectation::default() });
         let found = row(wrong);
-        assert!(matches!(found.faults[..], [StressFault::EndedOtherwise { .. }]), "{:?}", found.faults);
+        assert!(matches!(found.faults[..], [ExtremeFault::EndedOtherwise { .. }]), "{:?}", found.faults);
     }
 
     #[test]
@@ -282,7 +284,7 @@ mod tests {
             ..scene()
         };
         let found = row(expecting(1.0, None));
-        assert!(matches!(found.faults[..], [StressFault::Inexact { .. }]), "{:?}", found.faults);
+        assert!(matches!(found.faults[..], [ExtremeFault::Inexact { .. }]), "{:?}", found.faults);
         // 2EI/L for 0.8 degrees; the section flattens by less than 2 %.
         assert!(row(expecting(2771.9 * 0.8_f64.to_radians(), None)).as_stated);
         let found = row(expecting(1.0, Some("nobody would expect it".to_owned())));
@@ -292,8 +294,8 @@ mod tests {
     #[test]
     fn time_that_runs_out_is_no_end() {
         let scenes = BTreeMap::from([("a.toml".to_owned(), scene())]);
-        let found = StressSuite::new(scenes, Duration::ZERO).run("a.toml").unwrap();
-        assert_eq!(found.outcome, StressEnd::OutOfTime);
+        let found = ExtremesSuite::new(scenes, Duration::ZERO).run("a.toml").unwrap();
+        assert_eq!(found.outcome, ExtremeEnd::OutOfTime);
         assert!(!found.as_stated);
     }
 
@@ -304,10 +306,10 @@ mod tests {
         *poissons_ratio = 0.31;
         thicker.expect = Some(Expectation { same_as: Some("b.toml".to_owned()), ..Expectation::default() });
         let scenes = BTreeMap::from([("a.toml".to_owned(), thicker.clone()), ("b.toml".to_owned(), scene())]);
-        let found = StressSuite::new(scenes, Duration::from_secs(60)).run("a.toml").unwrap();
-        assert!(matches!(found.faults[..], [StressFault::OtherCurve { .. }]), "{:?}", found.faults);
+        let found = ExtremesSuite::new(scenes, Duration::from_secs(60)).run("a.toml").unwrap();
+        assert!(matches!(found.faults[..], [ExtremeFault::OtherCurve { .. }]), "{:?}", found.faults);
         let found = row(thicker);
-        assert!(matches!(found.faults[..], [StressFault::NoOtherScene { .. }]), "{:?}", found.faults);
+        assert!(matches!(found.faults[..], [ExtremeFault::NoOtherScene { .. }]), "{:?}", found.faults);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! What of a run can be held against another run, or against numbers: its dimensionless curve, the digits of its last result,
+//! What of a run can be compared with another run, or against numbers: its dimensionless curve, the digits of its last result,
 //! its peak.
 
 use crate::pipeline::{Outcome, Parameter, Record};
 use crate::scene::{Expectation, Geometry, Material, Scene, Stage};
-use crate::study::stress_fault::StressFault;
+use crate::study::extremes_fault::ExtremeFault;
 
 /// Curves that differ by less, relative to the largest value, are one.
 const SAME_CURVE: f64 = 1e-9;
@@ -33,7 +33,7 @@ impl Curve {
     }
 
     /// Where the curves part, if they do.
-    pub fn differs_from(&self, theirs: &Self, other: &str) -> Option<StressFault> {
+    pub fn differs_from(&self, theirs: &Self, other: &str) -> Option<ExtremeFault> {
         let pairs = || self.points.iter().zip(&theirs.points);
         let same = |((a, _), (b, _)): &(&(f64, f64), &(f64, f64))| (a - b).abs() <= SAME_PARAMETER * a.abs();
         let common = pairs().take_while(same).count();
@@ -41,7 +41,7 @@ impl Curve {
         let other = other.to_owned();
         if common < ours.max(their_count) || ours == 0 {
             let parameter = common.checked_sub(1).map_or(0.0, |last| self.points[last].0);
-            return Some(StressFault::OtherSteps { other, theirs: their_count, ours, parameter });
+            return Some(ExtremeFault::OtherSteps { other, theirs: their_count, ours, parameter });
         }
         let largest = theirs.points.iter().fold(0.0_f64, |most, (_, value)| most.max(value.abs()));
         let apart = |((parameter, a), (_, b)): (&(f64, f64), &(f64, f64))| (*parameter, (a - b).abs() / largest);
@@ -49,7 +49,7 @@ impl Curve {
         // What is not a number is no agreement.
         let agrees = worst.1 <= SAME_CURVE;
         let (parameter, difference) = worst;
-        (!agrees).then_some(StressFault::OtherCurve { other, parameter, difference, most: SAME_CURVE })
+        (!agrees).then_some(ExtremeFault::OtherCurve { other, parameter, difference, most: SAME_CURVE })
     }
 }
 
@@ -169,11 +169,11 @@ mod tests {
         let differs = |points: &[(f64, f64)]| one.differs_from(&curve(points), "b");
         assert!(matches!(
             differs(&[(0.4, 1.0), (0.8, 2.0 + 3e-9)]),
-            Some(StressFault::OtherCurve { parameter: 0.8, .. })
+            Some(ExtremeFault::OtherCurve { parameter: 0.8, .. })
         ));
-        assert!(matches!(differs(&[(0.4, 1.0), (0.8, f64::NAN)]), Some(StressFault::OtherCurve { .. })));
-        assert!(matches!(differs(&[(0.4, 1.0)]), Some(StressFault::OtherSteps { parameter: 0.4, .. })));
-        assert!(matches!(differs(&[(0.4, 1.0), (0.7, 2.0)]), Some(StressFault::OtherSteps { parameter: 0.4, .. })));
+        assert!(matches!(differs(&[(0.4, 1.0), (0.8, f64::NAN)]), Some(ExtremeFault::OtherCurve { .. })));
+        assert!(matches!(differs(&[(0.4, 1.0)]), Some(ExtremeFault::OtherSteps { parameter: 0.4, .. })));
+        assert!(matches!(differs(&[(0.4, 1.0), (0.7, 2.0)]), Some(ExtremeFault::OtherSteps { parameter: 0.4, .. })));
         assert!(curve(&[]).differs_from(&curve(&[]), "b").is_some(), "nothing agrees with nothing");
     }
 

@@ -7,7 +7,7 @@ use crate::scene::{ExpectedOutcome, Stage};
 
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum StressFault {
+pub enum ExtremeFault {
     /// It did not end as it states.
     #[error("the scene states that it ends `{}` (within {limit_s} s)", expected.name())]
     EndedOtherwise {
@@ -45,7 +45,7 @@ pub enum StressFault {
     /// An equilibrium is none.
     #[error("an equilibrium has a residual of {residual:.1e} of the forces; solver.tolerance is {tolerance:e}")]
     OutOfBalance {
-        /// |residual| over the forces that it is held against.
+        /// |residual| over the forces that it is compared with.
         residual: f64,
         /// The scene's tolerance.
         tolerance: f64,
@@ -143,7 +143,7 @@ pub enum StressFault {
     },
 }
 
-impl Serialize for StressFault {
+impl Serialize for ExtremeFault {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
