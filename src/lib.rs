@@ -5,7 +5,7 @@
 //! A [`scene`] says what is simulated: a shell, its material, supports, loads and settings, as TOML. [`Stages`](pipeline::Stages) runs
 //! one stage after another (solve, evaluate indicators, refine knots, project displacements, re-equilibrate), each from one
 //! [`State`](state::State) to the next; a state is plain data, all that decides the future of the run. [`Run`](pipeline::Run) is the loop
-//! around them, and hands every stage to a [`Sink`](pipeline::Sink): in memory, or the [`journal`], an MCAP log that survives kills
+//! around them, and hands every stage to a [`Sink`](record::Sink): in memory, or the [`journal`], an MCAP log that survives kills
 //! and is continued to the same bits.
 //!
 //! | module | what |
@@ -15,7 +15,7 @@
 //! | [`energy`] | energy terms (the shell, loads, one's own) and their balance |
 //! | [`equilibrium`] | Newton's method, stability, paths by arc length |
 //! | [`adapt`] | where the mesh is refined |
-//! | [`pipeline`], [`state`] | stages, the loop, sinks; what a checkpoint holds |
+//! | [`pipeline`], [`record`], [`state`] | stages and the loop; what is kept of them, and sinks; what a checkpoint holds |
 //! | [`journal`], [`history`] | logs; continuing, replaying and bisecting them |
 //! | [`study`], [`view`] | error against run time; pictures |
 //!
@@ -24,7 +24,8 @@
 //! A strip that is clamped at one end bends under a force at the other, as a beam does: w = F L³ / (3 E I).
 //!
 //! ```
-//! use foldline::pipeline::{MemorySink, Run, Stages};
+//! use foldline::pipeline::{Run, Stages};
+//! use foldline::record::MemorySink;
 //! use foldline::scene::parse;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -66,6 +67,7 @@ pub mod journal;
 pub mod model;
 pub mod pipeline;
 mod printable;
+pub mod record;
 pub mod scene;
 pub mod shell;
 pub mod spline;

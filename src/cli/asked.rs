@@ -6,7 +6,7 @@ use super::failure::Failure;
 use super::log_file::{end_scene, older_scene, say_warnings, unreadable};
 use crate::history::stages_of_step;
 use crate::journal::{AskedLog, LongLog, LongLogError};
-use crate::pipeline::Record;
+use crate::record::Record;
 use crate::scene::Scene;
 
 /// A log, with the scene that its last stretch was run with.

@@ -15,7 +15,7 @@ use crate::history::{
     first_where, no_jump,
 };
 use crate::journal::{LongLog, LongLogError};
-use crate::pipeline::{Parameter, Record};
+use crate::record::{Parameter, Record};
 use crate::units::{count, place as place_mm, unsigned_zero};
 
 /// Find where two logs part, where a log jumps (--snap), or where a condition first holds (--when)

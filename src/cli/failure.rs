@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use crate::history::{ConditionError, NothingKept, ReplayError, SnapError, StabilityError};
 use crate::model::ModelError;
-use crate::pipeline::Parameter;
 use crate::printable::one_line;
+use crate::record::Parameter;
 use crate::scene::{Scene, Stage};
 use crate::study::{AccuracyError, BenchError, ConvergenceError};
 use crate::view::{PlotError, SamplesError};

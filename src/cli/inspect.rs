@@ -13,7 +13,7 @@ use super::probe_table::probe_table;
 use super::stage_table::{stage_table, step_in_full};
 use crate::history::{keep_apart, redefined_probes, stages_of_step};
 use crate::journal::{Log, LongLog, LongLogError};
-use crate::pipeline::Record;
+use crate::record::Record;
 use crate::study::Summary;
 
 /// Show the stages of a log

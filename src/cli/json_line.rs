@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::pipeline::{Record, Report};
+use crate::record::{Record, Report};
 
 /// The fields of a line, in their order: the place in the run, the report, what it took, the hashes.
 #[derive(Serialize)]

@@ -1,6 +1,6 @@
 //! The stages of one load step, gathered into one line.
 
-use crate::pipeline::{CriticalPoint, Outcome, Parameter, Record, Report, released_in_words};
+use crate::record::{CriticalPoint, Outcome, Parameter, Record, Report, released_in_words};
 use crate::scene::{Scene, Stage};
 use crate::units::{count, duration, reading};
 

@@ -9,7 +9,8 @@ use crate::history::{LoggedSceneError, logged_scene, read_probes, redefined_prob
 use crate::journal::{
     Completeness, Log, LongLog, LongLogError, Manifest, Portion, Portions, ReadError, SceneInLogError,
 };
-use crate::pipeline::{Record, Stages};
+use crate::pipeline::Stages;
+use crate::record::Record;
 use crate::scene::{Reach, Scene};
 use crate::units::count;
 

@@ -8,7 +8,7 @@ use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{Gathered, first_and_last, read_through};
 use super::output::{file_name, path_in_line, print, write_files};
 use crate::history::{States, keep_apart, redefined_probes};
-use crate::pipeline::{Parameter, Record, Report};
+use crate::record::{Parameter, Record, Report};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 use crate::state::State;

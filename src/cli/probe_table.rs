@@ -1,7 +1,7 @@
 //! What probes measure on the equilibria of a log, be they in it or read again.
 
 use super::json_line::json_line;
-use crate::pipeline::{Parameter, Reading, Record};
+use crate::record::{Parameter, Reading, Record};
 use crate::scene::Scene;
 use crate::study::equilibria;
 use crate::units::reading;

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::json_line::json_line;
 use super::load_step::Gatherer;
 use super::output::{escaped, printable};
-use crate::pipeline::{Outcome, Parameter, Record, Report, Sink, SinkError};
+use crate::record::{Outcome, Parameter, Record, Report, Sink, SinkError};
 use crate::scene::Scene;
 use crate::state::State;
 use crate::units::{count, rounded};

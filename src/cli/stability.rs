@@ -10,7 +10,7 @@ use super::log_file::scene_at;
 use super::output::{file_name, path_in_line, print, refuse_what_is_there, write_files};
 use super::plot::cells_per_element;
 use crate::history::{StabilityReport, States, stability_at};
-use crate::pipeline::{Outcome, Record};
+use crate::record::{Outcome, Record};
 use crate::scene::Scene;
 use crate::shell::{add, norm, scaled, sub};
 use crate::units::{count, place, unsigned_zero};

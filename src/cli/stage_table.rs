@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::pipeline::{Outcome, Parameter, Record, Report};
+use crate::record::{Outcome, Parameter, Record, Report};
 use crate::scene::Stage;
 use crate::spline::Grid;
 use crate::units::reading;

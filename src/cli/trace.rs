@@ -6,7 +6,7 @@ use super::failure::Failure;
 use super::output::{path_in_line, write_files};
 use crate::equilibrium::Iterate;
 use crate::journal::{TraceRow, trace_file};
-use crate::pipeline::Commit;
+use crate::record::Commit;
 use crate::spline::Mesh;
 
 /// An iterate with where it belongs.

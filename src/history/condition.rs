@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::journal::word_number;
-use crate::pipeline::{Outcome, Report, as_number, fields_of};
+use crate::record::{Outcome, Report, as_number, fields_of};
 use crate::scene::Stage;
 
 /// Comparisons that must all hold.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::energy::TermSource;
 use crate::journal::{Log, SceneInLogError};
-use crate::pipeline::run_hash;
+use crate::record::run_hash;
 use crate::scene::Scene;
 use crate::state::Hash;
 

@@ -2,7 +2,7 @@
 
 use crate::history::Condition;
 use crate::journal::{LongLog, LongLogError};
-use crate::pipeline::Record;
+use crate::record::Record;
 
 /// The stages of load step `step`, in their order.
 ///

@@ -6,7 +6,8 @@ use crate::energy::TermSource;
 use crate::history::logged_scene::logged_scene;
 use crate::history::states::States;
 use crate::journal::Log;
-use crate::pipeline::{MemorySink, Run, Stages};
+use crate::pipeline::{Run, Stages};
+use crate::record::MemorySink;
 
 /// The log with every lost stage run again on which whole ones follow, as their hashes tell, and how many these are; `None` where
 /// there is none, or the run had other terms of the caller's own than these.

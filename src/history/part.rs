@@ -4,7 +4,7 @@ use crate::history::bisection::IndexBisection;
 use crate::history::compare::{Comparison, compare};
 use crate::history::states::{RemakeError, States};
 use crate::journal::{AskedLog, LongLogError};
-use crate::pipeline::Commit;
+use crate::record::Commit;
 
 /// The first stage at which two runs differ.
 #[derive(Clone, Debug)]

@@ -6,7 +6,8 @@ use std::ops::Range;
 use crate::history::logged_scene::{LoggedSceneError, check_terms};
 use crate::history::states::{RemakeError, States};
 use crate::journal::{Log, Manifest};
-use crate::pipeline::{Outcome, Record, StageError, Stages};
+use crate::pipeline::{StageError, Stages};
+use crate::record::{Outcome, Record};
 use crate::scene::{Probe, Scene, shown_values};
 
 /// Why a probe cannot be read.

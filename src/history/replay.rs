@@ -4,7 +4,8 @@ use crate::equilibrium::Iterate;
 use crate::history::compare::{Comparison, Difference, compare};
 use crate::history::states::{RemakeError, States};
 use crate::journal::StateError;
-use crate::pipeline::{Report, StageError, Stages};
+use crate::pipeline::{StageError, Stages};
+use crate::record::Report;
 use crate::spline::Mesh;
 use crate::state::State;
 

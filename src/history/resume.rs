@@ -4,7 +4,8 @@ use std::cmp::Ordering;
 
 use crate::journal::{Log, StateError};
 use crate::model::ModelError;
-use crate::pipeline::{Commit, Outcome, Report, Stages, next_attempt, next_stage};
+use crate::pipeline::{Stages, next_attempt, next_stage};
+use crate::record::{Commit, Outcome, Report};
 use crate::scene::{Difference, Drive, Reach, Scene, Stage};
 use crate::state::State;
 

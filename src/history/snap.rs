@@ -9,7 +9,8 @@ use crate::history::logged_scene::{LoggedSceneError, check_terms};
 use crate::history::stability::mode_of;
 use crate::history::states::{RemakeError, States};
 use crate::journal::Log;
-use crate::pipeline::{CriticalPoint, Outcome, Parameter, is_jump, known_release};
+use crate::pipeline::{is_jump, known_release};
+use crate::record::{CriticalPoint, Outcome, Parameter};
 use crate::scene::Scene;
 use crate::state::State;
 

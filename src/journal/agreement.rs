@@ -1,6 +1,6 @@
 //! Whether a report says what its state says: every number that both hold, bit for bit.
 
-use crate::pipeline::{Parameter, Report};
+use crate::record::{Parameter, Report};
 use crate::scene::Stage;
 use crate::state::State;
 

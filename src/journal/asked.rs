@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::log::Log;
 use super::long::{LongLog, LongLogError};
 use super::reader::ReadError;
-use crate::pipeline::Record;
+use crate::record::Record;
 
 /// Stages of a long log that are read together where all of them are asked for.
 const STAGES_AT_ONCE: usize = 512;

@@ -22,7 +22,7 @@ use super::ledger::{ChunkPlace, Ledger};
 use super::manifest::Manifest;
 use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, ReportMessage, schema_of, seal};
 use super::summary;
-use crate::pipeline::{Commit, Record};
+use crate::record::{Commit, Record};
 use crate::state::Hash;
 
 /// A topic for viewers beside the log's own.

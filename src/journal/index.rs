@@ -20,7 +20,7 @@ use super::manifest::Manifest;
 use super::message::{HexHash, kept_as};
 use super::reader::read_at;
 use super::stretch::Stretches;
-use crate::pipeline::{Record, Report, as_number, fields_of};
+use crate::record::{Record, Report, as_number, fields_of};
 use crate::state::Hash;
 
 /// In front of every block.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::index::{Builder, Head, INDEX_MAGIC, Index, Mark};
 use super::ledger::ChunkPlace;
-use crate::pipeline::Record;
+use crate::record::Record;
 use crate::whole_file::WholeFile;
 
 /// Commits, or bytes, from which on a log has an index: shorter ones are read whole in no time.

@@ -9,7 +9,7 @@ use super::damage::{Completeness, LaterCommit, Problem};
 use super::manifest::Manifest;
 use super::soundness::check_made_by;
 use super::stretch::{LostManifest, Stretches};
-use crate::pipeline::{Commit, Record};
+use crate::record::{Commit, Record};
 use crate::scene::{Difference, Scene};
 use crate::state::{Hash, Mesh, State};
 

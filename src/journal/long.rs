@@ -14,7 +14,7 @@ use super::log::{Entry, Log};
 use super::message::HexHash;
 use super::parts::read_in_parts;
 use super::reader::open_regular;
-use crate::pipeline::Record;
+use crate::record::Record;
 
 /// Why stages of a long log cannot be read.
 #[derive(Debug, thiserror::Error)]

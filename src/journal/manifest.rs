@@ -12,8 +12,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use super::encode_error::EncodeError;
 use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT, SCENE_VALUES_LIMIT, library};
 use crate::energy::TermSource;
-use crate::pipeline::{NUMERICS_REVISION, run_hash};
 use crate::printable::one_line;
+use crate::record::{NUMERICS_REVISION, run_hash};
 use crate::scene::{Scene, SceneError, parse_with_settings};
 use crate::state::Hash;
 

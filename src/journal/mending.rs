@@ -7,7 +7,7 @@ use super::encoder::{Encoder, Parts};
 use super::ledger::Ledger;
 use super::log::Log;
 use super::reader::ReadError;
-use crate::pipeline::Record;
+use crate::record::Record;
 use crate::state::State;
 
 /// Why stages cannot be put back.

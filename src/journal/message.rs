@@ -12,8 +12,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 use super::format::FORMAT_VERSION;
-use crate::pipeline::{Commit, Parameter, Reading, Record, Report, WrittenReport};
 use crate::printable::one_line;
+use crate::record::{Commit, Parameter, Reading, Record, Report, WrittenReport};
 use crate::scene::Stage;
 use crate::state::Hash;
 

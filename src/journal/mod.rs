@@ -31,7 +31,7 @@
 //!
 //! # Writing, stopping, continuing
 //!
-//! [`JournalWriter::create`] begins a log and never overwrites one. It is a [`Sink`](crate::pipeline::Sink): the loop
+//! [`JournalWriter::create`] begins a log and never overwrites one. It is a [`Sink`](crate::record::Sink): the loop
 //! hands it every stage. At the end [`JournalWriter::finish`]; where a run is stopped on purpose
 //! [`JournalWriter::close`], which leaves the end open but adds what viewers look for. [`Resume`] claims a log, reads
 //! it, and continues behind its last good commit.

@@ -14,7 +14,7 @@ use super::log::{Entry, Kept, Note, Part};
 use super::manifest::{LIBRARY, Manifest};
 use super::message::{FinishedMessage, in_brief, kept_as};
 use super::stretch::Stretches;
-use crate::pipeline::{Commit, Record};
+use crate::record::{Commit, Record};
 use crate::state::Hash;
 
 /// Problems and notes that are listed one by one; a file of another kind under a log's name could have any number.

@@ -16,7 +16,7 @@ use super::log::Log;
 use super::manifest::Manifest;
 use super::reader::ReadError;
 use super::still_ours::Estranged;
-use crate::pipeline::{Commit, Record, Sink, SinkError};
+use crate::record::{Commit, Record, Sink, SinkError};
 use crate::scene::SyncPolicy;
 use crate::state::{Hash, MeshHash, State};
 use crate::whole_file::{room_for, shortage};

@@ -2,9 +2,10 @@
 
 use crate::energy::Balance;
 use crate::equilibrium::{Configuration, Effort, Equilibrium, Iterate, SolveError, Solved, soft_mode};
+use crate::pipeline::StageError;
 use crate::pipeline::step::{Step, out_of_order, settle};
 use crate::pipeline::step_control::{is_jump, known_release};
-use crate::pipeline::{Report, StageError};
+use crate::record::Report;
 use crate::scene::Stage;
 use crate::state::{Course, State};
 

@@ -7,8 +7,7 @@ use crate::energy::TermSource;
 use crate::equilibrium::{Configuration, Equilibrium, LinearBuckling, Solved, Workspace};
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step_control::next_stage;
-use crate::pipeline::warning::LARGE;
-use crate::pipeline::{Reading, Report, Warning};
+use crate::record::{LARGE, Reading, Report, Warning};
 use crate::scene::{Scene, Stage};
 use crate::state::{Refinement, State};
 
@@ -163,7 +162,8 @@ impl Doubts<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::{MemorySink, Run, Stages};
+    use crate::pipeline::{Run, Stages};
+    use crate::record::MemorySink;
     use crate::scene::{LengthLimit, parse};
 
     /// Whether refining has shown enough at the end of a run.

@@ -1,11 +1,12 @@
 //! The load as drive: increments of the parameter, cut where they fail or jump.
 
 use crate::equilibrium::{Configuration, Continuation, Equilibrium, Observer, SolveError, Solved, Workspace};
+use crate::pipeline::StageError;
 use crate::pipeline::branch_switch::switch_branch;
 use crate::pipeline::ripple::{Watch, is_ripple};
 use crate::pipeline::step::{Drives, Step, settle};
 use crate::pipeline::step_control::{Attempt, energy_released, is_jump, known_release, next_attempt};
-use crate::pipeline::{CriticalPoint, Outcome, Report, StageError};
+use crate::record::{CriticalPoint, Outcome, Report};
 use crate::scene::Scene;
 use crate::shell::{norm, sub};
 use crate::state::{Course, DriveMemory, Previous, State};

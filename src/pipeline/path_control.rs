@@ -17,11 +17,9 @@
 //! Under loads that follow the shell and have no potential the pivots are those of the symmetric part of the tangent, and
 //! pass zero elsewhere than its determinant: a limit point then shows as two critical points close together.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use crate::equilibrium::ContinuedPoint;
 use crate::pipeline::step_control::{energy_released, is_jump};
+use crate::record::CriticalPoint;
 use crate::scene::{ArcLength, Scene};
 use crate::state::{CriticalAhead, PathMemory, State};
 
@@ -37,58 +35,6 @@ const SHARPEST_TURN: f64 = 0.8;
 const STRAIGHTEST_CHORD: f64 = 0.98;
 /// A step that ends farther away than this, relative to its length, has left the path.
 const FARTHEST: f64 = 1.5;
-
-/// A limit point or a bifurcation that a step has passed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct CriticalPoint {
-    /// Whether the parameter turns back: a limit point.
-    pub limit_point: bool,
-    /// By how many the negative pivots of the stiffness changed.
-    pub pivots_changed: i64,
-}
-
-impl CriticalPoint {
-    /// Between two points of the path, each with the rate of the parameter there and the negative pivots.
-    pub fn between(before: (f64, u64), after: (f64, u64)) -> Option<Self> {
-        let limit_point = before.0.signum() != after.0.signum();
-        let pivots_changed = after.1 as i64 - before.1 as i64;
-        (limit_point || pivots_changed != 0).then_some(Self { limit_point, pivots_changed })
-    }
-
-    /// Between two equilibria at growing loads: where the shell lost stability and did not jump, it stayed on a path that others
-    /// cross.
-    pub(super) fn passed_by_load(before: &State, after: &State) -> Option<Self> {
-        let passed = Self::between((1.0, before.negative_pivots), (1.0, after.negative_pivots));
-        passed.filter(|critical| critical.pivots_changed > 0)
-    }
-
-    /// Name of the critical point: limit point or bifurcation.
-    pub fn name(&self) -> &'static str {
-        match (self.limit_point, self.is_bifurcation()) {
-            // The parameter turns back, and stability stays as it is.
-            (true, _) if self.turns_back_alone() => "turning point",
-            (true, false) => "limit point",
-            (true, true) => "limit point and bifurcation",
-            (false, _) => "bifurcation",
-        }
-    }
-
-    /// For a table: what it is, and how the pivots changed.
-    pub fn in_words(&self) -> String {
-        let plural = if self.pivots_changed.abs() == 1 { "" } else { "s" };
-        format!("{} ({:+} negative pivot{plural})", self.name(), self.pivots_changed)
-    }
-
-    /// Whether the parameter turns back while the pivots stay: no limit point, unless a bifurcation falls on it.
-    fn turns_back_alone(&self) -> bool {
-        self.limit_point && self.pivots_changed == 0
-    }
-
-    /// Whether another path crosses here.
-    pub fn is_bifurcation(&self) -> bool {
-        self.pivots_changed.unsigned_abs() != u64::from(self.limit_point)
-    }
-}
 
 /// A step along the path to attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,12 @@
 //! The path of equilibria as drive, followed by arc length.
 
 use crate::equilibrium::{Configuration, Continuation, ContinuedPoint, Direction, Iterate, Sense, SolveError};
+use crate::pipeline::StageError;
 use crate::pipeline::branch_switch::switch_branch;
-use crate::pipeline::path_control::{CriticalPoint, Judgement, PathAttempt, next_path_attempt, path_begun};
+use crate::pipeline::path_control::{Judgement, PathAttempt, next_path_attempt, path_begun};
 use crate::pipeline::step::{Drives, Step, settle};
 use crate::pipeline::step_control::{has_reached, next_attempt};
-use crate::pipeline::{Outcome, Report, StageError};
+use crate::record::{CriticalPoint, Outcome, Report};
 use crate::scene::{ArcLength, History, Scene};
 use crate::state::{Course, DriveMemory, PathMemory, Rejection, State, StepControl};
 

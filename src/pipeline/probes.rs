@@ -8,7 +8,7 @@ use crate::equilibrium::{Configuration, Coordinates, Workspace};
 use crate::model::{
     Exerted, ModelError, Placement, Site, control_expressions, direction_at, line_place, parameters_of,
 };
-use crate::pipeline::Reading;
+use crate::record::Reading;
 use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene, SurfaceDirection};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::mid_surface_point;

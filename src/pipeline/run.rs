@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use crate::digest::Hash;
 use crate::pipeline::step_control::{has_reached, next_stage};
-use crate::pipeline::{Commit, Record, Sink, SinkError, StageError, Stages};
+use crate::pipeline::{StageError, Stages};
+use crate::record::{Commit, Record, Sink, SinkError};
 use crate::scene::Stage;
 use crate::state::{MeshHash, State};
 

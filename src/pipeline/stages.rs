@@ -3,17 +3,18 @@
 use std::sync::Arc;
 
 use crate::adapt::{evaluate_indicators, project_displacements};
-use crate::digest::{Feed, Hash};
+use crate::digest::Hash;
 use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_energy};
 use crate::equilibrium::{Configuration, Iterate, Workspace, WorkspaceError};
 use crate::model::{FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, starting_mesh};
+use crate::pipeline::StageError;
 use crate::pipeline::doubts::{Doubts, doubtful};
 use crate::pipeline::load_drive::LoadDrive;
 use crate::pipeline::mesh_in_hand::MeshInHand;
 use crate::pipeline::path_drive::PathDrive;
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step::{Drives, Step, out_of_order};
-use crate::pipeline::{Reading, Report, StageError, Warning};
+use crate::record::{Reading, Report, Warning, run_hash};
 use crate::scene::{Drive, Scene, Stage};
 use crate::spline::Mesh;
 use crate::state::{DriveMemory, Refinement, State};
@@ -261,22 +262,6 @@ impl Stages {
         read_probes(scene, work, Configuration::of(state), state.strain_energy_n_mm)
             .map_err(|cause| StageError::Model { step: state.step, stage: made_by, cause })
     }
-}
-
-/// Hash of what decides the results of a run: of its scene, and of the terms of the caller's own, by name and hash, where there
-/// are any.
-pub fn run_hash(scene: &Scene, terms: &[(&str, Hash)]) -> Hash {
-    if terms.is_empty() {
-        return scene.hash();
-    }
-    let mut feed = Feed::new("foldline scene with terms");
-    feed.bytes(scene.hash().as_bytes());
-    for (name, hash) in terms {
-        feed.integer(name.len() as u64);
-        feed.bytes(name.as_bytes());
-        feed.bytes(hash.as_bytes());
-    }
-    feed.finish()
 }
 
 /// The error of a stage whose mesh the scene does not fit, or that does not fit in memory.

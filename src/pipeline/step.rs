@@ -1,9 +1,10 @@
 //! A step of a drive under way, and what every drive does alike.
 
 use crate::equilibrium::{Configuration, Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
+use crate::pipeline::StageError;
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step_control::{Attempt, energy_released, is_jump_on_refinement, known_release};
-use crate::pipeline::{Outcome, Report, StageError};
+use crate::record::{Outcome, Report};
 use crate::scene::{Parameter, Scene, Stage};
 use crate::state::{Course, DriveMemory, State, StepControl};
 

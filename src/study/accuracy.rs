@@ -7,7 +7,8 @@
 use serde::Serialize;
 
 use crate::model::ModelError;
-use crate::pipeline::{Parameter, RunError};
+use crate::pipeline::RunError;
+use crate::record::Parameter;
 use crate::scene::{Drive, Scene};
 use crate::study::path::{PathPoint, equilibrium_path, snaps};
 use crate::study::timed_run::timed_run;

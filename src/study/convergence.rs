@@ -5,7 +5,8 @@
 //! path and on the fold.
 
 use crate::model::ModelError;
-use crate::pipeline::{Outcome, Record, RunError};
+use crate::pipeline::RunError;
+use crate::record::{Outcome, Record};
 use crate::scene::{ArcLength, ArcLengthWord, Load, Scene, Stage};
 use crate::study::timed_run::timed_run;
 

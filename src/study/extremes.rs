@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use crate::equilibrium::{Condition, Configuration, Equilibrium, SymmetryError, Workspace};
-use crate::pipeline::Record;
+use crate::record::Record;
 use crate::scene::{Expectation, ExpectedOutcome, Scene};
 use crate::state::State;
 use crate::study::extremes_curve::{Curve, energy_balance, is_equilibrium, largest_error, nudged, significant_bits};

@@ -1,7 +1,7 @@
 //! What of a run can be compared with another run, or against numbers: its dimensionless curve, the digits of its last result,
 //! its peak.
 
-use crate::pipeline::{Outcome, Parameter, Record};
+use crate::record::{Outcome, Parameter, Record};
 use crate::scene::{Expectation, Geometry, Material, Scene, Stage};
 use crate::study::extremes_fault::ExtremeFault;
 
@@ -144,7 +144,8 @@ fn result(Record { report, .. }: &Record) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::{MemorySink, Run, Stages};
+    use crate::pipeline::{Run, Stages};
+    use crate::record::MemorySink;
     use crate::scene::parse;
 
     fn records() -> Vec<Record> {

@@ -4,7 +4,8 @@ use std::time::{Duration, Instant};
 
 use serde::{Serialize, Serializer};
 
-use crate::pipeline::{Commit, Ending, MemorySink, Record, Run, RunError, StageError, Stages};
+use crate::pipeline::{Ending, Run, RunError, StageError, Stages};
+use crate::record::{Commit, MemorySink, Record};
 use crate::scene::{ExpectedOutcome, Scene};
 use crate::state::State;
 use crate::study::extremes_fault::ExtremeFault;

@@ -1,6 +1,6 @@
 //! The equilibrium path of a run: which of its stages are points of the moment–rotation curve, and where it jumped.
 
-use crate::pipeline::{CriticalPoint, Outcome, Record};
+use crate::record::{CriticalPoint, Outcome, Record};
 
 /// A point of the moment–rotation curve: the last equilibrium of a load step.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! The summary of a run: what it found, beside what theory says, and what it cost.
 
-use crate::pipeline::{Outcome, Parameter, Reading, Record, Warning};
+use crate::record::{Outcome, Parameter, Reading, Record, Warning};
 use crate::scene::{Geometry, Scene, Stage};
 use crate::study::{Passed, PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
 use crate::units::rounded;

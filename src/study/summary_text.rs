@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use super::Summary;
 use super::TapeSpring;
 use super::summary::{FoldMean, MeshChange, PeakFound, Said};
-use crate::pipeline::{Parameter, Reading, released_in_words};
+use crate::record::{Parameter, Reading, released_in_words};
 use crate::scene::Sense;
 use crate::spline::Grid;
 use crate::units::{count, duration, reading, rounded, signed};

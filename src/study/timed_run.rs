@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use crate::model::ModelError;
-use crate::pipeline::{Record, Run, RunError, Sink, SinkError, Stages};
+use crate::pipeline::{Run, RunError, Stages};
+use crate::record::{Record, Sink, SinkError};
 use crate::scene::Scene;
 use crate::state::State;
 

@@ -10,7 +10,7 @@ use super::colour::Colour;
 use super::deformed_surface::deformed_surface;
 use super::samples::SurfaceSamples;
 use crate::journal::{ViewerMessage, ViewerTopic, ViewerTopics};
-use crate::pipeline::{Outcome, Record};
+use crate::record::{Outcome, Record};
 use crate::scene::Scene;
 use crate::state::State;
 

@@ -12,8 +12,8 @@ use plotters::series::{DashedLineSeries, LineSeries};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle, WHITE};
 
-use crate::pipeline::Record;
 use crate::printable::one_line;
+use crate::record::Record;
 use crate::scene::Scene;
 use crate::study::{PathPoint, TapeSpring, equilibrium_path, snaps};
 

@@ -3,7 +3,7 @@
 use std::io::{self, ErrorKind, Write};
 
 use foldline::cli::Shown;
-use foldline::pipeline::{MemorySink, Outcome, Record, Sink, SinkError};
+use foldline::record::{MemorySink, Outcome, Record, Sink, SinkError};
 use foldline::scene::{Scene, Stage};
 use foldline::state::State;
 

@@ -202,7 +202,7 @@ fn a_condition_on_a_probe() {
         Said::new(condition, output)
     };
     let log = place.log("run.mcap");
-    let deep = |report: &foldline::pipeline::Report| report.probes.iter().any(|probe| probe.value < -5.0);
+    let deep = |report: &foldline::record::Report| report.probes.iter().any(|probe| probe.value < -5.0);
     let first = log.entries().iter().position(|entry| deep(&entry.record.report)).unwrap();
     let step = log.entries()[first].record.report.step;
     let table = when("w_c < -5").ends(0).out;

@@ -62,7 +62,7 @@ fn json_numbers_come_back_bit_for_bit() {
         let value: serde_json::Value = serde_json::from_str(&json_line(&record)).unwrap();
         let moment = value["moment_n_mm"].as_f64().unwrap();
         assert_eq!(moment.to_bits(), record.report.moment_n_mm.to_bits());
-        let report: foldline::pipeline::Report = serde_json::from_value(value).unwrap();
+        let report: foldline::record::Report = serde_json::from_value(value).unwrap();
         assert_eq!(report, record.report);
     }
 }

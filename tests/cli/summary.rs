@@ -1,6 +1,6 @@
 //! The summary of whole, partial and odd runs.
 
-use foldline::pipeline::{Outcome, Record};
+use foldline::record::{Outcome, Record};
 use foldline::scene::{EndRotation, Load, Scene, Sense, Symmetry};
 use foldline::study::{PeakFound, Summary};
 

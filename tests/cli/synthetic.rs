@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use foldline::pipeline::{Commit, Outcome, Parameter, Record, Report, Warning};
+use foldline::record::{Commit, Outcome, Parameter, Record, Report, Warning};
 use foldline::scene::{
     Adapt, EndRotation, Geometry, LengthLimit, Load, Material, MeshSpec, Output, Quadrature, Scene, Sense, Solver,
     Stage, Symmetry, SyncPolicy,

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use foldline::journal::message::ReportMessage;
 use foldline::journal::{Log, encode_mesh, encode_state};
-use foldline::pipeline::Report;
+use foldline::record::Report;
 use foldline::scene::Stage;
 use foldline::state::{Course, PathMemory, Refinement, State};
 use serde_json::{Value, json};

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use foldline::journal::format::CHUNK_BYTES_LIMIT;
 use foldline::journal::{Completeness, Level, Log, recover, verify_log};
-use foldline::pipeline::Record;
+use foldline::record::Record;
 use foldline::state::State;
 
 use crate::memory::peak;

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use foldline::journal::{
     Completeness, JournalWriter, Level, Log, Manifest, RecoverOutcome, format::FORMAT_VERSION, recover, verify_log,
 };
-use foldline::pipeline::{Ending, NUMERICS_REVISION, Run, Stages};
+use foldline::pipeline::{Ending, Run, Stages};
+use foldline::record::NUMERICS_REVISION;
 use foldline::scene::{Scene, Stage, SyncPolicy};
 use foldline::state::{Rejection, State};
 

@@ -12,7 +12,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use foldline::journal::{AskedLog, JournalWriter, Level, Log, LongLog, Manifest, Resume, verify};
-use foldline::pipeline::{Commit, MemorySink, Record, Run, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::{Commit, MemorySink, Record};
 use foldline::scene::SyncPolicy;
 use foldline::state::State;
 

@@ -3,7 +3,7 @@
 use std::io;
 
 use foldline::journal::{Completeness, Log, WriteError};
-use foldline::pipeline::Sink;
+use foldline::record::Sink;
 use foldline::scene::SyncPolicy;
 
 use crate::support::{assert_prefix, writer};
@@ -110,7 +110,7 @@ fn the_writer_refuses_what_no_reader_would_take() {
     state.displacement[3][1] = f64::NAN;
     let mut record = run[0].1.clone();
     let (stage, step) = (record.commit.stage, record.commit.step);
-    let commit = foldline::pipeline::Commit::next;
+    let commit = foldline::record::Commit::next;
     record.commit = commit(None, stage, step, synthetic::scene_hash(), record.commit.parent_hash, state.hash());
     let (mut broken, disk) = writer(SyncPolicy::AtEnd);
     let error = broken.take(&state, &record).unwrap_err();

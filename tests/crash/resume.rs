@@ -8,7 +8,7 @@ use foldline::journal::{
     Completeness, JournalWriter, Level, LockError, Log, NewLogError, RecoverError, RecoverOutcome, Resume, ResumeError,
     WriteError, recover, verify,
 };
-use foldline::pipeline::Record;
+use foldline::record::Record;
 use foldline::scene::SyncPolicy;
 use foldline::state::State;
 

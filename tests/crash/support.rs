@@ -4,7 +4,7 @@ use std::io;
 use std::sync::{Arc, Mutex};
 
 use foldline::journal::{Backend, JournalWriter, Log};
-use foldline::pipeline::Record;
+use foldline::record::Record;
 use foldline::scene::SyncPolicy;
 use foldline::state::State;
 

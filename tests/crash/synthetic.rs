@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use foldline::journal::{Manifest, format::FORMAT_VERSION};
-use foldline::pipeline::{Commit, Outcome, Parameter, Record, Report};
+use foldline::record::{Commit, Outcome, Parameter, Record, Report};
 use foldline::scene::Stage;
 use foldline::state::{Hash, Mesh, Rejection, State, StepControl};
 

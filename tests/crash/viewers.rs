@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use foldline::journal::{JournalWriter, Level, Log, ViewerMessage, ViewerTopic, ViewerTopics, format, message};
-use foldline::pipeline::Record;
+use foldline::record::Record;
 use foldline::scene::SyncPolicy;
 use foldline::state::State;
 

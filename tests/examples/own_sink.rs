@@ -8,7 +8,8 @@ use std::error::Error;
 use std::path::Path;
 
 use foldline::journal::{JournalWriter, Manifest};
-use foldline::pipeline::{Record, Run, Sink, SinkError, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::{Record, Sink, SinkError};
 use foldline::scene::parse;
 use foldline::state::State;
 

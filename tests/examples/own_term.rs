@@ -7,7 +7,8 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use foldline::pipeline::{MemorySink, Run, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::MemorySink;
 use foldline::scene::parse;
 
 #[path = "../verification/elastic_foundation.rs"]

@@ -7,7 +7,8 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use foldline::pipeline::{MemorySink, Outcome, Run, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::{MemorySink, Outcome};
 use foldline::scene::{Stage, parse};
 
 fn main() -> Result<(), Box<dyn Error>> {

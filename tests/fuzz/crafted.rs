@@ -9,7 +9,7 @@ use foldline::journal::format::{
 };
 use foldline::journal::message::{CommitMessage, FinishedMessage, MessageHash, seal};
 use foldline::journal::{CODEC_VERSION, CodecError, decode_mesh, decode_state};
-use foldline::pipeline::Commit;
+use foldline::record::Commit;
 use foldline::scene::Stage;
 use foldline::state::{Hash, Mesh};
 use serde_json::Value;

@@ -129,7 +129,7 @@ pub fn read(bytes: Vec<u8>) {
         assert_eq!(again.expect("what is written can be read").hash(), state.hash());
     }
     for entry in log.entries() {
-        let json = serde_json::to_string(&foldline::pipeline::fields_of(&entry.record.report));
+        let json = serde_json::to_string(&foldline::record::fields_of(&entry.record.report));
         json.expect("what is read can be shown");
     }
 }

@@ -263,7 +263,7 @@ fn nonsense() -> impl Strategy<Value = Cow<'static, [u8]>> {
 }
 
 /// A run and its log.
-fn log() -> (Vec<(State, foldline::pipeline::Record)>, Vec<u8>) {
+fn log() -> (Vec<(State, foldline::record::Record)>, Vec<u8>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.mcap");
     let run = synthetic::run(2, 6);

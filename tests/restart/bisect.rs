@@ -118,7 +118,7 @@ fn conditions() {
         ("elements > 16", first(&|i| report(i).elements.iter().product::<usize>() > 16)),
         ("elements_1 == 10", first(&|i| report(i).elements[0] == 10)),
         ("jumped == true", first(&|i| report(i).jumped)),
-        ("outcome != done", first(&|i| report(i).outcome != foldline::pipeline::Outcome::Done)),
+        ("outcome != done", first(&|i| report(i).outcome != foldline::record::Outcome::Done)),
         ("stage == refine-knots", first(&|i| report(i).stage == foldline::scene::Stage::RefineKnots)),
     ];
     for (condition, index) in cases {

@@ -1,7 +1,7 @@
 //! A scene that changed between a run and its resume: what stands is said and kept, and nothing is mixed in silence.
 
 use foldline::journal::{JournalWriter, Log, Manifest};
-use foldline::pipeline::Outcome;
+use foldline::record::Outcome;
 use foldline::scene::{Stage, SyncPolicy};
 
 use crate::program::{Place, SMALL, Straight, assert_ends_with, scene, small_with};

@@ -9,7 +9,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use foldline::journal::{JournalWriter, Manifest};
-use foldline::pipeline::{MemorySink, Run, Sink, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::{MemorySink, Sink};
 use foldline::scene::SyncPolicy;
 
 /// How often the log is written under each policy; the policies take turns.

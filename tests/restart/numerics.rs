@@ -7,7 +7,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use foldline::journal::Manifest;
-use foldline::pipeline::{MemorySink, NUMERICS_REVISION, Run, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::{MemorySink, NUMERICS_REVISION};
 
 use crate::program::{SMALL, scene};
 

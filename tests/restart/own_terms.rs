@@ -10,7 +10,8 @@ use foldline::history::{
 };
 use foldline::journal::{JournalWriter, Log, Manifest, Resume};
 use foldline::model::{ModelError, Tables};
-use foldline::pipeline::{MemorySink, Run, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::MemorySink;
 use foldline::scene::{Scene, SyncPolicy, parse};
 use foldline::spline::Mesh;
 use foldline::state::Hash;

@@ -4,7 +4,8 @@ use std::sync::OnceLock;
 
 use foldline::history::{States, Verdict, compare, replay_stage, verdict};
 use foldline::journal::Log;
-use foldline::pipeline::{Outcome, Stages};
+use foldline::pipeline::Stages;
+use foldline::record::Outcome;
 use foldline::scene::Stage;
 use foldline::state::Course;
 

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use foldline::equilibrium::{Configuration, Workspace};
-use foldline::pipeline::Record;
+use foldline::record::Record;
 use foldline::scene::{Scene, parse};
 use foldline::state::State;
 

@@ -1,7 +1,7 @@
 //! The paper's baseline case, L = 300, R = 10, t = 0.1 mm: stiffness, peak, snap, fold, mesh growth, and the moment
 //! against an independent isogeometric solver (quartic, 256 × 32 elements over the whole shell).
 
-use foldline::pipeline::Record;
+use foldline::record::Record;
 use foldline::scene::{Scene, Stage};
 use foldline::state::State;
 

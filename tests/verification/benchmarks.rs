@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use foldline::pipeline::{MemorySink, Report, Run, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::{MemorySink, Report};
 use foldline::scene::{
     Edge, Geometry, Hold, Load, LoadSteps, Motion, NurbsPatch, Place, Probe, ProbeKind, Reaction, Scene, parse,
 };

@@ -1,7 +1,7 @@
 //! Bifurcations, and runs that leave the branch that became unstable: Euler's column, and the tape spring bent the other
 //! way.
 
-use foldline::pipeline::{Record, Report};
+use foldline::record::{Record, Report};
 use foldline::scene::{ActionKind, ArcLength, Scene, Stage, Symmetry, parse};
 use foldline::state::State;
 use foldline::study::Summary;

@@ -2,7 +2,8 @@
 
 use foldline::adapt::Halved;
 use foldline::equilibrium::{Configuration, Equilibrium, Workspace};
-use foldline::pipeline::{MemorySink, Record, Run, Stages, Warning};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::{MemorySink, Record, Warning};
 use foldline::scene::{LengthLimit, Quadrature, Scene, Stage, parse};
 use foldline::spline::Spans;
 use foldline::study::Summary;

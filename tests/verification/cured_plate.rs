@@ -2,7 +2,7 @@
 
 use foldline::adapt::element_strains;
 use foldline::energy::Discretization;
-use foldline::pipeline::Record;
+use foldline::record::Record;
 use foldline::scene::{Geometry, Load, Scene, Stage};
 use foldline::state::State;
 

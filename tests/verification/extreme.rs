@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-use foldline::pipeline::{MemorySink, Run, RunError, StageError, Stages};
+use foldline::pipeline::{Run, RunError, StageError, Stages};
+use foldline::record::MemorySink;
 use foldline::scene::{ExpectedOutcome, Scene};
 use foldline::study::ExtremesSuite;
 

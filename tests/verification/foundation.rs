@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use foldline::energy::Balance;
-use foldline::energy::{At, Tangent, Term, TermSource, Want};
+use foldline::energy::{At, Balance, Tangent, Term, TermSource, Want};
 use foldline::equilibrium::{Assembled, Configuration, Equilibrium, Workspace};
 use foldline::model::{ModelError, Tables, starting_mesh};
-use foldline::pipeline::{MemorySink, Record, Run, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::{MemorySink, Record};
 use foldline::scene::{Scene, Stage, parse};
 use foldline::spline::Mesh;
 use foldline::state::Hash;

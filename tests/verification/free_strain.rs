@@ -6,7 +6,7 @@ use std::sync::Arc;
 use foldline::energy::{Discretization, Want, strain_energy};
 use foldline::equilibrium::Assembled;
 use foldline::model::starting_mesh;
-use foldline::pipeline::Report;
+use foldline::record::Report;
 use foldline::scene::{Scene, parse};
 
 use crate::support::run;

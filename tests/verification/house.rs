@@ -3,7 +3,7 @@
 use crate::imports::{Import, Sources, Token, circles, imports, sources, tokens};
 
 /// From the bottom of the stack to its top: each folder imports only from those before it.
-const ORDER: [&str; 19] = [
+const ORDER: [&str; 20] = [
     "units",
     "printable",
     "digest",
@@ -16,6 +16,7 @@ const ORDER: [&str; 19] = [
     "state",
     "equilibrium",
     "adapt",
+    "record",
     "pipeline",
     "journal",
     "history",

@@ -1,6 +1,6 @@
 //! A path of equilibria as curves over its length, for the tests that follow one.
 
-use foldline::pipeline::{CriticalPoint, Outcome, Record, Report};
+use foldline::record::{CriticalPoint, Outcome, Record, Report};
 use foldline::scene::{ArcLength, ArcLengthWord, Scene, parse};
 
 use crate::support::run;

@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 
 use foldline::model::ModelError;
-use foldline::pipeline::{MemorySink, Run, Stages};
+use foldline::pipeline::{Run, Stages};
+use foldline::record::MemorySink;
 use foldline::scene::{Edge, History, Hold, Place, Scene, Support, parse};
 
 const COMPONENTS: [&str; 6] = ["force-x", "force-y", "force-z", "moment-x", "moment-y", "moment-z"];

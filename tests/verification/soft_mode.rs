@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use foldline::energy::{Discretization, Want};
 use foldline::equilibrium::{Assembled, Configuration, SoftMode, Workspace, soft_mode};
-use foldline::pipeline::Outcome;
+use foldline::record::Outcome;
 use foldline::scene::{Scene, parse};
 use foldline::spline::Mesh;
 use foldline::state::State;

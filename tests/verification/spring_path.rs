@@ -1,6 +1,6 @@
 //! The tape spring's path of equilibria past its limit rotation, back along the unstable part, and up the fold.
 
-use foldline::pipeline::Record;
+use foldline::record::Record;
 use foldline::scene::{ArcLength, Scene, Stage};
 use foldline::state::State;
 

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use foldline::pipeline::{Ending, MemorySink, Record, Run, Stages};
+use foldline::pipeline::{Ending, Run, Stages};
+use foldline::record::{MemorySink, Record};
 use foldline::scene::{Scene, Stage, parse};
 use foldline::state::State;
 

@@ -3,7 +3,8 @@
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use foldline::model::{ModelError, starting_mesh};
-use foldline::pipeline::{Report, Stages};
+use foldline::pipeline::Stages;
+use foldline::record::Report;
 use foldline::scene::{Geometry, Material, NurbsPatch, Scene, Seam, parse};
 use foldline::spline::{Mesh, Spans, mid_surface_point};
 use foldline::state::State;

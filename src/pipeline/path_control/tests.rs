@@ -3,6 +3,7 @@
 use super::*;
 use crate::energy::Balance;
 use crate::equilibrium::{Direction, Effort, Solved};
+use crate::record::CriticalPoint;
 use crate::scene::{ArcLengthWord, Stage, parse};
 use crate::spline::Mesh;
 

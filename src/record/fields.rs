@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::pipeline::Report;
+use crate::record::Report;
 
 /// Fields of a report by name, pairs also one by one.
 pub fn fields_of(report: &Report) -> Vec<(String, Value)> {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::pipeline::{CriticalPoint, Warning};
+use crate::record::{CriticalPoint, Warning};
 use crate::scene::{Parameter, Scene, Stage};
 use crate::state::State;
 
@@ -69,7 +69,7 @@ pub struct Report {
 
 impl Report {
     /// Of a state as it stands, on a mesh with so many free unknowns; the stage fills in what it did.
-    pub(super) fn of(scene: &Scene, state: &State, unknowns: usize) -> Self {
+    pub(crate) fn of(scene: &Scene, state: &State, unknowns: usize) -> Self {
         Self {
             step: state.step,
             stage: state.stage.unwrap_or(Stage::Solve),

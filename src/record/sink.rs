@@ -1,6 +1,6 @@
 //! Where finished stages go: the loop calls a [`Sink`] after every stage and knows nothing else of files or screens.
 
-use crate::pipeline::Record;
+use crate::record::Record;
 use crate::state::State;
 
 /// Why a sink could not take a stage. The sink says what happened and what to do about it.

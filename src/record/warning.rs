@@ -17,7 +17,7 @@ use crate::state::State;
 use crate::units::{count, signed, significant};
 
 /// Change of the strain energy, relative to it, from which on it is said.
-pub(super) const LARGE: f64 = 0.05;
+pub(crate) const LARGE: f64 = 0.05;
 
 /// Where numbers are not what they seem, with those that say so.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -91,7 +91,7 @@ pub enum Warning {
 
 impl Warning {
     /// What refining at the same load did to the energy, where that is much.
-    pub(super) fn of_refining(before: &State, after: &State, elements: [usize; 2]) -> Option<Self> {
+    pub(crate) fn of_refining(before: &State, after: &State, elements: [usize; 2]) -> Option<Self> {
         let energy_change = after.strain_energy_n_mm / before.strain_energy_n_mm - 1.0;
         let is_large = energy_change.is_finite() && energy_change.abs() > LARGE;
         // Behind a jump there is no equilibrium before: the fold only forms, and refining is to change it.
@@ -100,7 +100,7 @@ impl Warning {
     }
 
     /// Spans that are kept too long.
-    pub(super) fn of_blocked(state: &State, blocked: Blocked) -> Self {
+    pub(crate) fn of_blocked(state: &State, blocked: Blocked) -> Self {
         let Blocked { spans, decay_lengths, over_threshold } = blocked;
         Self::RefinementBlocked { parameter: state.parameter, spans, decay_lengths, over_threshold }
     }

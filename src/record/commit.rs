@@ -1,6 +1,6 @@
 //! A stage's place in the chain of hashes, and all that is kept of it.
 
-use crate::pipeline::Report;
+use crate::record::Report;
 use crate::scene::Stage;
 use crate::state::Hash;
 

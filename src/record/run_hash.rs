@@ -1,0 +1,20 @@
+//! The identity of a run: what decides its results.
+
+use crate::digest::{Feed, Hash};
+use crate::scene::Scene;
+
+/// Hash of what decides the results of a run: of its scene, and of the terms of the caller's own, by name and hash, where there
+/// are any.
+pub fn run_hash(scene: &Scene, terms: &[(&str, Hash)]) -> Hash {
+    if terms.is_empty() {
+        return scene.hash();
+    }
+    let mut feed = Feed::new("foldline scene with terms");
+    feed.bytes(scene.hash().as_bytes());
+    for (name, hash) in terms {
+        feed.integer(name.len() as u64);
+        feed.bytes(name.as_bytes());
+        feed.bytes(hash.as_bytes());
+    }
+    feed.finish()
+}
