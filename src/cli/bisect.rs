@@ -11,10 +11,10 @@ use super::output::{path_in_line, print};
 use super::replay::place;
 use super::stage_table::stage_table;
 use crate::history::{
-    Comparison, Condition, ConditionError, SnapReport, States, find_parting, find_snap, first_loss_of_stability,
-    first_where, no_jump,
+    Comparison, Condition, ConditionError, SnapError, SnapReport, States, find_parting, find_snap,
+    first_loss_of_stability, first_where, no_jump,
 };
-use crate::journal::{LongLog, LongLogError};
+use crate::journal::{AskedLog, LongLog, LongLogError};
 use crate::record::{Parameter, Record};
 use crate::units::{count, place as place_mm, unsigned_zero};
 
@@ -42,10 +42,11 @@ impl Arguments {
     /// Answers the question.
     pub(super) fn run(self) -> Result<u8, Failure> {
         if let Some(condition) = &self.when
-            && let Some(found) = ask_long(&self.log, |long| first_of_long(long, condition))?
+            // A field that the end does not have may be one of an earlier stretch.
+            && let Some(Ok(found)) = ask_long(&self.log, |long| first_of_long(long, condition))?
         {
             let never = || Failure::NeverHolds { log: self.log.clone(), condition: condition.clone() };
-            return print(&stage_table(&found?.ok_or_else(never)?)).map(|()| 0);
+            return print(&stage_table(&found.ok_or_else(never)?)).map(|()| 0);
         }
         match (&self.other, &self.when) {
             (Some(other), _) => self.part(&Asked::open(&self.log)?, &Asked::open(other)?, other),
@@ -61,7 +62,13 @@ impl Arguments {
         let found = find_parting(&a.log, &b.log).map_err(unusable)?;
         match &found {
             None if lengths[0] == lengths[1] => {
-                text.push_str(&format!("the same: all {}\n", count(lengths[0], "stage")))
+                let by = match [a, b].iter().any(|asked| matches!(asked.log, AskedLog::Long(_))) {
+                    true => {
+                        ", by their chains of hashes; that all bytes are as they were written says `foldline verify`"
+                    }
+                    false => "",
+                };
+                text.push_str(&format!("the same: all {}{by}\n", count(lengths[0], "stage")))
             }
             None => text.push_str(&format!(
                 "the same as far as both go: {} holds {}, {} holds {}\n",
@@ -133,11 +140,18 @@ impl Arguments {
                 farthest = parameters.fold(farthest, f64::max);
                 continue;
             };
-            let log = asked.log.part(jump.saturating_sub(BEFORE)..jump + 1).map_err(asked.changed())?;
             // The scene of the stretch that jumped.
             let scene = scene_at(&log, &self.log, jump, &[])?;
-            let report = find_snap(&mut States::of(&log), &scene, self.tolerance).map_err(Box::new)?;
-            return print(&told(&report, Parameter::of(&scene))).map(|()| 0);
+            let found_in = |from: usize| -> Result<_, Failure> {
+                let log = asked.log.part(from..jump + 1).map_err(asked.changed())?;
+                Ok(find_snap(&mut States::of(&log), &scene, self.tolerance))
+            };
+            let near = jump.saturating_sub(BEFORE);
+            let report = match found_in(near)? {
+                Err(SnapError::NothingBefore) if near > 0 => found_in(0)?,
+                report => report,
+            };
+            return print(&told(&report.map_err(Box::new)?, Parameter::of(&scene))).map(|()| 0);
         }
         Err(Box::new(no_jump(&asked.scene, farthest)).into())
     }

@@ -77,16 +77,19 @@ fn stages_of(path: &Path, step: u64, probes: bool) -> Result<Vec<Record>, Failur
     if found.is_empty() { Err(Failure::NoSuchStep { known, step, log: path.to_path_buf() }) } else { Ok(found) }
 }
 
-/// Every stage as JSON.
+/// Every stage as JSON, portion by portion.
 fn all_lines(path: &Path, probes: bool) -> Result<String, Failure> {
     if probes {
         return Ok(lines(&with_probes_anew(path)?.1));
     }
-    let mut text = String::new();
+    let mut printed = Ok(());
     read_through(path, |portion| {
-        portion.entries().iter().for_each(|entry| text += &(json_line(&entry.record) + "\n"));
+        if printed.is_ok() {
+            let lines = portion.entries().iter().map(|entry| json_line(&entry.record) + "\n");
+            printed = print(&lines.collect::<String>());
+        }
     })?;
-    Ok(text)
+    printed.map(|()| String::new())
 }
 
 fn lines(records: &[Record]) -> String {

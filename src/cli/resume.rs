@@ -103,6 +103,11 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
         return put_back(claim, &stages, &manifest, scene.output.sync, options);
     }
     let plan = plan(log, &was, &scene).map_err(|source| unusable(Box::new(source)))??;
+    if plan.keep <= log.first() && log.first() > 0 {
+        // The state to continue from lies before the end that was read.
+        let claim = claim.whole().map_err(|source| unusable(Box::new(source)))?;
+        return go_on(OldLog { claim }, scene, manifest, options);
+    }
     // What is lost or changed is said however quiet the run is.
     let lost = ReadLog::warnings_of(log).into_iter().chain(restored).chain(plan.changes);
     let mut findings = other_numerics(log, &manifest);
@@ -119,9 +124,6 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let (first, all) = (log.first(), log.commits());
     let kept = log.entries().iter().take(plan.keep.saturating_sub(first));
     let mut before: Vec<Record> = kept.map(|entry| entry.record.clone()).collect();
-    if first > 0 {
-        findings.push(format!("the summary is of the stages from {first} on; every stage: foldline inspect"));
-    }
     let new_probes = new_probes(&was, &scene);
     if !new_probes.is_empty() {
         read_probes(log, &mut stages, &mut before).map_err(|source| unusable(Box::new(source)))?;
@@ -142,13 +144,19 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let finished = log.completeness() == Completeness::Finished && plan.keep == all;
     // One that lost its summary is closed again.
     if next.is_none() && finished && log.has_summary() && !log.last_manifest_is_lost() {
-        return options.sum_up(&Summary::new(&scene, &before));
+        return match first {
+            0 => options.sum_up(&Summary::new(&scene, &before)),
+            first => options.end_of_long(first, all),
+        };
     }
     let resumed =
         claim.start_after(plan.keep, &manifest, scene.output.sync).map_err(|source| unusable(Box::new(source)))?;
     say_dropped(&resumed);
     let records = drive(run, &scene, resumed.writer, options, &raised)?;
-    options.sum_up(&Summary::new(&scene, &[before, records].concat()))
+    match first {
+        0 => options.sum_up(&Summary::new(&scene, &[before, records].concat())),
+        first => options.end_of_long(first, plan.keep + records.len()),
+    }
 }
 
 /// The scene that a log was last continued with, and what is said where it is lost and `scene` takes its place.

@@ -43,6 +43,16 @@ impl RunOptions {
         if self.manner == Manner::Json { Ok(()) } else { print(text) }
     }
 
+    /// The last words of a run of whose log only the stages from `first` on were read: numbers of a part would be taken for those
+    /// of the run.
+    pub(super) fn end_of_long(&self, first: usize, stages: usize) -> Result<(), Failure> {
+        let log = path_in_line(&self.log);
+        self.show(&format!(
+            "{stages} stages in the log, of which those before stage {first} were not read again: no summary. Summary and every stage: \
+             foldline inspect {log}; that all of them are as they were written: foldline verify {log}\n"
+        ))
+    }
+
     /// The last words of a run.
     pub(super) fn sum_up(&self, summary: &Summary) -> Result<(), Failure> {
         self.show(&summary.to_string())?;

@@ -52,18 +52,21 @@ impl Arguments {
 
 /// What is said of load steps whose state was to be kept and is not: the log has none, or not any more.
 fn not_kept(text: &str, choice: Choice, thinned: &Thinned, log: &Path) -> Option<String> {
-    let (last, kept) = (thinned.last_step, &thinned.steps);
-    let missed: Vec<u64> = (1..=last).filter(|step| choice.has(*step) && !kept.contains(step)).collect();
-    match missed.first() {
+    let (all, kept) = (&thinned.all_steps, &thinned.steps);
+    let missed = all.difference(kept).filter(|step| choice.has(**step));
+    match missed.clone().next() {
         Some(first) => Some(format!(
             "--keep {text}: the log was thinned before, and has no state any more of {}, the first of them {first}. Such a state is \
              made again where it is asked for, as by `foldline stability {} --step {first}`; to keep it, thin the log that this one was \
              made of",
-            count(missed.len(), "load step"),
+            count(missed.count(), "load step"),
             path_in_line(log)
         )),
         None if kept.iter().any(|step| choice.has(*step)) => None,
-        None => Some(format!("--keep {text} keeps nothing: the load steps of the log go from 1 to {last}")),
+        None => {
+            let (first, last) = (all.first().unwrap_or(&0), all.last().unwrap_or(&0));
+            Some(format!("--keep {text} keeps nothing: the load steps of the log go from {first} to {last}"))
+        }
     }
 }
 

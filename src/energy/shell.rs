@@ -33,10 +33,10 @@ impl Shell {
         Part { tables: &self.tables, blocks: &self.blocks, part: 0, natural }
     }
 
-    /// Gradient of the strain energy, N, and what of it is in the elements.
-    fn residual(&self, at: At) -> Vec<[f64; 3]> {
+    /// Gradient of the strain energy, N, where `natural` is the state without forces.
+    fn residual(&self, at: At, natural: Option<NaturalState>) -> Vec<[f64; 3]> {
         let mut residual = vec![[0.0; 3]; at.displacement.len()];
-        let part = self.part(self.free_strains.at(at.parameter));
+        let part = self.part(natural);
         part.add(at.displacement, Want::Residual, &mut residual, &mut Blocks::default());
         residual
     }
@@ -48,7 +48,8 @@ impl Term for Shell {
     }
 
     fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
-        forces.iter_mut().zip(self.residual(at)).for_each(|(sum, force)| *sum = sub(*sum, force));
+        let residual = self.residual(at, self.free_strains.at(at.parameter));
+        forces.iter_mut().zip(residual).for_each(|(sum, force)| *sum = sub(*sum, force));
     }
 
     fn has_tangent(&self) -> bool {
@@ -59,6 +60,16 @@ impl Term for Shell {
         let mut residual = vec![[0.0; 3]; at.displacement.len()];
         let part = self.part(self.free_strains.at(at.parameter));
         part.add(at.displacement, Want::Stiffness, &mut residual, tangent.stiffness_of(&self.blocks));
+    }
+
+    fn add_rates(&self, at: At, rates: &mut [[f64; 3]]) {
+        // Forces are linear in the free strain.
+        let Some(beyond) = self.free_strains.beyond(at.parameter) else { return };
+        let there = self.residual(at, Some(beyond));
+        let here = self.residual(at, self.free_strains.at(at.parameter));
+        for (sum, (there, here)) in rates.iter_mut().zip(there.into_iter().zip(here)) {
+            *sum = sub(*sum, sub(there, here));
+        }
     }
 
     fn put_in(&self, from: At, to: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! The equations R(q, λ) = 0 at a point: residual, its rate with the parameter, and the factor of the stiffness.
 
-use crate::energy::{At, Discretization, Want};
+use crate::energy::{At, Discretization, Term, Want};
 use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::force_scale::ForceScale;
@@ -9,7 +9,7 @@ use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::solved::Ended;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::equilibrium::workspace::Workspace;
-use crate::shell::add;
+use crate::shell::sub;
 
 /// The pieces of a workspace that the equations take.
 pub(super) struct Equations<'w> {
@@ -91,10 +91,9 @@ impl<'w> Equations<'w> {
         for (point, rate) in force_rates.iter_mut().enumerate() {
             (0..3).for_each(|c| rate[c] += skew[point][c] - loads[point][c]);
         }
-        if let Some(natural) = discretization.shell.free_strains.beyond(parameter) {
-            let freed = self.assembled.change_of_forces(discretization, displacement, Some(natural));
-            force_rates.iter_mut().zip(freed).for_each(|(sum, rate)| *sum = add(*sum, rate));
-        }
+        let mut of_shell = vec![[0.0; 3]; displacement.len()];
+        discretization.shell.add_rates(at, &mut of_shell);
+        force_rates.iter_mut().zip(of_shell).for_each(|(sum, rate)| *sum = sub(*sum, rate));
         let mut gradient_rate = placement.restrict(&force_rates);
         for (sum, turned) in gradient_rate.iter_mut().zip(placement.restrict_rate(&forces, &given_rates)) {
             *sum += turned;

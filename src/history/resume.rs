@@ -93,8 +93,8 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     if has(Reach::Steps) {
         keep = complete_steps(log, keep, old)?;
     }
-    while keep > 0 && !log.keeps_state(keep - 1) {
-        keep -= 1;
+    if keep > 0 && !log.keeps_state(keep - 1) {
+        keep = log.kept_before(keep - 1).map_or(0, |kept| kept + 1);
     }
     let changes = differences.iter().map(|difference| {
         let [from, to] = difference.values();

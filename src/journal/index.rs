@@ -13,12 +13,12 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::checkpoint::Checkpoint;
-use super::format::{MANIFEST, THINNED, library};
+use super::format::{FIELDS_LIMIT, MANIFEST, THINNED, library};
 use super::frame;
 use super::ledger::{ChunkPlace, Ledger, Pattern};
 use super::manifest::Manifest;
 use super::message::{HexHash, kept_as};
-use super::reader::read_at;
+use super::reader::{open_regular, read_at};
 use super::stretch::Stretches;
 use crate::record::{Record, Report, as_number, fields_of};
 use crate::state::Hash;
@@ -68,6 +68,14 @@ pub(super) struct Mark {
     pub fields: Vec<Piece>,
     /// The last commit before it that has its state.
     pub kept_before: Option<u64>,
+}
+
+impl Mark {
+    /// Whether it asks for no more than a log can hold, and for nothing twice.
+    fn is_sound(&self) -> bool {
+        let follow = self.metadata.windows(2).all(|pair| pair[0].0.saturating_add(pair[0].1) <= pair[1].0);
+        self.fields.len() <= FIELDS_LIMIT && follow && self.described_at.is_sorted_by(|a, b| a < b)
+    }
 }
 
 /// A message of the log.
@@ -185,7 +193,7 @@ pub(super) struct Index {
 impl Index {
     /// Reads the heads of an index; `None` where there is none.
     pub fn read(path: &Path) -> Option<Self> {
-        let file = File::open(path).ok()?;
+        let file = open_regular(path).ok()?;
         let mut index = Self { file, heads: Vec::new(), length: 0 };
         while let Some(head) = index.head_at(index.length) {
             let expected = index.heads.last().map_or(0, |before| before.first + before.commits);
@@ -213,7 +221,8 @@ impl Index {
         head.columns_at = at + (BLOCK_START_LEN + length) as u64;
         let columns = head.commits.checked_mul(8 * head.columns.len() as u64)?;
         let is_whole = head.columns_at.checked_add(columns)? <= self.file.metadata().ok()?.len();
-        is_whole.then_some(head)
+        let has_places = PLACES.iter().all(|name| head.columns.iter().any(|column| column.name == *name));
+        (is_whole && has_places && head.mark.is_sound()).then_some(head)
     }
 
     /// Takes in a block that was written behind the others.
@@ -254,19 +263,9 @@ impl Index {
 
     /// Reads what the last block marks from the log, and where all chunks before that commit lie.
     pub fn checkpoint(&self, log: &File) -> io::Result<Option<(Checkpoint, Ledger)>> {
-        self.checkpoint_of(log, &self.heads)
-    }
-
-    /// The same of the last block whose commits are all before another.
-    pub fn checkpoint_before(&self, log: &File, ordinal: usize) -> io::Result<Option<(Checkpoint, Ledger)>> {
-        let behind = self.heads.partition_point(|head| head.first + head.commits <= ordinal as u64);
-        self.checkpoint_of(log, &self.heads[..behind])
-    }
-
-    fn checkpoint_of(&self, log: &File, heads: &[Head]) -> io::Result<Option<(Checkpoint, Ledger)>> {
-        let Some(last) = heads.last() else { return Ok(None) };
+        let Some(last) = self.heads.last() else { return Ok(None) };
         let mut ledger = Ledger { patterns: last.mark.patterns.clone(), ..Ledger::default() };
-        for head in heads {
+        for head in &self.heads {
             let [at, bytes, pattern] = PLACES.map(|name| self.column(head, name));
             for ((at, bytes), pattern) in at?.into_iter().zip(bytes?).zip(pattern?) {
                 if pattern as usize >= ledger.patterns.len() {
@@ -276,52 +275,71 @@ impl Index {
             }
         }
         let Some(here) = ledger.chunks.pop() else { return Ok(None) };
-        let Mark { chain_hash, metadata, described_at, mesh, fields, kept_before, .. } = &last.mark;
-        let piece = |piece: &Piece| -> io::Result<(Hash, u64, Vec<u8>)> {
-            let mut bytes = Vec::new();
-            let length = (piece.place[1] as usize).min(super::format::CHUNK_BYTES_LIMIT);
-            read_at(log, piece.place[0], length, &mut bytes)?;
-            Ok((piece.hash.0, piece.place[0], bytes))
-        };
-        for at in described_at {
-            if let Some((bytes, chunk)) = record_at(log, *at)? {
-                ledger.describe(*at, &bytes, &chunk);
-            }
-        }
-        let (mut stretches, mut thinned) = (Stretches::default(), None);
-        for (at, bytes, name) in metadata {
-            ledger.metadata.push((*at, *bytes, name.clone()));
-            if name != MANIFEST && name != THINNED {
-                continue;
-            }
-            let Some((bytes, record)) = record_at(log, *at)?.filter(|(found, _)| found.len() as u64 == *bytes) else {
-                return Ok(None);
-            };
-            let Ok(mcap::records::Record::Metadata(parsed)) = frame::parse(record.opcode, &bytes[record.body.clone()])
-            else {
-                return Ok(None);
-            };
-            if name == THINNED {
-                thinned = Some(kept_as(&parsed));
-                continue;
-            }
-            let Ok((manifest, hash)) = Manifest::from_record(&parsed) else { return Ok(None) };
-            stretches.begin(manifest, hash);
-        }
-        let checkpoint = Checkpoint {
-            at: here.at,
-            ordinal: last.first + last.commits - 1,
-            chain_hash: chain_hash.0,
-            library: library(),
-            channels: ledger.channels_described(),
-            stretches,
-            mesh: mesh.as_ref().map(piece).transpose()?,
-            fields: fields.iter().map(piece).collect::<io::Result<_>>()?,
-            thinned,
-            kept_before: kept_before.map(|ordinal| ordinal as usize),
-        };
-        Ok(Some((checkpoint, ledger)))
+        Ok(checkpoint_of(log, last, here.at, &mut ledger)?.map(|checkpoint| (checkpoint, ledger)))
     }
+
+    /// Reads what the last block marks.
+    pub fn last_checkpoint(&self, log: &File) -> io::Result<Option<Checkpoint>> {
+        self.checkpoint_before(log, usize::MAX)
+    }
+
+    /// Reads what the last block marks whose commits are all before another.
+    pub fn checkpoint_before(&self, log: &File, ordinal: usize) -> io::Result<Option<Checkpoint>> {
+        let behind = self.heads.partition_point(|head| head.first + head.commits <= ordinal as u64);
+        let Some(last) = self.heads[..behind].last() else { return Ok(None) };
+        let Some(at) = self.column(last, PLACES[0])?.pop() else { return Ok(None) };
+        checkpoint_of(log, last, at, &mut Ledger::default())
+    }
+}
+
+/// The commit that a block marks, whose chunk begins at `at`, and what has to be known to read on from there; the ledger gains the
+/// metadata and the descriptions of channels before it.
+fn checkpoint_of(log: &File, last: &Head, at: u64, ledger: &mut Ledger) -> io::Result<Option<Checkpoint>> {
+    let Mark { chain_hash, metadata, described_at, mesh, fields, kept_before, .. } = &last.mark;
+    let piece = |piece: &Piece| -> io::Result<(Hash, u64, Vec<u8>)> {
+        let mut bytes = Vec::new();
+        let length = (piece.place[1] as usize).min(super::format::CHUNK_BYTES_LIMIT);
+        read_at(log, piece.place[0], length, &mut bytes)?;
+        Ok((piece.hash.0, piece.place[0], bytes))
+    };
+    for at in described_at {
+        if let Some((bytes, chunk)) = record_at(log, *at)? {
+            ledger.describe(*at, &bytes, &chunk);
+        }
+    }
+    let (mut stretches, mut thinned) = (Stretches::default(), None);
+    for (at, bytes, name) in metadata {
+        ledger.metadata.push((*at, *bytes, name.clone()));
+        if name != MANIFEST && name != THINNED {
+            continue;
+        }
+        let Some((bytes, record)) = record_at(log, *at)?.filter(|(found, _)| found.len() as u64 == *bytes) else {
+            return Ok(None);
+        };
+        let Ok(mcap::records::Record::Metadata(parsed)) = frame::parse(record.opcode, &bytes[record.body.clone()])
+        else {
+            return Ok(None);
+        };
+        if name == THINNED {
+            thinned = Some(kept_as(&parsed));
+            continue;
+        }
+        let Ok((manifest, hash)) = Manifest::from_record(&parsed) else { return Ok(None) };
+        stretches.begin(manifest, hash);
+    }
+    let checkpoint = Checkpoint {
+        at,
+        ordinal: last.first + last.commits - 1,
+        chain_hash: chain_hash.0,
+        library: library(),
+        channels: ledger.channels_described(),
+        stretches,
+        mesh: mesh.as_ref().map(piece).transpose()?,
+        fields: fields.iter().map(piece).collect::<io::Result<_>>()?,
+        thinned,
+        kept_before: kept_before.map(|ordinal| ordinal as usize),
+    };
+    Ok(Some(checkpoint))
 }
 
 /// The record at a place in a log, alone in a buffer.

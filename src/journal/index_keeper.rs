@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::index::{Builder, Head, INDEX_MAGIC, Index, Mark};
 use super::ledger::ChunkPlace;
+use super::reader::open_regular;
 use crate::record::Record;
 use crate::whole_file::WholeFile;
 
@@ -32,6 +33,9 @@ impl IndexKeeper {
 
     /// Creates a keeper for a log that is continued and has an index.
     pub fn behind(path: PathBuf, index: &Index, builder: Builder) -> Option<Self> {
+        if !is_index(&path) {
+            return None;
+        }
         let file = OpenOptions::new().append(true).open(&path).ok()?;
         file.set_len(index.length).ok()?;
         Some(Self { path, builder, waiting: Vec::new(), file: Some(file) })
@@ -74,8 +78,9 @@ fn begin(path: &Path) -> Option<File> {
 /// Whether a file is an index, or a beginning of one.
 pub(super) fn is_index(path: &Path) -> bool {
     let mut start = [0; INDEX_MAGIC.len()];
-    let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
-    path.symlink_metadata().is_ok_and(|metadata| metadata.is_file()) && read.is_ok() && start == *INDEX_MAGIC
+    path.symlink_metadata().is_ok_and(|metadata| metadata.is_file())
+        && open_regular(path).and_then(|mut file| file.read_exact(&mut start)).is_ok()
+        && start == *INDEX_MAGIC
 }
 
 /// An index that is written again or made longer: under a temporary name until it is whole.

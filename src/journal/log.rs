@@ -305,7 +305,7 @@ impl Log {
     }
 
     /// The last stage before stage `index` that has its state.
-    pub(super) fn kept_before(&self, index: usize) -> Option<usize> {
+    pub fn kept_before(&self, index: usize) -> Option<usize> {
         (self.first..index).rev().find(|before| self.keeps_state(*before)).or(self.kept_before)
     }
 

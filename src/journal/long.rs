@@ -93,21 +93,32 @@ impl LongLog {
             None => (None, Ledger::default()),
         };
         let mut builder = Builder::at(index.as_ref().map_or(0, Index::commits));
-        let mut rewritten: Option<Rewritten> = None;
-        let tail = read_in_parts(&file, from, &mut ledger, |log, ledger| {
+        let (mut rewritten, mut is_written): (Option<Rewritten>, bool) = (None, true);
+        let mut tail = read_in_parts(&file, from, &mut ledger, |log, ledger| {
             for entry in log.entries().iter().skip((builder.next() as usize).saturating_sub(log.first())) {
                 let Some(place) = ledger.chunks.get(builder.next() as usize) else { break };
-                if let Some((head, block)) = builder.push(*place, &entry.record, || mark(log, ledger, entry)) {
+                if let Some((head, block)) = builder.push(*place, &entry.record, || mark(log, ledger, entry))
+                    && is_written
+                {
                     let growing = rewritten.take().or_else(|| Rewritten::of(index_path, index.as_ref()));
                     rewritten = growing.and_then(|mut growing| growing.add(head, &block).map(|()| growing));
+                    is_written = rewritten.is_some();
                 }
             }
             Ok(())
         })?;
-        if tail.entries.is_empty() || !(tail.closed || tail.reaches_end()) {
+        // Without room for an index there is nothing to ask.
+        if !is_written || tail.entries.is_empty() || !(tail.closed || tail.reaches_end()) || !tail.is_clean() {
             return Ok(None);
         }
         let index = rewritten.map_or(index, |rewritten| Some(rewritten.done(index_path)));
+        let covered = index.as_ref().map_or(0, Index::commits) as usize;
+        if tail.first() > covered {
+            // What lies between the last block and the last part that was read belongs to the end as well.
+            let from = index.as_ref().map(|index| index.last_checkpoint(&file)).transpose()?.flatten();
+            let length = file.metadata()?.len();
+            tail = Log::read_on(&file, length, from.as_ref(), usize::MAX)?;
+        }
         Ok(Some(Self { file, index, tail, ledger, builder }))
     }
 
@@ -153,10 +164,8 @@ impl LongLog {
         let end = end.unwrap_or(self.tail.base + self.tail.walked as u64);
         let mut from = first;
         let log = loop {
-            let (checkpoint, _) = match &self.index {
-                Some(index) => index.checkpoint_before(&self.file, from)?.unzip(),
-                None => (None, None),
-            };
+            let index = self.index.as_ref();
+            let checkpoint = index.map(|index| index.checkpoint_before(&self.file, from)).transpose()?.flatten();
             let log = Log::read_on(&self.file, end, checkpoint.as_ref(), usize::MAX)?;
             match log.kept_before(first + 1) {
                 kept if kept.unwrap_or(0) < log.first() => from = kept.unwrap_or(0),

@@ -22,10 +22,10 @@ pub struct Thinned {
     pub commits: usize,
     /// Those that have their state.
     pub states: usize,
+    /// Load steps of the log.
+    pub all_steps: BTreeSet<u64>,
     /// Load steps whose last state is kept.
     pub steps: BTreeSet<u64>,
-    /// The last load step of the log.
-    pub last_step: u64,
     /// Length of the log and of the new one, bytes.
     pub bytes: [u64; 2],
 }
@@ -63,15 +63,16 @@ pub enum ThinError {
 /// Where the log cannot be read or is damaged, or the new one exists or cannot be written.
 pub fn thin(path: &Path, new: &Path, kept_as: &str, keeps: impl Fn(u64) -> bool) -> Result<Thinned, ThinError> {
     let mut portions = Portions::of(path)?;
-    let (mut needed, mut states, mut steps, mut last_step) = (HashSet::new(), 0, BTreeSet::new(), 0);
+    let (mut needed, mut states, mut steps, mut all_steps) = (HashSet::new(), 0, BTreeSet::new(), BTreeSet::new());
     let log = loop {
         let portion = portions.read()?;
         for (place, entry) in portion.entries().iter().enumerate() {
-            last_step = entry.record.report.step;
+            let step = entry.record.report.step;
+            all_steps.insert(step);
             if keeps_state(portion.log(), place, &keeps) {
                 needed.insert(entry.mesh_hash);
                 needed.extend(&entry.fields);
-                steps.insert(last_step);
+                steps.insert(step);
                 states += 1;
             }
         }
@@ -106,7 +107,7 @@ pub fn thin(path: &Path, new: &Path, kept_as: &str, keeps: impl Fn(u64) -> bool)
             return Err(ThinError::Changed);
         }
         let bytes = [log.file_len(), thinned.finish(commits)?];
-        return Ok(Thinned { commits, states, steps, last_step, bytes });
+        return Ok(Thinned { commits, states, all_steps, steps, bytes });
     }
 }
 

@@ -67,17 +67,17 @@ fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
     };
     let mut ledger = Ledger::default();
     let (mut found, mut kept) = (Vec::new(), 0);
-    let mut rewriting: Option<Rewriting<_>> = None;
+    let mut rewriting: Option<Result<Rewriting<_>, _>> = None;
     let tail = read_in_parts(&file, None, &mut ledger, |part, _| {
         let last = part.entries.len().saturating_sub(1);
         // The last commit of a part is the first of the next.
         found.extend(states(part, 0..last));
         kept += kept_in(&part.entries[..last]);
-        let written = rewriting.take().map_or_else(|| Rewriting::new(&part.library, &theirs).ok(), Some);
-        rewriting = written.and_then(|mut written| {
+        let written = rewriting.take().unwrap_or_else(|| Rewriting::new(&part.library, &theirs));
+        rewriting = Some(written.and_then(|mut written| {
             let end = part.entries.last().map_or(0, |entry| (entry.bytes.start - part.base) as usize);
-            written.write(part, end).ok().map(|()| written)
-        });
+            written.write(part, end).map(|()| written)
+        }));
         Ok(())
     })?;
     if tail.entries.is_empty() || !(tail.closed || tail.reaches_end()) || !tail.is_clean() {
@@ -87,13 +87,15 @@ fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
     findings.extend(states_kept(&tail, kept + kept_in(&tail.entries[tail.entries.len() - 1..])));
     findings.extend(found);
     findings.extend(states(&tail, tail.entries.len() - 1..tail.entries.len()));
-    if let (true, Some(mut rewriting)) = (tail.problems().is_empty(), rewriting) {
+    if let (true, Some(rewriting)) = (tail.problems().is_empty(), rewriting) {
         let last = tail.entries.last().map_or(0, |entry| (entry.bytes.start - tail.base) as usize);
         let rest = tail.parts.iter().filter(|place| place.at >= last).copied().collect();
         let rest = Log { parts: rest, ..tail };
-        let outcome = rewriting.write(&rest, usize::MAX);
-        findings
-            .extend(outcome.map_or_else(|error| Some(not_written(&error)), |()| rewriting.end(&rest).map(other_byte)));
+        let outcome = rewriting.and_then(|mut rewriting| {
+            rewriting.write(&rest, usize::MAX)?;
+            Ok(rewriting.end(&rest).map(other_byte))
+        });
+        findings.extend(outcome.unwrap_or_else(|error| Some(not_written(&error))));
     }
     Ok(Some(findings))
 }

@@ -14,7 +14,7 @@ use super::index_keeper::IndexKeeper;
 use super::lock::{LockError, LogLock};
 use super::log::Log;
 use super::manifest::Manifest;
-use super::reader::ReadError;
+use super::reader::{ReadError, open_regular};
 use super::still_ours::Estranged;
 use crate::record::{Commit, Record, Sink, SinkError};
 use crate::scene::SyncPolicy;
@@ -372,8 +372,10 @@ impl JournalWriter {
             self.backend.append(&piece)
         });
         if let Err(source) = closed {
-            let _ = self.backend.cut(length);
-            return Err(self.io_error("write", self.length - length, source));
+            let appended = self.length - length;
+            self.length = length;
+            self.take_back(appended);
+            return Err(self.io_error("write", appended, source));
         }
         self.backend.sync().map_err(|source| self.io_error("sync", 0, source))?;
         self.check()
@@ -494,6 +496,6 @@ impl Sink for JournalWriter {
 /// Whether a file begins as MCAP files do.
 fn is_log(path: &Path) -> bool {
     let mut head = [0; mcap::MAGIC.len()];
-    let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
+    let read = open_regular(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
     read.is_ok() && head == *mcap::MAGIC
 }

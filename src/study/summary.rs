@@ -139,9 +139,13 @@ impl EnergyBalance {
     /// Work that has gone nowhere, relative to the largest energy that took part: a shell that is unloaded again stores none,
     /// and one that takes its natural shape neither stores any nor takes work.
     pub fn off(&self) -> f64 {
-        let stored = self.accounted_n_mm();
-        let energies = [self.largest_energy_n_mm, self.put_in_n_mm, stored.abs(), self.work_n_mm.abs()];
-        (self.work_n_mm - stored) / energies.into_iter().fold(0.0, f64::max)
+        (self.work_n_mm - self.accounted_n_mm()) / self.measure_n_mm()
+    }
+
+    /// The largest energy that took part, N·mm.
+    pub fn measure_n_mm(&self) -> f64 {
+        let energies = [self.largest_energy_n_mm, self.put_in_n_mm, self.accounted_n_mm().abs(), self.work_n_mm.abs()];
+        energies.into_iter().fold(0.0, f64::max)
     }
 }
 

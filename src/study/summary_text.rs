@@ -102,13 +102,18 @@ impl Summary {
         }
         self.write_passed(f)?;
         let Some(balance) = self.balance else { return Ok(()) };
+        let (measure, larger) = (balance.measure_n_mm(), balance.work_n_mm.abs().max(balance.accounted_n_mm().abs()));
+        let measured_by = match measure > 1.01 * larger {
+            true => format!(" of the {} N·mm that took part", reading(measure, 6).trim()),
+            false => String::new(),
+        };
         let workers = match balance.put_in_n_mm {
             0.0 => "loads and given motions",
             _ => "loads, given motions and the natural state",
         };
         writeln!(
             f,
-            "  {:<17}  {:>14} N·mm of {workers}, strain energy {}: {} %",
+            "  {:<17}  {:>14} N·mm of {workers}, strain energy {}: {} %{measured_by}",
             "work",
             reading(balance.work_n_mm, 6),
             reading(balance.accounted_n_mm(), 6),

@@ -57,6 +57,22 @@ fn each_is_consistent_in_itself() {
             assert!((found / exact - 1.0).abs() < 1e-6, "{term:?}: {found} {exact}");
             stored += 1;
         }
+        // Where the shell does not move: forces by the parameter, and what that puts in.
+        let later = |parameter: f64| At { parameter, ..at(&here) };
+        let mut rates = vec![[0.0; 3]; count];
+        term.add_rates(at(&here), &mut rates);
+        let (ahead, behind) = (forces_of(term, later(PARAMETER + step)), forces_of(term, later(PARAMETER - step)));
+        let off = rates
+            .iter()
+            .zip(ahead.iter().zip(&behind))
+            .flat_map(|(rate, (ahead, behind))| [0, 1, 2].map(|c| (slope(ahead[c], behind[c]) - rate[c]).abs()));
+        let size = rates.as_flattened().iter().fold(0.0, |most: f64, rate| most.max(rate.abs()));
+        assert!(size > 0.0 && off.fold(0.0, f64::max) < 1e-6 * size, "{term:?}");
+        let put_in = term.put_in(at(&here), 0.9);
+        assert!(
+            (put_in - (term.energy(later(0.9)) - term.energy(at(&here)))).abs() <= 1e-12 * put_in.abs(),
+            "{term:?}"
+        );
         if term.has_tangent() {
             let change: Field = forces_of(term, at(&plus))
                 .iter()
