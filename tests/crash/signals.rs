@@ -102,6 +102,14 @@ fn signals_that_come_again_and_one_that_is_ignored() {
     assert_ends_with(&place.log("run.mcap"), whole.chain, "the terminal is closed and nohup was asked for");
 }
 
+/// Processor time that a process has taken, of hundredths of seconds.
+fn on_cpu(process: u32) -> Duration {
+    let told = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    let after_name = told.rsplit(')').next().unwrap_or_default();
+    let ticks = after_name.split_whitespace().skip(11).take(2).filter_map(|ticks| ticks.parse::<u64>().ok());
+    Duration::from_millis(10 * ticks.sum::<u64>())
+}
+
 /// A stage that takes minutes: the first signal waits for it, the second does not.
 #[test]
 fn the_second_signal_ends_at_once() {
@@ -115,7 +123,10 @@ fn the_second_signal_ends_at_once() {
         assert!(began.elapsed() < Duration::from_secs(20), "no log");
         std::thread::sleep(Duration::from_millis(5));
     }
-    std::thread::sleep(Duration::from_millis(200));
+    // In the middle of the first stage, however slow the machine is.
+    while on_cpu(run.child.id()) < Duration::from_secs(1) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
     run.send("TERM");
     std::thread::sleep(Duration::from_millis(300));
     let mut run = run;
