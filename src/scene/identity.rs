@@ -9,8 +9,8 @@ use serde_json::Value;
 
 use super::data::Scene;
 use super::difference::{Difference, of_tables};
-use super::key_table::KEYS;
-use super::keys::Reach;
+use super::key_table::{SECTIONS, keys};
+use super::keys::{Reach, Section};
 
 /// Where the path of a value in [`Scene`] is not the key of the scene file.
 const RENAMED: [(&str, &str); 3] = [
@@ -87,14 +87,10 @@ fn collect(path: &str, value: Value, leaves: &mut BTreeMap<String, Value>) {
     }
 }
 
+/// How far a change of a value reaches; the whole of an array of tables as far as any of its keys.
 fn reach(path: &str) -> Reach {
-    // Keys of tables that depend on their kind: the table of keys does not hold them.
-    match path {
-        "load.factor" | "probes" => return Reach::Free,
-        "load.increment" | "load.longest_increment" | "load.least_increment" | "load.snap_tolerance" => {
-            return Reach::Steps;
-        }
-        _ => {}
-    }
-    KEYS.iter().find(|key| key.path() == path).map_or(Reach::Everything, |key| key.reach)
+    let array =
+        path.strip_suffix('s').and_then(|name| SECTIONS.iter().find(|section| section.many && section.name == name));
+    let key = || keys().find(|key| key.path() == path).map(|key| key.reach);
+    array.map(Section::reach).or_else(key).unwrap_or(Reach::Everything)
 }

@@ -1,61 +1,40 @@
 //! A scene as TOML.
 
-use std::collections::BTreeMap;
-
 use serde_json::Value;
 
-use super::data::{Geometry, Load, Material, Scene};
-use super::key_table::{KEYS, SECTIONS};
-use super::keys::{Kind, toml_float};
-use super::write_general;
+use super::data::{Load, Scene};
+use super::key_table::SECTIONS;
+use super::keys::{Key, toml_float};
+use super::write_arrays;
 
 impl Scene {
     /// The scene as TOML, every key spelled out; parsing it gives the same scene.
     pub fn to_toml(&self) -> String {
         let leaves = self.leaves();
         let mut text = String::new();
-        for section in &SECTIONS {
-            let lines: String = KEYS
-                .iter()
-                .filter(|key| key.section == section.name)
-                .filter_map(|key| {
-                    let value = match (leaves.get(&key.path()), &key.kind) {
-                        (Some(value), _) => toml(value),
-                        // The first kind of a load is not kept in the scene; the others are written elsewhere.
-                        (None, Kind::Word([first, ..])) if key.name == "kind" => format!("\"{}\"", first.word),
-                        (None, _) => return None,
-                    };
-                    Some(format!("{} = {value}\n", key.name))
-                })
-                .collect();
-            let lines = general_lines(self, section.name, &leaves).unwrap_or(lines);
-            if !lines.is_empty() {
+        for section in SECTIONS.iter().filter(|section| !section.many) {
+            // The kind of a load is not kept in the scene.
+            let load = section.name == "load";
+            let kind = match &self.load {
+                Load::EndRotation(_) if load => "end-rotation",
+                Load::Steps(_) if load => "steps",
+                _ => leaves.get(&format!("{}.kind", section.name)).and_then(Value::as_str).unwrap_or_default(),
+            };
+            let line = |key: &Key| {
+                let value =
+                    leaves.get(&key.path()).map(toml).or((load && key.name == "kind").then(|| format!("\"{kind}\"")));
+                value.map(|value| format!("{} = {value}\n", key.name))
+            };
+            let lines: String = section.keys_of(Some(kind)).filter_map(line).collect();
+            // [symmetry] belongs to turning ends alone.
+            let is_used = section.name != "symmetry" || self.end_rotation().is_some();
+            if !lines.is_empty() && is_used {
                 let gap = if text.is_empty() { "" } else { "\n" };
                 text.push_str(&format!("{gap}[{}]\n{lines}", section.name));
             }
         }
-        text + &write_general::arrays(self)
+        text + &write_arrays::arrays(self)
     }
-}
-
-/// Lines of a section whose keys depend on its kind; `None` where the table of keys knows them.
-fn general_lines(scene: &Scene, section: &str, leaves: &BTreeMap<String, Value>) -> Option<String> {
-    let general = match section {
-        "geometry" => !matches!(scene.geometry, Geometry::TapeSpring { .. }),
-        "material" => !matches!(scene.material, Material::Isotropic { .. }),
-        "load" => matches!(scene.load, Load::Steps(_)),
-        // [symmetry] belongs to turning ends alone.
-        "symmetry" => return matches!(scene.load, Load::Steps(_)).then(String::new),
-        _ => false,
-    };
-    if !general {
-        return None;
-    }
-    let prefix = format!("{section}.");
-    let own = leaves.iter().filter_map(|(path, value)| Some((path.strip_prefix(&prefix)?, value)));
-    let lines = own.filter(|(name, _)| *name != "plies").map(|(name, value)| format!("{name} = {}\n", toml(value)));
-    let kind = if section == "load" { "kind = \"steps\"\n" } else { "" };
-    Some(kind.to_owned() + &lines.collect::<String>())
 }
 
 fn toml(value: &Value) -> String {
