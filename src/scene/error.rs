@@ -14,12 +14,12 @@ const MOST_SHOWN: usize = 10;
 #[derive(Clone, PartialEq)]
 pub struct SceneError {
     /// At least one.
-    faults: Vec<Box<Fault>>,
+    faults: Vec<Fault>,
     sources: Vec<Source>,
 }
 
 impl SceneError {
-    pub(super) fn new(faults: Vec<Box<Fault>>, sources: Vec<Source>) -> Self {
+    pub(super) fn new(faults: Vec<Fault>, sources: Vec<Source>) -> Self {
         Self { faults, sources }
     }
 

@@ -54,7 +54,7 @@ impl Fault {
 pub(super) type Checked<T> = Result<T, Box<Fault>>;
 
 /// A value, or all that is wrong with it.
-pub(super) type CheckedWhole<T> = Result<T, Vec<Box<Fault>>>;
+pub(super) type CheckedWhole<T> = Result<T, Vec<Fault>>;
 
 /// A text that a scene is read from: the file, or a setting.
 #[derive(Clone, Debug, PartialEq)]

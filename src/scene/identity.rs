@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::data::Scene;
 use super::difference::{Difference, of_tables};
-use super::key_table::{SECTIONS, keys};
+use super::key_table::SECTIONS;
 use super::keys::{Reach, Section};
 
 /// Where the path of a value in [`Scene`] is not the key of the scene file.
@@ -37,7 +37,7 @@ impl Scene {
         };
         feed(DOMAIN);
         for (path, value) in self.leaves() {
-            if reach(&path) != Reach::Free {
+            if reach(SECTIONS, &path) != Reach::Free {
                 feed(&path);
                 feed(&value.to_string());
             }
@@ -56,7 +56,8 @@ impl Scene {
             let (a, b) = (a.get(&path), b.get(&path));
             let in_tables = of_tables(&path, a, b).filter(|found| !found.is_empty());
             // Tables in another order differ as a list.
-            let whole = || vec![Difference { a: a.cloned(), b: b.cloned(), reach: reach(&path), path: path.clone() }];
+            let whole =
+                || vec![Difference { a: a.cloned(), b: b.cloned(), reach: reach(SECTIONS, &path), path: path.clone() }];
             in_tables.unwrap_or_else(whole)
         };
         paths.into_iter().flat_map(of_path).collect()
@@ -88,9 +89,8 @@ fn collect(path: &str, value: Value, leaves: &mut BTreeMap<String, Value>) {
 }
 
 /// How far a change of a value reaches; the whole of an array of tables as far as any of its keys.
-fn reach(path: &str) -> Reach {
-    let array =
-        path.strip_suffix('s').and_then(|name| SECTIONS.iter().find(|section| section.many && section.name == name));
-    let key = || keys().find(|key| key.path() == path).map(|key| key.reach);
+pub(super) fn reach(sections: &'static [Section], path: &str) -> Reach {
+    let array = path.strip_suffix('s').and_then(|name| sections.iter().find(|it| it.many && it.name == name));
+    let key = || sections.iter().flat_map(|section| section.keys).find(|key| key.path() == path).map(|key| key.reach);
     array.map(Section::reach).or_else(key).unwrap_or(Reach::Everything)
 }

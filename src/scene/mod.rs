@@ -44,6 +44,8 @@ mod meant;
 mod names;
 mod nearest;
 mod nearness;
+#[cfg(test)]
+mod new_key;
 mod nurbs;
 mod places;
 mod probes;

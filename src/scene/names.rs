@@ -13,12 +13,12 @@ use super::problem::Problem;
 use super::value::{as_float, value_type};
 
 /// All wrong names, in the order of the text.
-pub(super) fn check(document: &Document<'_>) -> Vec<Box<Fault>> {
-    let strays = document.strays.iter().map(|entry| stray(document, entry));
+pub(super) fn check(document: &Document<'_>) -> Vec<Fault> {
+    let strays = document.strays.iter().map(|entry| *stray(document, entry));
     let tables = document.tables.iter().flat_map(|table| match document.section(&table.name) {
         Some(section) if section.many == table.number.is_some() => in_table(document, section, table),
-        Some(section) => vec![in_single_brackets(section, &table.place)],
-        None => vec![unknown_section(document, table)],
+        Some(section) => vec![*in_single_brackets(section, &table.place)],
+        None => vec![*unknown_section(document, table)],
     });
     let mut faults: Vec<_> = strays.chain(tables).collect();
     faults.sort_by_key(|fault| (fault.place.source, fault.place.span.start));
@@ -54,7 +54,7 @@ fn stray(document: &Document<'_>, entry: &Entry<'_>) -> Box<Fault> {
 }
 
 /// Wrong names in a table: all of them, but of keys that belong to another kind the first.
-fn in_table(document: &Document<'_>, section: &'static Section, table: &Written<'_>) -> Vec<Box<Fault>> {
+fn in_table(document: &Document<'_>, section: &'static Section, table: &Written<'_>) -> Vec<Fault> {
     let kind = section.kind_key().and_then(|key| {
         let word = table.entry(key.name)?.value.get_ref().as_str()?;
         key.words().find(|known| *known == word)
@@ -65,7 +65,7 @@ fn in_table(document: &Document<'_>, section: &'static Section, table: &Written<
         let is_another = matches!(fault.problem, Problem::OfOtherKind { .. });
         let is_told = is_another && of_other_kind;
         of_other_kind |= is_another;
-        (!is_told).then(|| fault.in_item(section.many.then(|| table.title())))
+        (!is_told).then(|| *fault.in_item(section.many.then(|| table.title())))
     });
     wrong.collect()
 }

@@ -55,7 +55,7 @@ fn of_kind(section: &Section, kind: Option<&Choice>) -> Value {
         table["title"] = json!(choice.word);
     }
     table["properties"] = Value::Object(properties);
-    let rules: Vec<Value> = keys().flat_map(|key| rules(key)).collect();
+    let rules: Vec<Value> = keys().flat_map(rules).collect();
     if !rules.is_empty() {
         table["allOf"] = json!(rules);
     }

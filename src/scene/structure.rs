@@ -17,13 +17,13 @@ pub(super) fn structure(tables: &Tables, load: &Load, shell: (&Geometry, &Materi
     if !faults.is_empty() {
         return Err(faults);
     }
-    check(tables, load, shell.1, (&supports, &actions, &probes)).map_err(|fault| vec![fault])?;
+    check(tables, load, shell.1, (&supports, &actions, &probes)).map_err(|fault| vec![*fault])?;
     Ok((supports, actions, probes))
 }
 
 /// All values, or what is wrong with them.
-fn all<T>(read: impl Iterator<Item = Checked<T>>, faults: &mut Vec<Box<Fault>>) -> Vec<T> {
-    read.filter_map(|value| value.map_err(|fault| faults.push(fault)).ok()).collect()
+fn all<T>(read: impl Iterator<Item = Checked<T>>, faults: &mut Vec<Fault>) -> Vec<T> {
+    read.filter_map(|value| value.map_err(|fault| faults.push(*fault)).ok()).collect()
 }
 
 fn check(

@@ -36,7 +36,7 @@ impl Table {
         document: &Document<'_>,
         section: &'static Section,
         written: Option<&Written<'_>>,
-        wrong_names: &[Box<Fault>],
+        wrong_names: &[Fault],
     ) -> CheckedWhole<Self> {
         let mut table = Self {
             section,
@@ -52,10 +52,9 @@ impl Table {
             Ok(()) => true,
             Err(fault) => {
                 let fault = fault.in_item(section.many.then(|| table.title.clone()));
-                let means_it =
-                    |wrong: &Box<Fault>| wrong.item == fault.item && wrong.problem.meant() == Some(key.path());
+                let means_it = |wrong: &Fault| wrong.item == fault.item && wrong.problem.meant() == Some(key.path());
                 let is_told = matches!(fault.problem, Problem::MissingKey { .. }) && wrong_names.iter().any(means_it);
-                faults.extend((!is_told).then_some(fault));
+                faults.extend((!is_told).then_some(*fault));
                 false
             }
         };

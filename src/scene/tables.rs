@@ -16,7 +16,7 @@ impl Tables {
         let wrong_names = names::check(document);
         let is_told = |name: &str| wrong_names.iter().any(|fault| fault.problem.meant().as_deref() == Some(name));
         // Of a table that is most likely of another kind nothing can be said.
-        let of_other_kind = |fault: &&Box<Fault>| matches!(fault.problem, Problem::OfOtherKind { .. });
+        let of_other_kind = |fault: &&Fault| matches!(fault.problem, Problem::OfOtherKind { .. });
         let unread: Vec<&Place> = wrong_names.iter().filter(of_other_kind).map(|fault| &fault.place).collect();
         let is_read = |table: &&Written<'_>| !table.entries.iter().any(|entry| unread.contains(&&entry.place));
         let (mut tables, mut faults) = (Vec::new(), Vec::new());
@@ -30,7 +30,7 @@ impl Tables {
                 let tables = written().filter(is_read).filter(|table| section.many == table.number.is_some());
                 tables.for_each(|table| keep(Table::read(document, section, Some(table), &wrong_names)));
             } else if section.required {
-                keep(if is_told(section.name) { Err(vec![]) } else { Err(vec![missing_section(document, section)]) });
+                keep(if is_told(section.name) { Err(vec![]) } else { Err(vec![*missing_section(document, section)]) });
             } else if !section.many {
                 keep(Table::read(document, section, None, &wrong_names));
             }

@@ -5,6 +5,9 @@ use proptest::prelude::*;
 
 const RIGHT: &str = include_str!("../../pipelines/baseline-quarter.toml");
 
+/// A scene with supports, actions and probes of its own.
+const PLATE: &str = include_str!("../../src/scene/structure_example.toml");
+
 fn right() -> Scene {
     parse(RIGHT, "baseline-quarter.toml").unwrap()
 }
@@ -38,6 +41,16 @@ fn any_value() -> impl Strategy<Value = String> {
     ]
 }
 
+/// A name of a key, or a word that one takes.
+fn any_word() -> impl Strategy<Value = &'static str> {
+    let of_key = |key: &'static Key| {
+        let choices = if let Kind::Word(choices) = key.kind { choices } else { &[] };
+        choices.iter().map(|choice| choice.word).chain([key.name])
+    };
+    let words: Vec<&str> = SECTIONS.iter().flat_map(|section| section.keys).flat_map(of_key).collect();
+    prop::sample::select(words)
+}
+
 fn any_key() -> impl Strategy<Value = &'static Key> {
     (0..keys().len()).prop_map(|index| keys()[index])
 }
@@ -60,6 +73,23 @@ proptest! {
         let end = (at + length).min(RIGHT.len());
         prop_assume!(RIGHT.is_char_boundary(at) && RIGHT.is_char_boundary(end));
         is_handled(&format!("{}{piece}{}", &RIGHT[..at], &RIGHT[end..]), &[]);
+    }
+
+    #[test]
+    fn a_scene_of_supports_and_actions_with_pieces_replaced_is_handled(
+        at in 0..PLATE.len(),
+        length in 0usize..40,
+        piece in "\\PC{0,6}|[\\x00-\\x7f]{0,6}",
+        word in any_word(),
+        other in any_word(),
+        value in any_value(),
+    ) {
+        let end = (at + length).min(PLATE.len());
+        prop_assume!(PLATE.is_char_boundary(at) && PLATE.is_char_boundary(end));
+        is_handled(&format!("{}{piece}{}", &PLATE[..at], &PLATE[end..]), &[]);
+        is_handled(&PLATE.replace(word, other), &[]);
+        is_handled(&PLATE.replacen(&format!("{word}\""), &format!("{other}\""), 1), &[]);
+        is_handled(&PLATE.replace(&format!("{word} = "), &format!("{word} = {value}\n# ")), &[]);
     }
 
     #[test]
