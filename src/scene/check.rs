@@ -299,7 +299,7 @@ fn between(problem: Problem, first: Option<Place>, second: Option<Place>, table:
 mod tests {
     use super::*;
     use crate::scene::help::example_scene;
-    use crate::scene::{Key, Kind, Presence, keys};
+    use crate::scene::{Key, Presence, keys};
 
     #[test]
     fn every_key_stands_in_a_section_of_the_table_and_ends_in_its_unit() {

@@ -19,7 +19,7 @@
 //! | `problem`, `fault` | what can be wrong, and where it stands |
 //! | `explain`, `render`, `error` | that in words, with the text underlined, as callers see it |
 //! | `identity`, `difference` | hash and differences of scenes; how a difference is shown |
-//! | `write`, `write_arrays` | a scene as TOML |
+//! | `write` | a scene as TOML |
 //! | `help`, `schema` | the help text; a schema for editors |
 
 mod actions;
@@ -61,7 +61,6 @@ mod table;
 mod tables;
 mod value;
 mod write;
-mod write_arrays;
 
 pub use check::{parse, parse_with_settings};
 pub use data::{
