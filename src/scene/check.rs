@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::data::{
-    Adapt, ArcLength, EndRotation, Expectation, Geometry, LengthLimit, Load, LoadSteps, Material, MeshSpec, Output,
-    Scene, Solver, Stage, Symmetry,
+    Adapt, ArcLength, EndRotation, Geometry, LengthLimit, Load, LoadSteps, Material, MeshSpec, Scene, Solver, Stage,
+    Symmetry,
 };
 use super::document::Document;
 use super::error::SceneError;
-use super::fault::{Checked, CheckedWhole, Fault, Place, Source};
+use super::fault::{Checked, CheckedWhole, Fault, Faults, Place, Source};
 use super::key_table::SECTIONS;
 use super::problem::{Direction, Problem};
 use super::structure::structure;
@@ -20,6 +20,11 @@ use crate::units::significant;
 /// Length of the layer in which a cylinder feels its held end, in units of sqrt(R t): pi decay lengths of
 /// sqrt(R t)/(3(1 - nu^2))^(1/4), after which 4 % are left (Timoshenko & Woinowsky-Krieger, section 114), at nu = 0.3.
 const BOUNDARY_LAYER: f64 = 2.4;
+
+/// The kind of geometry whose ends turn.
+const TAPE_SPRING: &str = "tape-spring";
+/// Kinds of geometry without curvature.
+const FLAT: [&str; 2] = ["plate", "annulus"];
 
 /// Reads a scene from TOML. `file_name` is only what errors call the text.
 ///
@@ -46,20 +51,29 @@ pub fn parse_with_settings<S: AsRef<str>>(text: &str, file_name: &str, settings:
 }
 
 fn scene(tables: &Tables, folder: &Path) -> CheckedWhole<Scene> {
-    let alone = |fault: Box<Fault>| vec![*fault];
-    let geometry = geometries::geometry(tables.one("geometry"), folder).map_err(alone)?;
-    let material = material(tables, &geometry).map_err(alone)?;
-    let (mesh, symmetry) = mesh(tables).map_err(alone)?;
-    let load = load(tables.one("load"), &geometry).map_err(alone)?;
-    check_length(tables.one("geometry"), &geometry, &material, &load).map_err(alone)?;
-    let (supports, actions, probes) = structure(tables, &load, (&geometry, &material))?;
+    let mut faults = Faults::default();
+    let geometry = faults.keep(geometries::geometry(tables.one("geometry"), folder));
+    let material = faults.keep(material(tables));
+    let mesh = faults.keep(mesh(tables));
+    let load = faults.keep(load(tables));
     let pipeline = stages(tables);
-    let adapt = adapt(tables, &pipeline, &geometry).map_err(alone)?;
-    let solver = solver(tables, &load).map_err(alone)?;
-    let continuation = continuation(tables, &load).map_err(alone)?;
-    let output: Output = tables.one("output").data();
-    let expect = Some(tables.one("expect")).filter(|table| table.is_given).map(Table::data::<Expectation>);
-    Ok(Scene {
+    let adapt = faults.keep(adapt(tables, &pipeline));
+    let (Some(geometry), Some(material), Some((mesh, symmetry)), Some(load), Some(adapt)) =
+        (geometry, material, mesh, load, adapt)
+    else {
+        return Err(faults.0);
+    };
+    faults.keep(check_length(tables.one("geometry"), &geometry, &material, &load));
+    let solver = faults.keep(solver(tables, &load));
+    let continuation = faults.keep(continuation(tables, &load));
+    let structure = structure(tables, &load, (&geometry, &material), &mut faults);
+    let (Some(solver), Some(continuation), Some((supports, actions, probes))) = (solver, continuation, structure)
+    else {
+        return Err(faults.0);
+    };
+    let output = tables.one("output").data();
+    let expect = Some(tables.one("expect")).filter(|table| table.is_given).map(Table::data);
+    faults.or(Scene {
         geometry,
         material,
         mesh,
@@ -97,7 +111,7 @@ fn check_length(table: &Table, geometry: &Geometry, material: &Material, load: &
     Err(table.wrong_at("length_mm", problem, remedy))
 }
 
-fn material(tables: &Tables, geometry: &Geometry) -> Checked<Material> {
+fn material(tables: &Tables) -> Checked<Material> {
     let table = tables.one("material");
     let material = materials::material(table, tables.all("ply").collect())?;
     let thickness_mm = material.thickness_mm();
@@ -111,21 +125,14 @@ fn material(tables: &Tables, geometry: &Geometry) -> Checked<Material> {
             "half the thickness puts it on top; where the shell lies farther off, draw the geometry nearer to it";
         return Err(table.wrong_at("offset_mm", problem, remedy));
     }
-    if let Some(radius_mm) = radius(geometry).filter(|radius| thickness_mm >= *radius) {
+    let geometry = tables.one("geometry");
+    let radius_mm: Option<f64> = geometry.get("radius_mm");
+    if let Some(radius_mm) = radius_mm.filter(|radius_mm| thickness_mm >= *radius_mm) {
         let thickness = table.place_of("thickness_mm").or(Some(table.place.clone()));
-        let radius = tables.one("geometry").place_of("radius_mm");
-        return Err(between(Problem::NotThin { thickness_mm, radius_mm }, thickness, radius, table));
+        let problem = Problem::NotThin { thickness_mm, radius_mm };
+        return Err(between(problem, thickness, geometry.place_of("radius_mm"), table));
     }
     Ok(material)
-}
-
-fn radius(geometry: &Geometry) -> Option<f64> {
-    match geometry {
-        Geometry::TapeSpring { radius_mm, .. }
-        | Geometry::CylinderPanel { radius_mm, .. }
-        | Geometry::SphereZone { radius_mm, .. } => Some(*radius_mm),
-        Geometry::Plate { .. } | Geometry::Annulus { .. } | Geometry::Nurbs(_) => None,
-    }
 }
 
 fn mesh(tables: &Tables) -> Checked<(MeshSpec, Symmetry)> {
@@ -146,11 +153,12 @@ fn mesh(tables: &Tables) -> Checked<(MeshSpec, Symmetry)> {
     Ok((mesh, symmetry))
 }
 
-fn load(table: &Table, geometry: &Geometry) -> Checked<Load> {
+fn load(tables: &Tables) -> Checked<Load> {
+    let table = tables.one("load");
     if table.kind() == "steps" {
         return steps(table).map(Load::Steps);
     }
-    if !matches!(geometry, Geometry::TapeSpring { .. }) {
+    if tables.one("geometry").kind() != TAPE_SPRING {
         return Err(table.wrong_at(
             "kind",
             "only a tape spring has ends that turn",
@@ -206,23 +214,23 @@ fn one_or_pair(table: &Table, name: &str) -> Option<[f64; 2]> {
     Some(value.as_f64().map_or_else(|| table.get(name), |both| [both; 2]))
 }
 
-fn adapt(tables: &Tables, pipeline: &[Stage], geometry: &Geometry) -> Checked<Option<Adapt>> {
+fn adapt(tables: &Tables, pipeline: &[Stage]) -> Checked<Option<Adapt>> {
     let table = tables.one("adapt");
     if !pipeline.contains(&Stage::EvaluateIndicators) {
         let stages = tables.one("pipeline").place_of("stages");
         let unused = Fault::new(Problem::AdaptUnused, &table.place).also(stages.as_ref());
         return if table.is_given { Err(unused) } else { Ok(None) };
     }
+    let geometry = tables.one("geometry").kind();
     let default = match geometry {
-        Geometry::TapeSpring { .. } => LengthLimit::SqrtRadiusThickness,
+        TAPE_SPRING => LengthLimit::SqrtRadiusThickness,
         _ => LengthLimit::HalfDecayLength,
     };
     let length_limit = match one_or_pair(table, "length_limit_mm") {
         Some(lengths_mm) => LengthLimit::Millimetres(lengths_mm),
         None => table.get::<Option<_>>("length_limit").unwrap_or(default),
     };
-    let flat = matches!(geometry, Geometry::Plate { .. } | Geometry::Annulus { .. });
-    if flat && length_limit == LengthLimit::SqrtRadiusThickness {
+    if FLAT.contains(&geometry) && length_limit == LengthLimit::SqrtRadiusThickness {
         return Err(table.wrong(
             None,
             "a flat shell has no radius to limit the elements by",

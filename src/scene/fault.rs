@@ -56,6 +56,22 @@ pub(super) type Checked<T> = Result<T, Box<Fault>>;
 /// A value, or all that is wrong with it.
 pub(super) type CheckedWhole<T> = Result<T, Vec<Fault>>;
 
+/// All that is wrong, as it is found.
+#[derive(Default)]
+pub(super) struct Faults(pub Vec<Fault>);
+
+impl Faults {
+    /// The value, or `None` and one fault more.
+    pub fn keep<T>(&mut self, checked: Checked<T>) -> Option<T> {
+        checked.map_err(|fault| self.0.push(*fault)).ok()
+    }
+
+    /// The value, if nothing is wrong.
+    pub fn or<T>(self, value: T) -> CheckedWhole<T> {
+        if self.0.is_empty() { Ok(value) } else { Err(self.0) }
+    }
+}
+
 /// A text that a scene is read from: the file, or a setting.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Source {

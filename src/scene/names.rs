@@ -59,9 +59,10 @@ fn in_table(document: &Document<'_>, section: &'static Section, table: &Written<
         let word = table.entry(key.name)?.value.get_ref().as_str()?;
         key.words().find(|known| *known == word)
     });
+    let names = Names { sections: document.sections, section, kind, table };
     let mut of_other_kind = false;
     let wrong = table.entries.iter().filter_map(|entry| {
-        let fault = in_entry(document, section, kind, table, entry)?;
+        let fault = names.wrong(entry)?;
         let is_another = matches!(fault.problem, Problem::OfOtherKind { .. });
         let is_told = is_another && of_other_kind;
         of_other_kind |= is_another;
@@ -70,52 +71,71 @@ fn in_table(document: &Document<'_>, section: &'static Section, table: &Written<
     wrong.collect()
 }
 
-fn in_entry(
-    document: &Document<'_>,
+/// The names in a table.
+struct Names<'d, 't> {
+    sections: &'static [Section],
     section: &'static Section,
+    /// The kind of the table, where it has one that is known.
     kind: Option<&'static str>,
-    table: &Written<'_>,
-    entry: &Entry<'_>,
-) -> Option<Box<Fault>> {
-    let found = &*entry.name;
-    let here = || section.keys_of(kind);
-    if here().any(|key| key.name == found) {
-        return None;
+    table: &'d Written<'t>,
+}
+
+impl Names<'_, '_> {
+    /// What is wrong with the name of an entry.
+    fn wrong(&self, entry: &Entry<'_>) -> Option<Box<Fault>> {
+        if self.here().any(|key| key.name == entry.name) {
+            return None;
+        }
+        let same = self.section.keys.iter().filter(|key| key.name == entry.name);
+        let kinds: Vec<&str> = same.flat_map(|key| key.kinds).copied().collect();
+        Some(match self.kind {
+            Some(here) if !kinds.is_empty() => self.of_other_kind(entry, kinds, here),
+            _ => self.unknown(entry),
+        })
     }
-    // A setting takes the place of what is given; a line of the file does not.
-    let given = |key: &Key| entry.place.source == 0 && table.entry(key.name).is_some();
-    let kinds: Vec<&str> =
-        section.keys.iter().filter(|key| key.name == found).flat_map(|key| key.kinds).copied().collect();
-    if let (Some(here_is), false) = (kind, kinds.is_empty()) {
-        let meant = near(found, here().filter(|key| !given(key)));
-        let fault = Fault::new(
-            Problem::OfOtherKind { section, found: found.into(), kinds, here: here_is, meant },
-            &entry.place,
-        );
-        let fault = fault.also(table.entry("kind").map(Entry::value_place).as_ref());
-        return Some(match meant {
+
+    /// The keys that may stand here.
+    fn here(&self) -> impl Iterator<Item = &'static Key> + Clone + use<'_> {
+        self.section.keys_of(self.kind)
+    }
+
+    /// Whether a key is given beside an entry. A setting takes the place of what is given; a line of the file does not.
+    fn is_given(&self, key: &Key, entry: &Entry<'_>) -> bool {
+        entry.place.source == 0 && self.table.entry(key.name).is_some()
+    }
+
+    fn of_other_kind(&self, entry: &Entry<'_>, kinds: Vec<&'static str>, here: &'static str) -> Box<Fault> {
+        let meant = near(&entry.name, self.here().filter(|key| !self.is_given(key, entry)));
+        let problem = Problem::OfOtherKind { section: self.section, found: entry.name.clone(), kinds, here, meant };
+        let fault = Fault::new(problem, &entry.place).also(self.table.entry("kind").map(Entry::value_place).as_ref());
+        match meant {
             Some(key) => fault.edit(&entry.place, key.name),
             None => fault,
-        });
+        }
     }
-    let single = document.sections.iter().filter(|other| !other.many && other.name != section.name);
-    let elsewhere = single.flat_map(|other| other.keys).find(|key| key.name == found && key.name != "kind");
-    if elsewhere.is_none()
-        && let Some((key, unit)) = here().find_map(|key| Some((key, other_unit(key, found)?)))
-    {
-        let fault = in_other_unit(entry, key, unit);
-        return Some(if given(key) { fault.unmended() } else { fault });
+
+    fn unknown(&self, entry: &Entry<'_>) -> Box<Fault> {
+        let found = &*entry.name;
+        let others = self.sections.iter().filter(|other| !other.many && other.name != self.section.name);
+        let elsewhere = others.flat_map(|other| other.keys).find(|key| key.name == found && key.name != "kind");
+        let in_unit = || self.here().find_map(|key| Some((key, other_unit(key, found)?)));
+        if let (None, Some((key, unit))) = (elsewhere, in_unit()) {
+            let fault = in_other_unit(entry, key, unit);
+            return if self.is_given(key, entry) { fault.unmended() } else { fault };
+        }
+        let meant = elsewhere
+            .or_else(|| self.here().find(|key| also_called(key, found)))
+            .or_else(|| near(found, self.here()))
+            .or_else(|| meant_anywhere(self.sections, found));
+        let problem = Problem::UnknownKey { section: self.section, kind: self.kind, found: found.into(), meant };
+        let fault = Fault::new(problem, &entry.place);
+        match meant {
+            Some(key) if key.section == self.section.name && !self.is_given(key, entry) => {
+                fault.edit(&entry.place, key.name)
+            }
+            _ => fault,
+        }
     }
-    let meant = elsewhere
-        .or_else(|| here().find(|key| also_called(key, found)))
-        .or_else(|| near(found, here()))
-        .or_else(|| meant_anywhere(document.sections, found));
-    let problem = Problem::UnknownKey { section, kind, found: found.into(), meant };
-    let fault = Fault::new(problem, &entry.place);
-    Some(match meant {
-        Some(key) if key.section == section.name && !given(key) => fault.edit(&entry.place, key.name),
-        _ => fault,
-    })
 }
 
 fn in_other_unit(entry: &Entry<'_>, key: &'static Key, unit: &'static ForeignUnit) -> Box<Fault> {

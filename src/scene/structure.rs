@@ -1,29 +1,33 @@
 //! Supports, actions and probes, and whether they make a problem.
 
 use super::data::{Action, ActionKind, Geometry, Hold, Load, Material, Motion, Probe, Support};
-use super::fault::{Checked, CheckedWhole, Fault};
+use super::fault::{Checked, Faults};
+use super::table::Table;
 use super::tables::Tables;
 use super::{actions, nearness, probes, supports};
 
 /// What holds the shell, what acts on it, and what is measured.
 pub(super) type Structure = (Vec<Support>, Vec<Action>, Vec<Probe>);
 
-/// Reads supports, actions and probes.
-pub(super) fn structure(tables: &Tables, load: &Load, shell: (&Geometry, &Material)) -> CheckedWhole<Structure> {
-    let mut faults = Vec::new();
-    let supports = all(tables.all("support").map(supports::support), &mut faults);
-    let actions = all(tables.all("action").map(|table| actions::action(table, shell)), &mut faults);
-    let probes = all(tables.all("probe").map(|table| probes::probe(table, &supports, shell.0)), &mut faults);
-    if !faults.is_empty() {
-        return Err(faults);
+/// Reads supports, actions and probes; `None` where something is wrong with them.
+pub(super) fn structure(
+    tables: &Tables,
+    load: &Load,
+    shell: (&Geometry, &Material),
+    faults: &mut Faults,
+) -> Option<Structure> {
+    let before = faults.0.len();
+    let supports: Vec<Support> =
+        tables.all("support").filter_map(|table| faults.keep(supports::support(table))).collect();
+    let actions: Vec<Action> =
+        tables.all("action").filter_map(|table| faults.keep(actions::action(table, shell))).collect();
+    let probe = |table: &Table| faults.keep(probes::probe(table, &supports, shell.0));
+    let probes: Vec<Probe> = tables.all("probe").filter_map(probe).collect();
+    if faults.0.len() > before {
+        return None;
     }
-    check(tables, load, shell.1, (&supports, &actions, &probes)).map_err(|fault| vec![*fault])?;
-    Ok((supports, actions, probes))
-}
-
-/// All values, or what is wrong with them.
-fn all<T>(read: impl Iterator<Item = Checked<T>>, faults: &mut Vec<Fault>) -> Vec<T> {
-    read.filter_map(|value| value.map_err(|fault| faults.push(*fault)).ok()).collect()
+    faults.keep(check(tables, load, shell.1, (&supports, &actions, &probes)))?;
+    Some((supports, actions, probes))
 }
 
 fn check(

@@ -626,7 +626,8 @@ fn hints_in_supports_and_actions() {
     );
 }
 
-/// All that is wrong with names and values is told at once: stray keys first, and ten mistakes at most.
+/// All that is wrong with names and values is told at once, stray keys first, or else all that does not go together; ten
+/// mistakes at most.
 #[test]
 fn several_mistakes() {
     let of_spring = RIGHT
@@ -641,7 +642,11 @@ fn several_mistakes() {
         .replace("[0.0, 0.0, 0.02]", "[0.0, 0.02]");
     let strays: String = (1..=13).map(|number| format!("banana_{number} = {number}\n")).collect();
     let many = RIGHT.to_owned() + &strays;
-    let errors = [of_spring, of_plate, many].map(|text| report(&parse(&text, "scene.toml").unwrap_err()));
+    let together = RIGHT
+        .replace("elements = [4, 4]", "elements = [4, 5]")
+        .replace("increment_deg = 0.4\n", "increment_deg = 61.0\n")
+        .replace("thickness_mm = 0.1", "thickness_mm = 12.0");
+    let errors = [of_spring, of_plate, many, together].map(|text| report(&parse(&text, "scene.toml").unwrap_err()));
     pin("several_mistakes", &errors.join("\n"));
 }
 
