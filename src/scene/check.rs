@@ -349,8 +349,7 @@ mod tests {
     #[test]
     fn every_word_of_the_table_is_understood() {
         for section in SECTIONS.iter().filter(|section| !section.many) {
-            let kind = section.kind_key().map(|key| key.example.trim_matches('"'));
-            for key in section.keys_of(kind).filter(|key| key.name != "kind") {
+            for key in section.keys_of(section.example_kind()).filter(|key| key.name != "kind") {
                 for word in key.words() {
                     let setting = format!("{}={word}", key.path());
                     let parsed = parse_with_settings(&example_scene(), "table.toml", &[setting]);

@@ -93,8 +93,7 @@ pub(super) fn example_scene() -> String {
     for section in SECTIONS.iter().filter(|section| !section.many) {
         let gap = if text.is_empty() { "" } else { "\n" };
         text.push_str(&format!("{gap}[{}]\n", section.name));
-        let kind = section.kind_key().map(|key| key.example.trim_matches('"'));
-        for key in section.keys_of(kind) {
+        for key in section.keys_of(section.example_kind()) {
             let comment = match key.presence {
                 Presence::InsteadOf(_) => "# or: ",
                 // The example goes by arc length, where increments do not grow.

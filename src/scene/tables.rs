@@ -52,9 +52,8 @@ impl Tables {
 }
 
 fn missing_section(document: &Document<'_>, section: &'static Section) -> Box<Fault> {
-    // Of the first kind.
-    let kind = section.kind_key().map(|key| key.example.trim_matches('"'));
-    let required = section.keys_of(kind).filter(|key| key.presence == Presence::Required);
+    let keys = section.keys_of(section.example_kind());
+    let required = keys.filter(|key| key.presence == Presence::Required);
     let lines: String = required.map(|key| format!("\n{} = {}", key.name, key.example)).collect();
     let gap = if document.end.span.end == 0 { "" } else { "\n\n" };
     Fault::new(Problem::MissingSection { section }, &document.end)

@@ -15,7 +15,7 @@ fn right() -> Scene {
 /// Keys of the tables of a tape spring.
 fn keys() -> Vec<&'static Key> {
     let single = SECTIONS.iter().filter(|section| !section.many);
-    single.flat_map(|section| section.keys_of(section.kind_key().map(|key| key.example.trim_matches('"')))).collect()
+    single.flat_map(|section| section.keys_of(section.example_kind())).collect()
 }
 
 /// Whatever comes of a text, it can be shown.

@@ -35,6 +35,11 @@ impl Section {
         self.keys.iter().find(|key| key.name == "kind").filter(|_| has_kinds)
     }
 
+    /// The kind that examples are of.
+    pub fn example_kind(&self) -> Option<&'static str> {
+        self.kind_key().map(|key| key.example.trim_matches('"'))
+    }
+
     /// The keys of a table of this kind; those of every kind where it is `None`.
     pub fn keys_of<'k>(&self, kind: Option<&'k str>) -> impl Iterator<Item = &'static Key> + Clone + use<'k> {
         self.keys.iter().filter(move |key| kind.is_none_or(|kind| key.belongs_to(kind)))
