@@ -31,39 +31,60 @@ pub(super) fn of_scene(sections: &[Section]) -> Value {
 }
 
 fn of_section(section: &Section) -> Value {
-    let mut table = match section.kind_key() {
-        None => of_kind(section, None),
-        Some(key) => {
-            let Kind::Word(choices) = key.kind else { unreachable!("{} is not a word", key.path()) };
-            let kinds: Vec<Value> = choices.iter().map(|choice| of_kind(section, Some(choice))).collect();
-            json!({ "type": "object", "required": ["kind"], "oneOf": kinds })
-        }
-    };
-    table["description"] = json!(section.meaning);
+    let table = of_table(section);
     if section.many { json!({ "type": "array", "description": section.meaning, "items": table }) } else { table }
 }
 
-/// A table of a kind, or of one that has none.
-fn of_kind(section: &Section, kind: Option<&Choice>) -> Value {
-    let keys = || section.keys_of(kind.map(|choice| choice.word)).filter(|key| kind.is_none() || key.name != "kind");
-    let mut properties: Map<String, Value> = keys().map(|key| (key.name.to_owned(), of_key(key))).collect();
-    let required = keys().filter(|key| key.presence == Presence::Required).map(|key| key.name);
-    let mut table = json!({ "type": "object", "additionalProperties": false });
-    table["required"] = kind.iter().map(|_| "kind").chain(required).collect();
-    if let Some(choice) = kind {
-        properties.insert("kind".into(), json!({ "const": choice.word, "description": choice.meaning }));
-        table["title"] = json!(choice.word);
+/// All keys of a table, and what its kind says of them: editors complete the former, and tell which of the latter is broken.
+fn of_table(section: &Section) -> Value {
+    let mut properties = Map::new();
+    for key in section.keys {
+        let same: Vec<Value> = section.keys.iter().filter(|other| other.name == key.name).map(of_key).collect();
+        properties.insert(key.name.into(), if let [only] = &*same { only.clone() } else { json!({ "anyOf": same }) });
     }
+    let mut table = match section.kind_key() {
+        None => json!({ "required": required(section, None), "allOf": rules(section, None) }),
+        Some(key) => {
+            let kinds: Vec<Value> = key.words().map(|kind| of_kind(section, kind)).collect();
+            json!({ "required": [key.name], "allOf": kinds })
+        }
+    };
+    table["type"] = json!("object");
+    table["description"] = json!(section.meaning);
     table["properties"] = Value::Object(properties);
-    let rules: Vec<Value> = keys().flat_map(rules).collect();
-    if !rules.is_empty() {
-        table["allOf"] = json!(rules);
-    }
+    table["additionalProperties"] = json!(false);
     table
 }
 
+/// What holds in tables of a kind.
+fn of_kind(section: &Section, kind: &str) -> Value {
+    let names: Vec<&str> = section.keys_of(Some(kind)).map(|key| key.name).collect();
+    // Those of one name that mean another thing in another kind.
+    let several = |key: &&Key| section.keys.iter().filter(|other| other.name == key.name).count() > 1;
+    let own = section.keys_of(Some(kind)).filter(several);
+    let properties: Map<String, Value> = own.map(|key| (key.name.into(), of_values(&key.kind))).collect();
+    json!({
+        "if": { "properties": { "kind": { "const": kind } }, "required": ["kind"] },
+        "then": {
+            "required": required(section, Some(kind)),
+            "propertyNames": { "enum": names },
+            "properties": properties,
+            "allOf": rules(section, Some(kind)),
+        },
+    })
+}
+
+fn required(section: &Section, kind: Option<&str>) -> Vec<&'static str> {
+    section.keys_of(kind).filter(|key| key.presence == Presence::Required).map(|key| key.name).collect()
+}
+
+/// What the keys of a table ask of each other, and a rule that asks nothing: a schema has no empty list of rules.
+fn rules(section: &Section, kind: Option<&str>) -> Vec<Value> {
+    section.keys_of(kind).flat_map(rules_of).chain([json!({})]).collect()
+}
+
 /// What a key asks of other keys of its table.
-fn rules(key: &Key) -> Vec<Value> {
+fn rules_of(key: &Key) -> Vec<Value> {
     let not_both = |other: &str| json!({ "not": { "required": [key.name, other] } });
     match key.presence {
         Presence::InsteadOf(other) => vec![not_both(other)],
@@ -116,8 +137,11 @@ fn of_values(kind: &Kind) -> Value {
     }
 }
 
+/// One of some words; what each means is shown by editors that complete by Taplo.
 fn words(choices: &[Choice]) -> Value {
-    json!({ "enum": choices.iter().map(|choice| choice.word).collect::<Vec<_>>() })
+    let words: Vec<&str> = choices.iter().map(|choice| choice.word).collect();
+    let meanings: Vec<&str> = choices.iter().map(|choice| choice.meaning).collect();
+    json!({ "enum": words, "x-taplo": { "docs": { "enumValues": meanings } } })
 }
 
 fn either(one: Value, other: Value) -> Value {
