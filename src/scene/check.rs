@@ -307,11 +307,11 @@ fn between(problem: Problem, first: Option<Place>, second: Option<Place>, table:
 mod tests {
     use super::*;
     use crate::scene::help::example_scene;
-    use crate::scene::{Key, Presence, keys};
+    use crate::scene::{Key, Presence, all_keys};
 
     #[test]
     fn every_key_stands_in_a_section_of_the_table_and_ends_in_its_unit() {
-        for key in keys() {
+        for key in all_keys() {
             let section = SECTIONS.iter().find(|section| section.name == key.section).unwrap();
             assert!(section.keys.contains(key), "{} stands in another table", key.path());
             assert!(key.name.ends_with(key.unit.suffix()), "{}", key.path());

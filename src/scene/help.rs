@@ -143,7 +143,7 @@ fn paragraph(text: &str, indent: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::key_table::keys;
+    use crate::scene::key_table::all_keys;
     use crate::scene::{LengthLimit, Stage, Symmetry, parse};
 
     #[test]
@@ -171,7 +171,7 @@ mod tests {
     fn every_key_stands_in_the_help_with_its_default() {
         let text = help_text();
         let unwrapped = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        for key in keys() {
+        for key in all_keys() {
             assert!(text.contains(&format!("  {} = {}\n", key.name, key.example)), "{}", key.path());
             if let Presence::Default(default) = key.presence {
                 assert!(unwrapped.contains(&format!("Default: {default}.")), "{}", key.path());

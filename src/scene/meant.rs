@@ -74,11 +74,11 @@ pub(super) fn near(found: &str, keys: impl Iterator<Item = &'static Key> + Clone
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::key_table::keys;
+    use crate::scene::key_table::all_keys;
 
     #[test]
     fn each_alias_leads_to_its_key_and_is_no_key_itself() {
-        for (key, other) in keys().flat_map(|key| keys().map(move |other| (key, other))) {
+        for (key, other) in all_keys().flat_map(|key| all_keys().map(move |other| (key, other))) {
             let beside = key.section == other.section
                 && (key.kinds.is_empty()
                     || other.kinds.is_empty()

@@ -21,6 +21,7 @@
 //! | `identity`, `difference` | hash and differences of scenes; how a difference is shown |
 //! | `write` | a scene as TOML |
 //! | `help`, `schema` | the help text; a schema for editors |
+//! | `new_key` | a test: what follows from a key that is added |
 
 mod actions;
 mod check;
@@ -73,7 +74,7 @@ pub use difference::{Difference, shown_values};
 pub use drive::{Drive, Parameter};
 pub use error::SceneError;
 pub use help::{help_on_topic, help_text, help_topics};
-pub use key_table::{SECTIONS, keys};
+pub use key_table::{SECTIONS, all_keys};
 pub use keys::{Choice, Form, Key, Kind, Length, Limit, Limits, Presence, Reach, Section, Unit};
 pub use nurbs::SCENE_BYTES_LIMIT;
 pub use problem::{Direction, Problem, StageOrderProblem, SyntaxSlip, ValueType};

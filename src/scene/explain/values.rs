@@ -1,7 +1,7 @@
 //! Wrong values, in words.
 
 use super::explanation::{Explanation, lower, shorten, subject, type_words};
-use crate::scene::key_table::keys;
+use crate::scene::key_table::all_keys;
 use crate::scene::keys::{Form, Key, Kind, Presence, Unit, number};
 use crate::scene::problem::{Direction, ValueType};
 
@@ -15,7 +15,7 @@ fn cannot_be(key: &Key, item: Option<&str>, found: &str) -> Explanation {
 
 pub(super) fn wrong_type(key: &Key, item: Option<&str>, found: ValueType) -> Explanation {
     let explanation = must_be(key, item, format!("this is {}", type_words(found)));
-    let instead = keys().find(|other| {
+    let instead = all_keys().find(|other| {
         other.section == key.section && other.presence == Presence::InsteadOf(key.name) && found != ValueType::Text
     });
     let explanation = match instead {

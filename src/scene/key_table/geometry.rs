@@ -1,7 +1,7 @@
 //! Keys of `[geometry]`.
 
-use super::super::keys::Presence::{Follows, Unless};
-use super::super::keys::{Key, Kind, Length, Limit, Limits, choice};
+use crate::scene::keys::Presence::{Follows, Unless};
+use crate::scene::keys::{Key, Kind, Length, Limit, Limits, choice};
 
 /// A length of the shell: positive, and no more than a kilometre.
 pub(super) const SHELL_LENGTH: Limits = Limits {

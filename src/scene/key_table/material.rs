@@ -1,8 +1,8 @@
 //! Keys of `[material]` and `[[ply]]`.
 
-use super::super::keys::Presence::{Default, Follows};
-use super::super::keys::{Key, Kind, Limit, Limits, Presence, choice};
 use super::geometry::SHELL_LENGTH;
+use crate::scene::keys::Presence::{Default, Follows};
+use crate::scene::keys::{Key, Kind, Limit, Limits, Presence, choice};
 
 const fn material(name: &'static str, kind: Kind, example: &'static str) -> Key {
     Key::new("material", name, kind, example)

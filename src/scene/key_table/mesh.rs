@@ -1,9 +1,9 @@
 //! Keys of `[mesh]`, `[symmetry]` and `[adapt]`.
 
-use super::super::keys::Presence::{Default, Follows, InsteadOf};
-use super::super::keys::Reach::Steps;
-use super::super::keys::{Key, Kind, Limit, Limits, choice};
 use super::geometry::SHELL_LENGTH;
+use crate::scene::keys::Presence::{Default, Follows, InsteadOf};
+use crate::scene::keys::Reach::Steps;
+use crate::scene::keys::{Key, Kind, Limit, Limits, choice};
 
 const fn mesh(name: &'static str, kind: Kind, example: &'static str) -> Key {
     Key::new("mesh", name, kind, example)

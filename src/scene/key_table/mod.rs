@@ -44,7 +44,7 @@ pub static SECTIONS: &[Section] = &[
 ];
 
 /// The keys of a scene file, table by table; those of one name stand once for each kind of table that has its own.
-pub fn keys() -> impl Iterator<Item = &'static Key> + Clone {
+pub fn all_keys() -> impl Iterator<Item = &'static Key> + Clone {
     SECTIONS.iter().flat_map(|section| section.keys)
 }
 

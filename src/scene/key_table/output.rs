@@ -1,8 +1,8 @@
 //! Keys of `[output]` and `[expect]`.
 
-use super::super::keys::Presence::{Default, Follows};
-use super::super::keys::Reach::Free;
-use super::super::keys::{Key, Kind, Limit, Limits, choice};
+use crate::scene::keys::Presence::{Default, Follows};
+use crate::scene::keys::Reach::Free;
+use crate::scene::keys::{Key, Kind, Limit, Limits, choice};
 
 const fn output(name: &'static str, kind: Kind, example: &'static str) -> Key {
     Key::new("output", name, kind, example)

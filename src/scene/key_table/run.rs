@@ -1,8 +1,8 @@
 //! Keys of `[load]`, `[solver]`, `[continuation]` and `[pipeline]`.
 
-use super::super::keys::Presence::{Default, Follows};
-use super::super::keys::Reach::{Free, Steps};
-use super::super::keys::{Key, Kind, Limit, Limits, choice};
+use crate::scene::keys::Presence::{Default, Follows};
+use crate::scene::keys::Reach::{Free, Steps};
+use crate::scene::keys::{Key, Kind, Limit, Limits, choice};
 
 const fn load(name: &'static str, kind: Kind, example: &'static str) -> Key {
     Key::new("load", name, kind, example)

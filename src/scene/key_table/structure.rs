@@ -1,8 +1,8 @@
 //! Keys of `[[support]]`, `[[action]]` and `[[probe]]`.
 
-use super::super::keys::Presence::{Default, Follows};
-use super::super::keys::Reach::{Free, LaterLoads, Names};
-use super::super::keys::{Choice, Form, Key, Kind, Length, Limits, choice};
+use crate::scene::keys::Presence::{Default, Follows};
+use crate::scene::keys::Reach::{Free, LaterLoads, Names};
+use crate::scene::keys::{Choice, Form, Key, Kind, Length, Limits, choice};
 
 const fn support(name: &'static str, kind: Kind, example: &'static str) -> Key {
     Key::new("support", name, kind, example)

@@ -1,6 +1,7 @@
 //! Types and limits of values.
 
-use super::{Unit, join_or, number};
+use super::unit::Unit;
+use super::wording::{join_or, number};
 
 /// Type and limits of a key's value.
 #[derive(Debug, PartialEq)]

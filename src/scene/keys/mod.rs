@@ -1,12 +1,20 @@
 //! What can be said about a key of a scene file. The keys themselves stand in `key_table`; reading, checking,
 //! suggesting, explaining, comparing, writing, the help text and the schema all draw on that one table.
+//!
+//! | file | what |
+//! |---|---|
+//! | `kind` | types and limits of values |
+//! | `unit` | units, the endings of names |
+//! | `wording` | numbers and lists in sentences, and numbers in TOML |
 
 mod kind;
 mod unit;
+mod wording;
 
 pub(super) use kind::choice;
 pub use kind::{Choice, Form, Kind, Length, Limit, Limits};
 pub use unit::Unit;
+pub(super) use wording::{join_or, number, toml_float};
 
 /// A table of a scene file, or the items of an array of tables.
 #[derive(Debug, PartialEq)]
@@ -198,25 +206,5 @@ impl Presence {
             Presence::InsteadOf(other) => format!("In place of {other}."),
             Presence::Unless(other) => format!("Required unless there is {other}."),
         }
-    }
-}
-
-/// A number as an engineer would write it: `300`, `0.019`, `1e-7`.
-pub(in crate::scene) fn number(value: f64) -> String {
-    let size = value.abs();
-    if size != 0.0 && !(1e-4..1e6).contains(&size) { format!("{value:e}") } else { format!("{value}") }
-}
-
-/// A number as TOML writes floats: `300.0`, `0.019`, `1e-7`.
-pub(in crate::scene) fn toml_float(value: f64) -> String {
-    format!("{value:?}")
-}
-
-/// Items in a sentence: `a, b or c`.
-pub(in crate::scene) fn join_or(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [one] => one.clone(),
-        [rest @ .., last] => format!("{} or {last}", rest.join(", ")),
     }
 }
