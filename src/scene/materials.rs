@@ -7,7 +7,7 @@ use super::fault::{Checked, Fault};
 use super::problem::Problem;
 use super::table::{Table, data};
 
-/// Keys of a layer's law that every ply has, of its own or from [material].
+/// Keys of a layer's law that every ply has, of its own or from `[material]`.
 const OF_EACH_PLY: [&str; 4] =
     ["youngs_modulus_1_mpa", "youngs_modulus_2_mpa", "poissons_ratio_12", "shear_modulus_12_mpa"];
 /// Keys of a layer's law that come in pairs.
@@ -41,8 +41,8 @@ pub(super) fn material(table: &Table, plies: Vec<&Table>) -> Checked<Material> {
 fn ply(table: &Table, laminate: &Table) -> Checked<Ply> {
     let mut values = laminate.values.clone();
     values.extend(table.values.clone());
-    let keys = || table.section.keys.iter();
-    if let Some(key) = keys().find(|key| OF_EACH_PLY.contains(&key.name) && !values.contains_key(key.name)) {
+    let mut keys = table.section.keys.iter();
+    if let Some(key) = keys.find(|key| OF_EACH_PLY.contains(&key.name) && !values.contains_key(key.name)) {
         return Err(Fault::new(Problem::MissingKey { key }, &table.place).in_item(Some(table.title.clone())));
     }
     check_law(table, &values)?;

@@ -1,5 +1,7 @@
 //! A scene as TOML, in the order of the table of keys.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 
 use super::data::{Load, Material, Scene};
@@ -9,18 +11,18 @@ use super::keys::{Section, toml_float};
 impl Scene {
     /// The scene as TOML, every key spelled out; parsing it gives the same scene.
     pub fn to_toml(&self) -> String {
+        let leaves = self.leaves();
         let tables = SECTIONS.iter().flat_map(|section| {
-            let tables = if section.many { self.items(section) } else { vec![self.values(section)] };
+            let tables = if section.many { self.items(section) } else { vec![self.values(section, &leaves)] };
             tables.into_iter().map(|values| table(section, &values)).filter(|text| !text.is_empty())
         });
         tables.collect::<Vec<_>>().join("\n")
     }
 
     /// Values of a table of which there is one, by key.
-    fn values(&self, section: &Section) -> Map<String, Value> {
+    fn values(&self, section: &Section, leaves: &BTreeMap<String, Value>) -> Map<String, Value> {
         let prefix = format!("{}.", section.name);
-        let own =
-            self.leaves().into_iter().filter_map(|(path, value)| Some((path.strip_prefix(&prefix)?.into(), value)));
+        let own = leaves.iter().filter_map(|(path, value)| Some((path.strip_prefix(&prefix)?.into(), value.clone())));
         let mut values: Map<String, Value> = own.collect();
         match (section.name, &self.load) {
             // The kind of a load is not kept in the scene, and [symmetry] belongs to turning ends alone.
