@@ -10,6 +10,7 @@ use super::fault::{Checked, Fault, Place};
 use super::keys::Section;
 use super::problem::Problem;
 use super::{meant, syntax};
+use crate::printable::one_line;
 
 /// What stands in a scene file, with settings applied.
 pub(super) struct Document<'t> {
@@ -48,7 +49,7 @@ impl<'t> Written<'t> {
         let name = self.entry("name").and_then(|entry| entry.value.get_ref().as_str());
         match (self.number, name) {
             (None, _) => format!("[{}]", self.name),
-            (Some(_), Some(name)) => format!("[[{}]] \"{name}\"", self.name),
+            (Some(_), Some(name)) => format!("[[{}]] \"{}\"", self.name, one_line(name)),
             (Some(number), None) => format!("[[{}]] {number}", self.name),
         }
     }

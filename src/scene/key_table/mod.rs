@@ -1,4 +1,4 @@
-//! Every key of a scene file. Nothing about a key is written down anywhere else.
+//! Every key of a scene file: its type, unit, limits, default, meaning and reach stand here alone.
 //!
 //! | file | tables |
 //! |---|---|
