@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde_json::Value;
 
+use super::key_table::SECTIONS;
 use super::keys::Reach;
 
 /// A key on which two scenes differ.
@@ -33,12 +34,9 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Lists of tables in a scene, with the names of their tables in a scene file.
-const TABLES: [(&str, &str); 3] = [("actions", "action"), ("probes", "probe"), ("supports", "support")];
-
 /// Differences of a list of tables, a key each; `None` where `path` is no such list.
 pub(super) fn of_tables(path: &str, a: Option<&Value>, b: Option<&Value>) -> Option<Vec<Difference>> {
-    let table = TABLES.iter().find(|(list, _)| *list == path)?.1;
+    let section = SECTIONS.iter().find(|section| section.many && path.strip_suffix('s') == Some(section.name))?;
     let [a, b] = [a, b].map(|list| list.and_then(Value::as_array).map_or(&[][..], Vec::as_slice));
     let aligned = is_aligned(a, b);
     let pairs: Vec<(Option<&Value>, Option<&Value>)> = match aligned {
@@ -48,13 +46,12 @@ pub(super) fn of_tables(path: &str, a: Option<&Value>, b: Option<&Value>) -> Opt
             b.iter().map(|is| (named(a, is), Some(is))).chain(gone).collect()
         }
     };
-    let reach = |key: Option<&str>| match key {
-        _ if table == "probe" => Reach::Free,
-        Some("name") if aligned => Reach::Names,
-        Some("history") if aligned => Reach::LaterLoads,
-        _ => Reach::Everything,
+    // What a key means on its own hangs on the tables before it.
+    let reach = |key: Option<&str>| {
+        let key = key.filter(|_| aligned).and_then(|name| section.key(None, name));
+        key.map_or(section.reach(), |key| key.reach)
     };
-    Some(pairs.into_iter().flat_map(|(was, is)| of_table(table, was, is, reach)).collect())
+    Some(pairs.into_iter().flat_map(|(was, is)| of_table(section.name, was, is, reach)).collect())
 }
 
 /// Whether the tables of two lists are the same ones in the same order, some perhaps renamed.

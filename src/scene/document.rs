@@ -7,51 +7,62 @@ use toml::de::{DeTable, DeValue};
 
 use super::entry::Entry;
 use super::fault::{Checked, Fault, Place};
-use super::kinds::{ARRAYS, GEOMETRIES, LOADS, MATERIALS};
+use super::keys::Section;
 use super::problem::Problem;
-use super::table::Table;
 use super::{meant, syntax};
+use crate::printable::one_line;
 
 /// What stands in a scene file, with settings applied.
 pub(super) struct Document<'t> {
-    /// The tables, in the order of the text.
-    pub headers: Vec<Header>,
-    /// Keys and values in tables.
-    pub entries: Vec<Entry<'t>>,
+    /// What may stand there.
+    pub sections: &'static [Section],
+    /// The tables, in the order of the text; those that settings add stand behind.
+    pub tables: Vec<Written<'t>>,
     /// Keys and values in front of all tables, and tables of the wrong form.
     pub strays: Vec<Entry<'t>>,
-    /// Items of arrays of tables.
-    pub items: Vec<Item<'t>>,
     /// Behind the last text of the file.
     pub end: Place,
     /// The file.
     text: &'t str,
 }
 
-/// One table of an array of tables.
-pub(super) struct Item<'t> {
-    /// Name of the array.
-    pub array: String,
+/// A table as it is written.
+pub(super) struct Written<'t> {
+    /// Its name, without the brackets.
+    pub name: String,
+    /// Its number, from 1, where it is an item of an array of tables.
+    pub number: Option<usize>,
     pub place: Place,
     pub entries: Vec<Entry<'t>>,
+    /// Whether it is written in brackets on a line of its own, so that lines may be added below.
+    own_line: bool,
 }
 
-/// A table.
-pub(super) struct Header {
-    pub name: String,
-    pub place: Place,
-    /// Whether it is written `[name]` on a line of its own, so that lines may be added below.
-    own_line: bool,
+impl<'t> Written<'t> {
+    /// The value of a key.
+    pub fn entry(&self, name: &str) -> Option<&Entry<'t>> {
+        self.entries.iter().find(|entry| entry.name == name)
+    }
+
+    /// What errors call it: `[geometry]`, `[[support]] 2`, `[[support]] "root"`.
+    pub fn title(&self) -> String {
+        let name = self.entry("name").and_then(|entry| entry.value.get_ref().as_str());
+        match (self.number, name) {
+            (None, _) => format!("[{}]", self.name),
+            (Some(_), Some(name)) => format!("[[{}]] \"{}\"", self.name, one_line(name)),
+            (Some(number), None) => format!("[[{}]] {number}", self.name),
+        }
+    }
 }
 
 impl<'t> Document<'t> {
     /// Reads the file (source 0) and then each setting (sources 1, 2, …) over it.
-    pub fn read<S: AsRef<str>>(text: &'t str, settings: &'t [S]) -> Checked<Self> {
+    pub fn read<S: AsRef<str>>(text: &'t str, settings: &'t [S], sections: &'static [Section]) -> Checked<Self> {
         let root =
             DeTable::parse(text).map_err(|error| syntax::fault(&error, text, &Place { source: 0, span: 0..0 }))?;
         let last = text.trim_end().len();
         let end = Place { source: 0, span: last..last };
-        let mut document = Self { headers: vec![], entries: vec![], strays: vec![], items: vec![], end, text };
+        let mut document = Self { sections, tables: vec![], strays: vec![], end, text };
         for (name, value) in in_order_of_text(root.into_inner()) {
             document.take_root(name, value);
         }
@@ -61,114 +72,75 @@ impl<'t> Document<'t> {
         Ok(document)
     }
 
-    /// The table of this name.
-    pub fn header(&self, name: &str) -> Option<&Header> {
-        self.headers.iter().find(|header| header.name == name)
-    }
-
-    /// The value of a key.
-    pub fn entry(&self, section: &str, name: &str) -> Option<&Entry<'t>> {
-        self.entries.iter().find(|entry| entry.section == section && entry.name == name)
-    }
-
-    /// Whether a table has a kind whose keys the table of keys does not know.
-    pub fn is_of_general_kind(&self, section: &str) -> bool {
-        let kinds: &[&str] = match section {
-            "geometry" => &GEOMETRIES,
-            "material" => &MATERIALS,
-            "load" => &LOADS,
-            _ => &[],
-        };
-        let kind = self.entry(section, "kind").and_then(|entry| entry.value.get_ref().as_str());
-        kind.is_some_and(|kind| kinds.contains(&kind))
-    }
-
-    /// A table of such a kind.
-    pub fn table(&self, section: &str) -> Table<'_, 't> {
-        let place = self.header(section).map_or(&self.end, |header| &header.place).clone();
-        let entries = self.entries.iter().filter(|entry| entry.section == section).collect();
-        Table::new(format!("[{section}]"), place, entries)
-    }
-
-    /// The tables of an array.
-    pub fn tables(&self, array: &str) -> Vec<Table<'_, 't>> {
-        let items = self.items.iter().filter(|item| item.array == array).enumerate();
-        items
-            .map(|(index, item)| {
-                let name = item.entries.iter().find(|entry| entry.name == "name");
-                let title = match name.and_then(|entry| entry.value.get_ref().as_str()) {
-                    Some(name) => format!("[[{array}]] \"{name}\""),
-                    None => format!("[[{array}]] {}", index + 1),
-                };
-                Table::new(title, item.place.clone(), item.entries.iter().collect())
-            })
-            .collect()
+    /// What may stand in a table of this name.
+    pub fn section(&self, name: &str) -> Option<&'static Section> {
+        self.sections.iter().find(|section| section.name == name)
     }
 
     /// Where a line can be added to a table: the end of the line of its last entry, or of its header.
-    pub fn line_end(&self, header: &Header) -> Option<Place> {
-        if !header.own_line {
+    pub fn line_end(&self, table: &Written<'_>) -> Option<Place> {
+        if !table.own_line {
             return None;
         }
-        let in_file = self.entries.iter().filter(|entry| entry.section == header.name && entry.place.source == 0);
-        let last = in_file.map(|entry| entry.value_place().span.end).max().unwrap_or(header.place.span.end);
+        let in_file = table.entries.iter().filter(|entry| entry.place.source == 0);
+        let last = in_file.map(|entry| entry.value_place().span.end).max().unwrap_or(table.place.span.end);
         let rest = self.text.get(last..)?;
         let line = rest.find('\n').map_or(rest, |length| &rest[..length]);
         let at = last + line.trim_end_matches('\r').len();
         Some(Place { source: 0, span: at..at })
     }
 
+    fn is_array(&self, name: &str) -> bool {
+        self.section(name).is_some_and(|section| section.many)
+    }
+
     fn take_root(&mut self, name: Spanned<Cow<'t, str>>, value: Spanned<DeValue<'t>>) {
         let place = Place { source: 0, span: name.span() };
-        let base = Place { source: 0, span: 0..0 };
-        let section = name.into_inner().into_owned();
+        let name = name.into_inner().into_owned();
         let span = value.span();
         match value.into_inner() {
-            DeValue::Table(table) => {
-                for (key, value) in in_order_of_text(table) {
-                    let place = Place { source: 0, span: key.span() };
-                    let name = key.into_inner().into_owned();
-                    let section = section.clone();
-                    self.entries.push(Entry { section, name, place, value, base: base.clone() });
-                }
-                let before = self.text[..place.span.start].trim_end_matches([' ', '\t']);
-                self.headers.push(Header { name: section, place, own_line: before.ends_with('[') });
-            }
-            DeValue::Array(tables) if ARRAYS.contains(&&*section) => {
+            DeValue::Table(table) => self.take_table(name, None, place, table),
+            DeValue::Array(tables) if self.is_array(&name) => {
                 for (index, table) in tables.into_iter().enumerate() {
                     let place = Place { source: 0, span: if index == 0 { place.span.clone() } else { table.span() } };
-                    let mut entries = Vec::new();
-                    if let DeValue::Table(table) = table.into_inner() {
-                        for (key, value) in in_order_of_text(table) {
-                            let place = Place { source: 0, span: key.span() };
-                            let (name, base) = (key.into_inner().into_owned(), base.clone());
-                            entries.push(Entry { section: section.clone(), name, place, value, base });
-                        }
-                    }
-                    self.items.push(Item { array: section.clone(), place, entries });
+                    let table = if let DeValue::Table(table) = table.into_inner() { table } else { DeTable::new() };
+                    self.take_table(name.clone(), Some(index + 1), place, table);
                 }
             }
             other => {
                 let value = Spanned::new(span, other);
-                self.strays.push(Entry { section: String::new(), name: section, place, value, base });
+                self.strays.push(Entry { name, place, value, base: Place { source: 0, span: 0..0 } });
             }
         }
+    }
+
+    fn take_table(&mut self, name: String, number: Option<usize>, place: Place, table: DeTable<'t>) {
+        let entry = |(key, value): (Spanned<Cow<'t, str>>, Spanned<DeValue<'t>>)| Entry {
+            place: Place { source: 0, span: key.span() },
+            name: key.into_inner().into_owned(),
+            value,
+            base: Place { source: 0, span: 0..0 },
+        };
+        let entries = in_order_of_text(table).into_iter().map(entry).collect();
+        let (before, from) = self.text.split_at(place.span.start);
+        let own_line = before.trim_end_matches([' ', '\t']).ends_with('[') || from.starts_with('[');
+        self.tables.push(Written { name, number, place, entries, own_line });
     }
 
     /// Applies one setting, `section.key=value`.
     fn set(&mut self, source: usize, setting: &'t str) -> Checked<()> {
         let whole = Place { source, span: 0..setting.len() };
         let Some((path, value_text)) = setting.split_once('=') else {
-            let key = meant::key(setting.trim());
+            let key = meant::key(self.sections, setting.trim());
             return Err(Fault::new(Problem::SettingWithoutValue { key }, &whole));
         };
         let start = path.len() - path.trim_start().len();
         let place = Place { source, span: start..start + path.trim().len() };
         let Some((section, name)) = path.trim().split_once('.') else {
-            return Err(meant::setting_without_section(path.trim(), &place));
+            return Err(meant::setting_without_section(self.sections, path.trim(), &place));
         };
         let section_place = Place { source, span: start..start + section.len() };
-        if ARRAYS.contains(&section) {
+        if self.is_array(section) {
             let problem = Problem::Table {
                 table: format!("[[{section}]]"),
                 problem: "a setting cannot say which of several tables it means".into(),
@@ -183,13 +155,15 @@ impl<'t> Document<'t> {
         let value =
             setting_value(value_text.trim()).map_err(|error| syntax::fault(&error, value_text.trim(), &base))?;
 
-        let displaced = meant::stands_in_for(section, name);
-        self.entries
-            .retain(|entry| entry.section != section || !(entry.name == name || displaced.contains(&&*entry.name)));
-        if self.header(section).is_none() {
-            self.headers.push(Header { name: section.into(), place: section_place, own_line: false });
+        let displaced = self.section(section).map_or(vec![], |section| meant::stands_in_for(section, name));
+        let at = self.tables.iter().position(|table| table.name == section).unwrap_or(self.tables.len());
+        if at == self.tables.len() {
+            let (name, entries) = (section.to_owned(), Vec::new());
+            self.tables.push(Written { name, number: None, place: section_place, entries, own_line: false });
         }
-        self.entries.push(Entry { section: section.into(), name: name.into(), place: name_place, value, base });
+        let entries = &mut self.tables[at].entries;
+        entries.retain(|entry| entry.name != name && !displaced.contains(&&*entry.name));
+        entries.push(Entry { name: name.into(), place: name_place, value, base });
         Ok(())
     }
 }

@@ -10,7 +10,6 @@ use super::keys::Key;
 
 /// A key with its value.
 pub(super) struct Entry<'t> {
-    pub section: String,
     pub name: String,
     pub place: Place,
     pub value: Spanned<DeValue<'t>>,
@@ -26,7 +25,7 @@ impl Entry<'static> {
     pub fn of_default(key: &Key, text: &'static str) -> Result<Self, toml::de::Error> {
         let place = Place { source: 0, span: 0..0 };
         let value = DeValue::parse(text)?;
-        Ok(Self { section: key.section.into(), name: key.name.into(), base: place.clone(), place, value })
+        Ok(Self { name: key.name.into(), base: place.clone(), place, value })
     }
 }
 

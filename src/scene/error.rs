@@ -6,49 +6,68 @@ use super::fault::{Fault, Source};
 use super::problem::Problem;
 use super::{explain, render};
 
-/// Why a text is no scene. Its `Display` shows the file, the line, the offending text underlined, what is allowed and
-/// the nearest right spelling.
+/// Mistakes shown at most.
+const MOST_SHOWN: usize = 10;
+
+/// Why a text is no scene: all that is wrong with its names and values, or else what does not go together. Its `Display`
+/// shows the file, the line, the offending text underlined, what is allowed and the nearest right spelling.
 #[derive(Clone, PartialEq)]
 pub struct SceneError {
-    fault: Box<Fault>,
+    /// At least one.
+    faults: Vec<Fault>,
     sources: Vec<Source>,
 }
 
 impl SceneError {
-    pub(super) fn new(fault: Box<Fault>, sources: Vec<Source>) -> Self {
-        Self { fault, sources }
+    pub(super) fn new(faults: Vec<Fault>, sources: Vec<Source>) -> Self {
+        Self { faults, sources }
     }
 
     /// What is wrong.
-    pub fn problem(&self) -> &Problem {
-        &self.fault.problem
+    pub fn problems(&self) -> impl Iterator<Item = &Problem> {
+        self.faults.iter().map(|fault| &fault.problem)
     }
 
-    /// What is wrong, in one line.
+    /// The first thing that is wrong, in one line.
     pub fn summary(&self) -> String {
-        explain::explain(&self.fault.problem).title
+        explain::explain(self.first()).title
     }
 
-    /// Where it stands: the file name given to the parser, or `--set`.
+    /// Where the first stands: the file name given to the parser, or `--set`.
     pub fn source_name(&self) -> &str {
-        &self.sources[self.fault.place.source].name
+        &self.sources[self.first().place.source].name
     }
 
-    /// The line in that source, from 1.
+    /// The line of the first in that source, from 1.
     pub fn line(&self) -> usize {
-        let text = self.sources[self.fault.place.source].text.as_bytes();
-        let end = self.fault.place.span.start.min(text.len());
+        let text = self.sources[self.first().place.source].text.as_bytes();
+        let end = self.first().place.span.start.min(text.len());
         1 + text[..end].iter().filter(|byte| **byte == b'\n').count()
     }
 
-    /// The annotated snippet in plain ASCII lines, for pipes, logs and tests.
+    /// The annotated snippets in plain ASCII lines, for pipes, logs and tests.
     pub fn plain(&self) -> String {
-        render::plain(&self.fault, &self.sources)
+        self.rendered(render::plain)
     }
 
-    /// The annotated snippet in colour, for terminals.
+    /// The annotated snippets in colour, for terminals.
     pub fn coloured(&self) -> String {
-        render::coloured(&self.fault, &self.sources)
+        self.rendered(render::coloured)
+    }
+
+    fn first(&self) -> &Fault {
+        &self.faults[0]
+    }
+
+    fn rendered(&self, render: fn(&Fault, &[Source]) -> String) -> String {
+        let shown: Vec<String> =
+            self.faults.iter().take(MOST_SHOWN).map(|fault| render(fault, &self.sources)).collect();
+        let text = shown.join("\n\n");
+        match self.faults.len().saturating_sub(MOST_SHOWN) {
+            0 => text,
+            1 => text + "\n\nand one mistake more",
+            more => format!("{text}\n\nand {more} mistakes more"),
+        }
     }
 }
 

@@ -8,6 +8,8 @@ use super::problem::Problem;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {
     pub problem: Problem,
+    /// The table that it stands in, where there may be several of its name.
+    pub item: Option<String>,
     pub place: Place,
     /// A second place that the problem hangs on.
     pub also: Option<Place>,
@@ -17,11 +19,17 @@ pub(super) struct Fault {
 
 impl Fault {
     pub fn new(problem: Problem, place: &Place) -> Box<Self> {
-        Box::new(Self { problem, place: place.clone(), also: None, edits: Vec::new() })
+        Box::new(Self { problem, item: None, place: place.clone(), also: None, edits: Vec::new() })
     }
 
     pub fn also(mut self: Box<Self>, place: Option<&Place>) -> Box<Self> {
         self.also = place.cloned();
+        self
+    }
+
+    /// The same in a table of which there may be several.
+    pub fn in_item(mut self: Box<Self>, item: Option<String>) -> Box<Self> {
+        self.item = item;
         self
     }
 
@@ -44,6 +52,25 @@ impl Fault {
 }
 
 pub(super) type Checked<T> = Result<T, Box<Fault>>;
+
+/// A value, or all that is wrong with it.
+pub(super) type CheckedWhole<T> = Result<T, Vec<Fault>>;
+
+/// All that is wrong, as it is found.
+#[derive(Default)]
+pub(super) struct Faults(pub Vec<Fault>);
+
+impl Faults {
+    /// The value, or `None` and one fault more.
+    pub fn keep<T>(&mut self, checked: Checked<T>) -> Option<T> {
+        checked.map_err(|fault| self.0.push(*fault)).ok()
+    }
+
+    /// The value, if nothing is wrong.
+    pub fn or<T>(self, value: T) -> CheckedWhole<T> {
+        if self.0.is_empty() { Ok(value) } else { Err(self.0) }
+    }
+}
 
 /// A text that a scene is read from: the file, or a setting.
 #[derive(Clone, Debug, PartialEq)]

@@ -19,7 +19,7 @@ const fn foreign(spellings: &'static [&'static str], words: &'static str, unit: 
     ForeignUnit { spellings, words, unit, factor }
 }
 
-static FOREIGN_UNITS: [ForeignUnit; 25] = [
+static FOREIGN_UNITS: [ForeignUnit; 45] = [
     foreign(&["mm", "millimetre", "millimetres", "millimeter", "millimeters"], "mm", Unit::Millimetre, 1.0),
     foreign(&["cm", "centimetre", "centimetres", "centimeter", "centimeters"], "cm", Unit::Millimetre, 10.0),
     foreign(&["m", "metre", "metres", "meter", "meters"], "m", Unit::Millimetre, 1000.0),
@@ -50,6 +50,26 @@ static FOREIGN_UNITS: [ForeignUnit; 25] = [
     foreign(&["g_cm3", "g_per_cm3", "g/cm3", "g/cm³"], "g/cm3", Unit::KilogramPerCubicMetre, 1e3),
     foreign(&["kg_mm3", "kg_per_mm3", "kg/mm3", "kg/mm³"], "kg/mm3", Unit::KilogramPerCubicMetre, 1e9),
     foreign(&["t_mm3", "t_per_mm3", "t/mm3", "t/mm³"], "t/mm3", Unit::KilogramPerCubicMetre, 1e12),
+    foreign(&["n", "newton", "newtons"], "N", Unit::Newton, 1.0),
+    foreign(&["mn", "millinewton"], "mN", Unit::Newton, 1e-3),
+    foreign(&["kn", "kilonewton"], "kN", Unit::Newton, 1e3),
+    foreign(&["lbf", "lb"], "lbf", Unit::Newton, 4.448_221_615_260_5),
+    foreign(&["n_mm", "n/mm"], "N/mm", Unit::NewtonPerMillimetre, 1.0),
+    foreign(&["n_m", "n_per_m", "n/m"], "N/m", Unit::NewtonPerMillimetre, 1e-3),
+    foreign(&["kn_m", "kn_per_m", "kn/m"], "kN/m", Unit::NewtonPerMillimetre, 1.0),
+    foreign(&["kn_mm", "kn_per_mm", "kn/mm"], "kN/mm", Unit::NewtonPerMillimetre, 1e3),
+    foreign(&["mpa", "n_mm2", "n/mm2"], "N/mm2", Unit::NewtonPerSquareMillimetre, 1.0),
+    foreign(&["pa", "n_m2", "n_per_m2", "n/m2"], "N/m2", Unit::NewtonPerSquareMillimetre, 1e-6),
+    foreign(&["kpa", "kn_m2", "kn_per_m2", "kn/m2"], "kN/m2", Unit::NewtonPerSquareMillimetre, 1e-3),
+    foreign(&["kn_mm2", "kn_per_mm2", "kn/mm2"], "kN/mm2", Unit::NewtonPerSquareMillimetre, 1e3),
+    foreign(&["m_s2", "m_per_s2", "m/s2", "m/s²"], "m/s2", Unit::MetrePerSecondSquared, 1.0),
+    foreign(&["mm_s2", "mm_per_s2", "mm/s2"], "mm/s2", Unit::MetrePerSecondSquared, 1e-3),
+    foreign(&["k", "kelvin", "c", "celsius", "deg_c"], "K", Unit::Kelvin, 1.0),
+    foreign(&["f", "fahrenheit", "deg_f"], "degrees Fahrenheit", Unit::Kelvin, 5.0 / 9.0),
+    foreign(&["per_c", "per_celsius", "1/k", "1_k"], "1/K", Unit::PerKelvin, 1.0),
+    foreign(&["ppm_per_k", "ppm_k", "um_m_k"], "ppm/K", Unit::PerKelvin, 1e-6),
+    foreign(&["1_mm", "1/mm"], "1/mm", Unit::PerMillimetre, 1.0),
+    foreign(&["per_m", "1_m", "1/m"], "1/m", Unit::PerMillimetre, 1e-3),
 ];
 
 /// Significant digits that a converted value keeps, so that 0.007 m is 7 mm and not 7.000000000000001.

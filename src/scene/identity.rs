@@ -9,8 +9,8 @@ use serde_json::Value;
 
 use super::data::Scene;
 use super::difference::{Difference, of_tables};
-use super::key_table::KEYS;
-use super::keys::Reach;
+use super::key_table::SECTIONS;
+use super::keys::{Reach, Section};
 
 /// Where the path of a value in [`Scene`] is not the key of the scene file.
 const RENAMED: [(&str, &str); 3] = [
@@ -37,7 +37,7 @@ impl Scene {
         };
         feed(DOMAIN);
         for (path, value) in self.leaves() {
-            if reach(&path) != Reach::Free {
+            if reach(SECTIONS, &path) != Reach::Free {
                 feed(&path);
                 feed(&value.to_string());
             }
@@ -56,7 +56,8 @@ impl Scene {
             let (a, b) = (a.get(&path), b.get(&path));
             let in_tables = of_tables(&path, a, b).filter(|found| !found.is_empty());
             // Tables in another order differ as a list.
-            let whole = || vec![Difference { a: a.cloned(), b: b.cloned(), reach: reach(&path), path: path.clone() }];
+            let whole =
+                || vec![Difference { a: a.cloned(), b: b.cloned(), reach: reach(SECTIONS, &path), path: path.clone() }];
             in_tables.unwrap_or_else(whole)
         };
         paths.into_iter().flat_map(of_path).collect()
@@ -87,14 +88,9 @@ fn collect(path: &str, value: Value, leaves: &mut BTreeMap<String, Value>) {
     }
 }
 
-fn reach(path: &str) -> Reach {
-    // Keys of tables that depend on their kind: the table of keys does not hold them.
-    match path {
-        "load.factor" | "probes" => return Reach::Free,
-        "load.increment" | "load.longest_increment" | "load.least_increment" | "load.snap_tolerance" => {
-            return Reach::Steps;
-        }
-        _ => {}
-    }
-    KEYS.iter().find(|key| key.path() == path).map_or(Reach::Everything, |key| key.reach)
+/// How far a change of a value reaches; the whole of an array of tables as far as any of its keys.
+pub(super) fn reach(sections: &'static [Section], path: &str) -> Reach {
+    let array = path.strip_suffix('s').and_then(|name| sections.iter().find(|it| it.many && it.name == name));
+    let key = || sections.iter().flat_map(|section| section.keys).find(|key| key.path() == path).map(|key| key.reach);
+    array.map(Section::reach).or_else(key).unwrap_or(Reach::Everything)
 }

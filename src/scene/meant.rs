@@ -2,30 +2,23 @@
 
 use super::fault::{Fault, Place};
 use super::foreign_unit::ForeignUnit;
-use super::help::GENERAL;
-use super::key_table::KEYS;
-use super::keys::{Key, Presence, Unit};
+use super::keys::{Key, Presence, Section, Unit};
 use super::nearest::{LONGEST_NAME, nearest, plain, slip};
 use super::problem::Problem;
 
 /// The key of this path.
-pub(super) fn key(path: &str) -> Option<&'static Key> {
-    KEYS.iter().copied().find(|key| key.path() == path)
+pub(super) fn key(sections: &'static [Section], path: &str) -> Option<&'static Key> {
+    of_settings(sections).find(|key| key.path() == path)
 }
 
-/// Whether the help text of tables with kinds of their own names a key: with a value behind it, or in a list of them.
-pub(super) fn is_known(name: &str) -> bool {
-    let part_of_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    GENERAL.match_indices(name).any(|(at, _)| {
-        let (before, after) = (&GENERAL[..at], &GENERAL[at + name.len()..]);
-        let whole = !before.ends_with(part_of_name) && !after.starts_with(part_of_name);
-        whole && (name.contains('_') || after.trim_start().starts_with('='))
-    })
+/// Keys that a setting can name: those of tables of which there is one.
+fn of_settings(sections: &'static [Section]) -> impl Iterator<Item = &'static Key> + Clone {
+    sections.iter().filter(|section| !section.many).flat_map(|section| section.keys)
 }
 
 /// The error for a setting such as `max_iterations=200`.
-pub(super) fn setting_without_section(found: &str, place: &Place) -> Box<Fault> {
-    let meant = meant_anywhere(found);
+pub(super) fn setting_without_section(sections: &'static [Section], found: &str, place: &Place) -> Box<Fault> {
+    let meant = meant_anywhere(sections, found);
     let fault = Fault::new(Problem::SettingWithoutSection { found: found.into(), meant }, place);
     match meant {
         Some(key) => fault.edit(place, key.path()),
@@ -34,20 +27,19 @@ pub(super) fn setting_without_section(found: &str, place: &Place) -> Box<Fault> 
 }
 
 /// The keys of the same table that a key puts out of force.
-pub(super) fn stands_in_for(section: &str, name: &str) -> Vec<&'static str> {
-    let of_section = KEYS.iter().filter(|key| key.section == section);
-    of_section
-        .filter_map(|key| match key.presence {
-            Presence::InsteadOf(other) if key.name == name => Some(other),
-            Presence::InsteadOf(other) if other == name => Some(key.name),
-            _ => None,
-        })
-        .collect()
+pub(super) fn stands_in_for(section: &'static Section, name: &str) -> Vec<&'static str> {
+    let keys = section.keys.iter();
+    keys.filter_map(|key| match key.presence {
+        Presence::InsteadOf(other) if key.name == name => Some(other),
+        Presence::InsteadOf(other) if other == name => Some(key.name),
+        _ => None,
+    })
+    .collect()
 }
 
 /// The key of any table that a name most likely means.
-pub(super) fn meant_anywhere(found: &str) -> Option<&'static Key> {
-    let keys = || KEYS.iter().copied().filter(|key| key.name != "kind");
+pub(super) fn meant_anywhere(sections: &'static [Section], found: &str) -> Option<&'static Key> {
+    let keys = || of_settings(sections).filter(|key| key.name != "kind");
     keys()
         .find(|key| key.name == found || key.path() == found)
         .or_else(|| keys().find(|key| also_called(key, found) || other_unit(key, found).is_some()))
@@ -82,23 +74,20 @@ pub(super) fn near(found: &str, keys: impl Iterator<Item = &'static Key> + Clone
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::key_table::all_keys;
 
     #[test]
     fn each_alias_leads_to_its_key_and_is_no_key_itself() {
-        for key in KEYS {
-            for alias in key.aliases {
+        for (key, other) in all_keys().flat_map(|key| all_keys().map(move |other| (key, other))) {
+            let beside = key.section == other.section
+                && (key.kinds.is_empty()
+                    || other.kinds.is_empty()
+                    || key.kinds.iter().any(|kind| other.belongs_to(kind)));
+            for alias in key.aliases.iter().filter(|_| beside) {
                 assert_eq!(*alias, plain(alias), "{alias} can never be found");
-                let clash = KEYS.iter().find(|other| other.section == key.section && other.name == *alias);
-                assert!(clash.is_none(), "{alias} is both a key and an alias of {}", key.path());
-                let rival = KEYS.iter().find(|other| {
-                    other.section == key.section && other.name != key.name && other.aliases.contains(alias)
-                });
-                assert!(
-                    rival.is_none(),
-                    "{alias} is an alias of {} and of {}",
-                    key.path(),
-                    rival.unwrap_or(&key).path()
-                );
+                assert!(other.name != *alias, "{alias} is both a key and an alias of {}", key.path());
+                let rivals = other.name != key.name && other.aliases.contains(alias);
+                assert!(!rivals, "{alias} is an alias of {} and of {}", key.path(), other.path());
             }
         }
     }

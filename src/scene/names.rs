@@ -1,133 +1,159 @@
 //! Wrong names in a scene file.
 
-use super::document::{Document, Header};
+use toml::de::DeValue;
+
+use super::document::{Document, Written};
 use super::entry::Entry;
-use super::fault::{Checked, Fault};
+use super::fault::{Fault, Place};
 use super::foreign_unit::ForeignUnit;
-use super::key_table::{KEYS, SECTIONS};
-use super::keys::{Key, Section, join_or, toml_float};
-use super::kinds::{ARRAYS, kinds_with};
-use super::meant::{also_called, key, meant_anywhere, near, other_unit};
+use super::keys::{Key, Section, toml_float};
+use super::meant::{also_called, meant_anywhere, near, other_unit};
 use super::nearest::nearest;
 use super::problem::Problem;
-use super::read::known_word;
 use super::value::{as_float, value_type};
 
-/// Refuses the first wrong name in the text.
-pub(super) fn check(document: &Document<'_>) -> Checked<()> {
-    let headers = document.headers.iter().map(|header| (&header.place, Item::Header(header)));
-    let strays = document.strays.iter().map(|entry| (&entry.place, Item::Stray(entry)));
-    let entries = document.entries.iter().map(|entry| (&entry.place, Item::Entry(entry)));
-    let mut items: Vec<_> = headers.chain(strays).chain(entries).collect();
-    items.sort_by_key(|(place, _)| (place.source, place.span.start));
-    items.into_iter().try_for_each(|(_, item)| match item {
-        Item::Header(header) => check_header(header),
-        Item::Stray(entry) => Err(stray(entry)),
-        Item::Entry(entry) => check_entry(document, entry),
-    })
+/// All wrong names, in the order of the text.
+pub(super) fn check(document: &Document<'_>) -> Vec<Fault> {
+    let strays = document.strays.iter().map(|entry| *stray(document, entry));
+    let tables = document.tables.iter().flat_map(|table| match document.section(&table.name) {
+        Some(section) if section.many == table.number.is_some() => in_table(document, section, table),
+        Some(section) => vec![*in_single_brackets(section, &table.place)],
+        None => vec![*unknown_section(document, table)],
+    });
+    let mut faults: Vec<_> = strays.chain(tables).collect();
+    faults.sort_by_key(|fault| (fault.place.source, fault.place.span.start));
+    faults
 }
 
-enum Item<'d, 't> {
-    Header(&'d Header),
-    Stray(&'d Entry<'t>),
-    Entry(&'d Entry<'t>),
+fn in_single_brackets(section: &Section, place: &Place) -> Box<Fault> {
+    let problem = Problem::Table {
+        table: format!("[{}]", section.name),
+        problem: "there may be several, so each is an item of an array".into(),
+        remedy: format!("write `{}` with two brackets", section.title()),
+    };
+    Fault::new(problem, place)
 }
 
-fn section(name: &str) -> Option<&'static Section> {
-    SECTIONS.iter().find(|section| section.name == name)
-}
-
-fn check_header(header: &Header) -> Checked<()> {
-    if section(&header.name).is_some() {
-        return Ok(());
-    }
-    if let Some(array) = ARRAYS.iter().find(|array| **array == header.name) {
-        let problem = Problem::Table {
-            table: format!("[{array}]"),
-            problem: "there may be several, so each is an item of an array".into(),
-            remedy: format!("write `[[{array}]]` with two brackets"),
-        };
-        return Err(Fault::new(problem, &header.place));
-    }
-    let meant = nearest(&header.name, SECTIONS.iter().map(|section| section.name).chain(ARRAYS));
-    let fault = Fault::new(Problem::UnknownSection { found: header.name.clone(), meant }, &header.place);
-    Err(match meant {
-        Some(meant) => fault.edit(&header.place, meant),
+fn unknown_section(document: &Document<'_>, table: &Written<'_>) -> Box<Fault> {
+    let sections = document.sections;
+    let meant = nearest(&table.name, sections.iter().map(|section| section.name));
+    let fault = Fault::new(Problem::UnknownSection { found: table.name.clone(), meant, sections }, &table.place);
+    match meant {
+        Some(meant) => fault.edit(&table.place, meant),
         None => fault,
-    })
+    }
 }
 
-fn stray(entry: &Entry<'_>) -> Box<Fault> {
-    if let Some(section) = section(&entry.name) {
+fn stray(document: &Document<'_>, entry: &Entry<'_>) -> Box<Fault> {
+    if let Some(section) = document.section(&entry.name) {
         let found = value_type(entry.value.get_ref());
-        return Fault::new(Problem::NotATable { section: section.name, found }, &entry.place);
+        return Fault::new(Problem::NotATable { section, found }, &entry.place);
     }
-    let meant = meant_anywhere(&entry.name);
+    let meant = meant_anywhere(document.sections, &entry.name);
     Fault::new(Problem::KeyOutsideTables { found: entry.name.clone(), meant }, &entry.place)
 }
 
-fn check_entry(document: &Document<'_>, entry: &Entry<'_>) -> Checked<()> {
-    let Some(section) = section(&entry.section) else { return Ok(()) };
-    if document.is_of_general_kind(section.name) {
-        return Ok(());
-    }
-    let here = || KEYS.iter().copied().filter(|key| key.section == section.name);
-    let found = &*entry.name;
-    if here().any(|key| key.name == found) {
-        return Ok(());
-    }
-    let kinds = kinds_with(section.name, found);
-    if !kinds.is_empty() {
-        return Err(of_other_kind(document, entry, &kinds));
-    }
-    // A setting takes the place of what is given; a line of the file does not.
-    let given = |key: &Key| entry.place.source == 0 && document.entry(key.section, key.name).is_some();
-    let elsewhere = || KEYS.iter().copied().filter(|key| key.section != section.name);
-    let named = elsewhere().find(|key| key.name == found && key.name != "kind");
-    if named.is_none()
-        && let Some((key, unit)) = here().find_map(|key| Some((key, other_unit(key, found)?)))
-    {
-        let fault = in_other_unit(entry, key, unit);
-        return Err(if given(key) { fault.unmended() } else { fault });
-    }
-    let meant = named
-        .or_else(|| here().find(|key| also_called(key, found)))
-        .or_else(|| near(found, here()))
-        .or_else(|| meant_anywhere(found));
-    let fault = Fault::new(Problem::UnknownKey { section: section.name, found: found.into(), meant }, &entry.place);
-    Err(match meant {
-        Some(key) if key.section == section.name && !given(key) => fault.edit(&entry.place, key.name),
-        _ => fault,
-    })
+/// Wrong names in a table: all of them, but of keys that belong to another kind the first.
+fn in_table(document: &Document<'_>, section: &'static Section, table: &Written<'_>) -> Vec<Fault> {
+    let kind = section.kind_key().and_then(|key| {
+        let word = table.entry(key.name)?.value.get_ref().as_str()?;
+        key.words().find(|known| *known == word)
+    });
+    let names = Names { sections: document.sections, section, kind, table };
+    let mut of_other_kind = false;
+    let wrong = table.entries.iter().filter_map(|entry| {
+        let fault = names.wrong(entry)?;
+        let is_another = matches!(fault.problem, Problem::OfOtherKind { .. });
+        let is_told = is_another && of_other_kind;
+        of_other_kind |= is_another;
+        (!is_told).then(|| *fault.in_item(section.many.then(|| table.title())))
+    });
+    wrong.collect()
 }
 
-/// The error for a key that belongs to another kind than the table is of: most likely the kind is wrong.
-fn of_other_kind(document: &Document<'_>, entry: &Entry<'_>, kinds: &[&str]) -> Box<Fault> {
-    let section = &*entry.section;
-    let quoted: Vec<String> = kinds.iter().map(|kind| format!("kind = \"{kind}\"")).collect();
-    let kind = document.entry(section, "kind");
-    if let (Some(kind), Some(key)) = (kind, key(&format!("{section}.kind")))
-        && let Err(fault) = known_word(key, kind)
-    {
-        return fault;
+/// The names in a table.
+struct Names<'d, 't> {
+    sections: &'static [Section],
+    section: &'static Section,
+    /// The kind of the table, where it has one that is known.
+    kind: Option<&'static str>,
+    table: &'d Written<'t>,
+}
+
+impl Names<'_, '_> {
+    /// What is wrong with the name of an entry.
+    fn wrong(&self, entry: &Entry<'_>) -> Option<Box<Fault>> {
+        if self.here().any(|key| key.name == entry.name) {
+            return None;
+        }
+        let same = self.section.keys.iter().filter(|key| key.name == entry.name);
+        let kinds: Vec<&str> = same.flat_map(|key| key.kinds).copied().collect();
+        Some(match self.kind {
+            Some(here) if !kinds.is_empty() => self.of_other_kind(entry, kinds, here),
+            _ => self.unknown(entry),
+        })
     }
-    let found = kind.and_then(|kind| kind.value.get_ref().as_str());
-    let here = found.map_or("no kind is given".to_owned(), |kind| format!("the kind is \"{kind}\""));
-    let problem = Problem::Table {
-        table: format!("[{section}]"),
-        problem: format!("`{}` is a key of {}, and here {here}", entry.name, join_or(&quoted)),
-        remedy: format!("write {}, or take the key out", join_or(&quoted)),
-    };
-    Fault::new(problem, &entry.place).also(kind.map(Entry::value_place).as_ref())
+
+    /// The keys that may stand here.
+    fn here(&self) -> impl Iterator<Item = &'static Key> + Clone + use<'_> {
+        self.section.keys_of(self.kind)
+    }
+
+    /// Whether a key is given beside an entry. A setting takes the place of what is given; a line of the file does not.
+    fn is_given(&self, key: &Key, entry: &Entry<'_>) -> bool {
+        entry.place.source == 0 && self.table.entry(key.name).is_some()
+    }
+
+    fn of_other_kind(&self, entry: &Entry<'_>, kinds: Vec<&'static str>, here: &'static str) -> Box<Fault> {
+        let meant = near(&entry.name, self.here().filter(|key| !self.is_given(key, entry)));
+        let problem = Problem::OfOtherKind { section: self.section, found: entry.name.clone(), kinds, here, meant };
+        let fault = Fault::new(problem, &entry.place).also(self.table.entry("kind").map(Entry::value_place).as_ref());
+        match meant {
+            Some(key) => fault.edit(&entry.place, key.name),
+            None => fault,
+        }
+    }
+
+    fn unknown(&self, entry: &Entry<'_>) -> Box<Fault> {
+        let found = &*entry.name;
+        let others = self.sections.iter().filter(|other| !other.many && other.name != self.section.name);
+        let elsewhere = others.flat_map(|other| other.keys).find(|key| key.name == found && key.name != "kind");
+        let in_unit = || self.here().find_map(|key| Some((key, other_unit(key, found)?)));
+        if let (None, Some((key, unit))) = (elsewhere, in_unit()) {
+            let fault = in_other_unit(entry, key, unit);
+            return if self.is_given(key, entry) { fault.unmended() } else { fault };
+        }
+        let meant = elsewhere
+            .or_else(|| self.here().find(|key| also_called(key, found)))
+            .or_else(|| near(found, self.here()))
+            .or_else(|| meant_anywhere(self.sections, found));
+        let problem = Problem::UnknownKey { section: self.section, kind: self.kind, found: found.into(), meant };
+        let fault = Fault::new(problem, &entry.place);
+        match meant {
+            Some(key) if key.section == self.section.name && !self.is_given(key, entry) => {
+                fault.edit(&entry.place, key.name)
+            }
+            _ => fault,
+        }
+    }
 }
 
 fn in_other_unit(entry: &Entry<'_>, key: &'static Key, unit: &'static ForeignUnit) -> Box<Fault> {
     let given = as_float(entry.value.get_ref()).filter(|value| value.is_finite());
     let values = given.map(|value| (value, unit.convert(value)));
-    let problem = Problem::OtherUnit { found: entry.name.clone(), key, unit: unit.words, values };
-    let fault = Fault::new(problem, &entry.place).edit(&entry.place, key.name);
-    match values {
-        Some((before, after)) if before != after => fault.edit(&entry.value_place(), toml_float(after)),
-        _ => fault,
-    }
+    let fault =
+        Fault::new(Problem::OtherUnit { found: entry.name.clone(), key, unit: unit.words, values }, &entry.place);
+    let fault = fault.edit(&entry.place, key.name);
+    let items = match entry.value.get_ref() {
+        DeValue::Array(items) => items.iter().collect(),
+        _ => vec![&entry.value],
+    };
+    items.into_iter().fold(fault, |fault, item| {
+        match as_float(item.get_ref()).map(|value| (value, unit.convert(value))) {
+            Some((before, after)) if before != after && before.is_finite() => {
+                fault.edit(&entry.place_of(item.span()), toml_float(after))
+            }
+            _ => fault,
+        }
+    })
 }

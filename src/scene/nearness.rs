@@ -1,33 +1,31 @@
 //! Places that are almost one: what holds or moves two of them differently tears at a gap that no element resolves.
 
-use super::data::{Action, ActionKind, Edge, ParametricDirection, Place, Support};
-use super::document::Document;
+use super::data::{Action, ActionKind, ParametricDirection, Place, Support};
 use super::fault::Checked;
+use super::places::EDGES;
 use super::table::Table;
+use super::tables::Tables;
 use crate::units::significant;
 
 /// Fractions of a side by which places are apart, or one.
 const APART: f64 = 1e-4;
-/// The edges, as a scene calls them.
-const EDGES: [(Edge, &str); 4] =
-    [(Edge::UStart, "u-start"), (Edge::UEnd, "u-end"), (Edge::VStart, "v-start"), (Edge::VEnd, "v-end")];
 
 /// A place of a scene and where it is written.
-struct Site<'a, 'd, 't> {
+struct Site<'a> {
     name: String,
     on: Place,
-    table: &'a Table<'d, 't>,
+    table: &'a Table,
 }
 
 /// Refuses supports and actions on places that almost coincide, or almost lie on an edge.
-pub(super) fn check(document: &Document<'_>, supports: &[Support], actions: &[Action]) -> Checked<()> {
-    let (held, loaded) = (document.tables("support"), document.tables("action"));
-    let supports = supports.iter().zip(&held).map(|(support, table)| Site {
+pub(super) fn check(tables: &Tables, supports: &[Support], actions: &[Action]) -> Checked<()> {
+    let (held, loaded) = (tables.all("support"), tables.all("action"));
+    let supports = supports.iter().zip(held).map(|(support, table)| Site {
         name: format!("support \"{}\"", support.name),
         on: support.on,
         table,
     });
-    let actions = actions.iter().zip(&loaded).filter_map(|(action, table)| {
+    let actions = actions.iter().zip(loaded).filter_map(|(action, table)| {
         Some(Site { name: format!("action \"{}\"", action.name), on: place_of(&action.kind)?, table })
     });
     let mut before: Vec<Site> = Vec::new();
@@ -36,8 +34,8 @@ pub(super) fn check(document: &Document<'_>, supports: &[Support], actions: &[Ac
         let others = before.iter().map(|other| (other.on, other.name.clone()));
         let mut gaps = edges.chain(others).filter_map(|(on, name)| Some((gap(site.on, on)?, name)));
         if let Some((gap, other)) = gaps.next() {
-            return Err(site.table.wrong(
-                site.table.place_of("on").as_ref(),
+            return Err(site.table.wrong_at(
+                "on",
                 format!("{} lies {} of a side beside {other}, which is almost the same place", site.name, significant(gap, 2)),
                 format!("no element resolves what is between them: write the same place for both, or put them {APART} of the side apart"),
             ));
@@ -81,6 +79,7 @@ fn gap(one: Place, other: Place) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::data::Edge;
 
     #[test]
     fn places_are_one_or_apart_or_almost_one() {

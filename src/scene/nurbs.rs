@@ -3,8 +3,7 @@
 use super::data::NurbsPatch;
 use super::fault::Checked;
 use super::keys::number;
-use super::kinds::SEAMS;
-use super::table::Table;
+use super::table::{Table, data};
 use crate::spline::{Grid, KnotFlaw, check_knots, control_count};
 
 /// Largest scene file, and largest file of a surface, bytes: a log holds the one with the other, and reads no larger ones.
@@ -27,51 +26,20 @@ struct NurbsFile {
 }
 
 /// A geometry of kind `nurbs`.
-pub(super) fn nurbs(table: &Table<'_, '_>, folder: &std::path::Path) -> Checked<NurbsPatch> {
-    let file = match table.maybe_text("file")? {
-        Some(name) => {
-            let path = folder.join(&name);
-            let wrong = |error: String| {
-                let problem = format!("{} cannot be read: {error}", path.display());
-                table.wrong(table.place_of("file").as_ref(), problem, "the path is relative to the scene file; the file is a JSON object with the keys degrees, knots_u, knots_v, control_points_mm, weights")
-            };
-            match std::fs::metadata(&path) {
-                // A device or a pipe may never end.
-                Ok(found) if !found.is_file() => return Err(wrong("it is no regular file".into())),
-                Ok(found) if found.len() > SCENE_BYTES_LIMIT => {
-                    let bytes = found.len();
-                    return Err(wrong(format!("it has {bytes} bytes, and no more than {SCENE_BYTES_LIMIT} are taken")));
-                }
-                _ => {}
-            }
-            let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
-            // Some programs put a byte-order mark in front, which JSON does not know.
-            let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-            serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?
-        }
+pub(super) fn nurbs(table: &Table, folder: &std::path::Path) -> Checked<NurbsPatch> {
+    let file = match table.get::<Option<String>>("file") {
         None => {
-            let degrees: [f64; 2] = table.tuple("degrees", "[1, 2]")?;
-            let missing = |name: &str| {
-                table.missing(
-                    name,
-                    "a nurbs surface has degrees, knots_u, knots_v, control_points_mm and, if it is rational, weights",
-                )
-            };
-            if degrees.iter().any(|degree| degree.fract() != 0.0) {
-                let problem =
-                    format!("degrees are whole numbers, not {} and {}", number(degrees[0]), number(degrees[1]));
-                return Err(table.wrong(table.place_of("degrees").as_ref(), problem, "1 to 5 are offered"));
-            }
-            NurbsFile {
-                degrees: degrees.map(|degree| degree.max(0.0) as usize),
-                knots_u: table.maybe_numbers("knots_u")?.ok_or_else(|| missing("knots_u"))?,
-                knots_v: table.maybe_numbers("knots_v")?.ok_or_else(|| missing("knots_v"))?,
-                control_points_mm: table
-                    .maybe_rows("control_points_mm", "[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]")?
-                    .ok_or_else(|| missing("control_points_mm"))?,
-                weights: table.maybe_numbers("weights")?.unwrap_or_default(),
-            }
+            let keys = ["degrees", "knots_u", "knots_v", "control_points_mm", "weights"];
+            let given = table.values.iter().filter(|(name, _)| keys.contains(&name.as_str()));
+            data(&table.title, given.map(|(name, value)| (name.clone(), value.clone())).collect())
         }
+        Some(_) if table.place_of("weights").is_some() => {
+            let remedy = "take `weights` out, or write them into the file";
+            return Err(table.wrong_at("weights", "the surface stands in a file, and so do its weights", remedy));
+        }
+        Some(name) => read(&folder.join(name)).map_err(|problem| {
+            table.wrong_at("file", problem, "the path is relative to the scene file; the file is a JSON object with the keys degrees, knots_u, knots_v, control_points_mm, weights")
+        })?,
     };
     let mut patch = NurbsPatch {
         degrees: file.degrees,
@@ -79,7 +47,7 @@ pub(super) fn nurbs(table: &Table<'_, '_>, folder: &std::path::Path) -> Checked<
         knots_v: file.knots_v,
         control_points_mm: file.control_points_mm,
         weights: file.weights,
-        seam: table.maybe_word("seam", &SEAMS)?,
+        seam: table.get("seam"),
     };
     if patch.weights.is_empty() {
         patch.weights = vec![1.0; patch.control_points_mm.len()];
@@ -88,6 +56,24 @@ pub(super) fn nurbs(table: &Table<'_, '_>, folder: &std::path::Path) -> Checked<
         table.wrong(table.place_of("file").or(table.place_of(key)).as_ref(), problem, remedy)
     })?;
     Ok(patch)
+}
+
+/// Reads a surface from a file of its own; why it cannot be read otherwise.
+fn read(path: &std::path::Path) -> Result<NurbsFile, String> {
+    let wrong = |error: String| format!("{} cannot be read: {error}", path.display());
+    match std::fs::metadata(path) {
+        // A device or a pipe may never end.
+        Ok(found) if !found.is_file() => return Err(wrong("it is no regular file".into())),
+        Ok(found) if found.len() > SCENE_BYTES_LIMIT => {
+            let bytes = found.len();
+            return Err(wrong(format!("it has {bytes} bytes, and no more than {SCENE_BYTES_LIMIT} are taken")));
+        }
+        _ => {}
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+    // Some programs put a byte-order mark in front, which JSON does not know.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    serde_json::from_str(text).map_err(|error| wrong(error.to_string()))
 }
 
 /// Why a patch is no tensor-product surface.

@@ -1,7 +1,7 @@
 //! What can be wrong with a scene, with the numbers.
 
 use super::data::Stage;
-use super::keys::Key;
+use super::keys::{Form, Key, Section};
 
 /// Type of a TOML value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,11 +87,13 @@ pub enum Problem {
         found: String,
         /// The nearest right spelling.
         meant: Option<&'static str>,
+        /// The tables that there are.
+        sections: &'static [Section],
     },
     /// A table of a scene is given as a value or as an array of tables.
     NotATable {
         /// The table.
-        section: &'static str,
+        section: &'static Section,
         /// What stands there.
         found: ValueType,
     },
@@ -105,10 +107,25 @@ pub enum Problem {
     /// The table has no key of this name.
     UnknownKey {
         /// The table.
-        section: &'static str,
+        section: &'static Section,
+        /// Its kind, where its keys hang on that and it is known.
+        kind: Option<&'static str>,
         /// What stands there.
         found: String,
         /// What was most likely meant; may be a key of another table.
+        meant: Option<&'static Key>,
+    },
+    /// The key belongs to tables of another kind.
+    OfOtherKind {
+        /// The table.
+        section: &'static Section,
+        /// What stands there.
+        found: String,
+        /// The kinds that have it.
+        kinds: Vec<&'static str>,
+        /// The kind of the table.
+        here: &'static str,
+        /// A key of this kind that may be meant.
         meant: Option<&'static Key>,
     },
     /// A key's name ends in another unit.
@@ -125,7 +142,7 @@ pub enum Problem {
     /// A table that every scene must have is missing.
     MissingSection {
         /// The table.
-        section: &'static str,
+        section: &'static Section,
     },
     /// A key that has no default is missing.
     MissingKey {
@@ -153,12 +170,49 @@ pub enum Problem {
         /// What stands there.
         value: f64,
     },
-    /// A list of one, three or more numbers where a pair is wanted.
-    NotAPair {
+    /// A list of too few or too many.
+    WrongLength {
         /// The key.
         key: &'static Key,
         /// How many stand there.
         found: usize,
+    },
+    /// Text that is not one line of ordinary characters.
+    Unprintable {
+        /// The key.
+        key: &'static Key,
+        /// The first character that cannot be seen.
+        character: char,
+    },
+    /// No part of the surface is called so.
+    UnknownPlace {
+        /// The key.
+        key: &'static Key,
+        /// What stands there.
+        found: String,
+        /// The nearest right spelling.
+        meant: Option<&'static str>,
+    },
+    /// A line outside of the surface, or on its edge.
+    NoSuchLine {
+        /// The key.
+        key: &'static Key,
+        /// What stands there.
+        found: String,
+    },
+    /// A point outside of the surface.
+    NoSuchPoint {
+        /// The key.
+        key: &'static Key,
+        /// Its fractions of u and v.
+        found: [f64; 2],
+    },
+    /// A part of the surface of a form that the key does not take.
+    WrongForm {
+        /// The key.
+        key: &'static Key,
+        /// Its form.
+        found: Form,
     },
     /// The key does not take this word.
     UnknownWord {
@@ -190,7 +244,7 @@ pub enum Problem {
         /// Elements that way over the whole shell.
         elements: usize,
         /// The part that is modelled, as it stands in the scene.
-        part: &'static str,
+        part: String,
     },
     /// The shell is not thin: thickness ≥ radius.
     NotThin {
@@ -240,6 +294,21 @@ pub enum Problem {
     AdaptUnused,
     /// The stages cannot run as they stand.
     Stages(StageOrderProblem),
+}
+
+impl Problem {
+    /// Name of the table, or path of the key, that a wrong name most likely means.
+    pub(super) fn meant(&self) -> Option<String> {
+        match self {
+            Problem::UnknownSection { meant, .. } => meant.map(str::to_owned),
+            Problem::NotATable { section, .. } => Some(section.name.to_owned()),
+            Problem::KeyOutsideTables { meant, .. }
+            | Problem::UnknownKey { meant, .. }
+            | Problem::OfOtherKind { meant, .. } => meant.map(Key::path),
+            Problem::OtherUnit { key, .. } => Some(key.path()),
+            _ => None,
+        }
+    }
 }
 
 /// Why a list of stages cannot run.

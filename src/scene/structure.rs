@@ -1,39 +1,49 @@
 //! Supports, actions and probes, and whether they make a problem.
 
 use super::data::{Action, ActionKind, Geometry, Hold, Load, Material, Motion, Probe, Support};
-use super::fault::Checked;
-use super::read::Reader;
+use super::fault::{Checked, Faults};
+use super::table::Table;
+use super::tables::Tables;
 use super::{actions, nearness, probes, supports};
 
-/// Supports, actions and probes, and whether they make a problem.
+/// What holds the shell, what acts on it, and what is measured.
+pub(super) type Structure = (Vec<Support>, Vec<Action>, Vec<Probe>);
+
+/// Reads supports, actions and probes; `None` where something is wrong with them.
 pub(super) fn structure(
-    reader: &Reader<'_, '_>,
+    tables: &Tables,
     load: &Load,
     shell: (&Geometry, &Material),
-) -> Checked<(Vec<Support>, Vec<Action>, Vec<Probe>)> {
-    let document = reader.document;
-    let tables = document.tables("support");
+    faults: &mut Faults,
+) -> Option<Structure> {
+    let before = faults.0.len();
     let supports: Vec<Support> =
-        tables.into_iter().enumerate().map(|(k, table)| supports::support(table, k + 1)).collect::<Checked<_>>()?;
-    let actions: Vec<Action> = document
-        .tables("action")
-        .into_iter()
-        .enumerate()
-        .map(|(k, table)| actions::action(table, k + 1, shell))
-        .collect::<Checked<_>>()?;
-    let mut probes: Vec<Probe> = Vec::new();
-    for table in document.tables("probe") {
-        let name = table.place_of("name");
-        let other = table.wrong(name.as_ref(), "another probe has the same name", "reports need a name for each");
-        let probe = probes::probe(table, &supports, shell.0)?;
-        if probes.iter().any(|known| known.name == probe.name) {
-            return Err(other);
+        tables.all("support").filter_map(|table| faults.keep(supports::support(table))).collect();
+    let actions: Vec<Action> =
+        tables.all("action").filter_map(|table| faults.keep(actions::action(table, shell))).collect();
+    let probe = |table: &Table| faults.keep(probes::probe(table, &supports, shell.0));
+    let probes: Vec<Probe> = tables.all("probe").filter_map(probe).collect();
+    if faults.0.len() > before {
+        return None;
+    }
+    faults.keep(check(tables, load, shell.1, (&supports, &actions, &probes)))?;
+    Some((supports, actions, probes))
+}
+
+fn check(
+    tables: &Tables,
+    load: &Load,
+    material: &Material,
+    (supports, actions, probes): (&[Support], &[Action], &[Probe]),
+) -> Checked<()> {
+    for (index, (probe, table)) in probes.iter().zip(tables.all("probe")).enumerate() {
+        if probes[..index].iter().any(|known| known.name == probe.name) {
+            return Err(table.wrong_at("name", "another probe has the same name", "reports need a name for each"));
         }
-        probes.push(probe);
     }
     match load {
         Load::EndRotation(_) => {
-            if let Some(table) = document.tables("support").first().or(document.tables("action").first()) {
+            if let Some(table) = tables.all("support").chain(tables.all("action")).next() {
                 return Err(table.wrong(
                     None,
                     "turning ends are the supports and the load of this scene",
@@ -41,18 +51,16 @@ pub(super) fn structure(
                 ));
             }
         }
-        Load::Steps(_) => check_steps(reader, &supports, &actions)?,
+        Load::Steps(_) => check_steps(tables, supports, actions)?,
     }
-    Ok((supports, actions, probes))
+    check_temperature(tables, material, actions)
 }
 
-fn check_steps(reader: &Reader<'_, '_>, supports: &[Support], actions: &[Action]) -> Checked<()> {
-    let document = reader.document;
-    let load = document.table("load");
-    if let Some(header) = document.header("symmetry") {
-        let symmetry = document.table("symmetry");
+fn check_steps(tables: &Tables, supports: &[Support], actions: &[Action]) -> Checked<()> {
+    let (load, symmetry) = (tables.one("load"), tables.one("symmetry"));
+    if symmetry.is_given {
         return Err(symmetry.wrong(
-            Some(&header.place),
+            None,
             "[symmetry] belongs to turning ends",
             "model the part itself, and give its cut edges [[support]] tables of kind = \"symmetric\"",
         ));
@@ -64,10 +72,10 @@ fn check_steps(reader: &Reader<'_, '_>, supports: &[Support], actions: &[Action]
             "add [[support]] tables, such as on = \"u-start\", kind = \"clamped\"",
         ));
     }
-    for (index, (support, table)) in supports.iter().zip(document.tables("support")).enumerate() {
+    for (index, (support, table)) in supports.iter().zip(tables.all("support")).enumerate() {
         if let Some(other) = supports[..index].iter().find(|other| other.name == support.name) {
-            return Err(table.wrong(
-                table.place_of("name").as_ref(),
+            return Err(table.wrong_at(
+                "name",
                 format!("another support is called \"{}\"", other.name),
                 "give each a name of its own",
             ));
@@ -76,14 +84,14 @@ fn check_steps(reader: &Reader<'_, '_>, supports: &[Support], actions: &[Action]
             supports[..index].iter().find(|other| other.on == support.on && hold_the_same(other, support))
         {
             let problem = format!("\"{}\" holds the same place already", other.name);
-            return Err(table.wrong(
-                table.place_of("on").as_ref(),
+            return Err(table.wrong_at(
+                "on",
                 problem,
                 "a place is held once: take one of them away, or hold other components",
             ));
         }
     }
-    nearness::check(document, supports, actions)?;
+    nearness::check(tables, supports, actions)?;
     let moves = |support: &Support| match &support.hold {
         Hold::Displacement { displacement_mm } => {
             displacement_mm.iter().any(|value| value.is_some_and(|value| value != 0.0))
@@ -104,10 +112,10 @@ fn check_steps(reader: &Reader<'_, '_>, supports: &[Support], actions: &[Action]
 }
 
 /// Whether the material says what a change of temperature does to it.
-pub(super) fn check_temperature(reader: &Reader<'_, '_>, material: &Material, actions: &[Action]) -> Checked<()> {
+fn check_temperature(tables: &Tables, material: &Material, actions: &[Action]) -> Checked<()> {
     let is_thermal = |action: &Action| matches!(action.kind, ActionKind::Temperature { .. });
-    let Some(heated) = actions.iter().position(is_thermal).filter(|_| !material.expands()) else { return Ok(()) };
-    let action = &reader.document.tables("action")[heated];
+    let heated = actions.iter().zip(tables.all("action")).find(|(action, _)| is_thermal(action) && !material.expands());
+    let Some((_, action)) = heated else { return Ok(()) };
     let (problem, remedy) = match material {
         Material::Isotropic { .. } => (
             "the material has no `thermal_expansion_per_k`".into(),
@@ -125,7 +133,7 @@ pub(super) fn check_temperature(reader: &Reader<'_, '_>, material: &Material, ac
             )
         }
     };
-    Err(action.wrong(action.place_of("kind").as_ref(), problem, remedy))
+    Err(action.wrong_at("kind", problem, remedy))
 }
 
 /// Whether two supports on one place hold a common component.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::fault::{Fault, Place};
-use super::kinds::ARRAYS;
+use super::key_table::SECTIONS;
 use super::problem::{Problem, SyntaxSlip};
 
 /// The error for a text that is not TOML; `base` is where the text begins.
@@ -17,7 +17,7 @@ pub(super) fn fault(error: &toml::de::Error, text: &str, base: &Place) -> Box<Fa
     let found = text.get(span.clone()).unwrap_or_default().trim();
     let line = line_around(text, span.start);
     let slip = match slip(found, line, error.message()) {
-        Some(SyntaxSlip::Twice) if ARRAYS.contains(&found) && line.trim_start().starts_with('[') => {
+        Some(SyntaxSlip::Twice) if is_array(found) && line.trim_start().starts_with('[') => {
             Some(SyntaxSlip::TwiceInSingleBrackets)
         }
         slip => slip,
@@ -31,6 +31,10 @@ pub(super) fn fault(error: &toml::de::Error, text: &str, base: &Place) -> Box<Fa
         Some(SyntaxSlip::Capitals) => fault.edit(&place, found.to_lowercase()),
         _ => fault,
     }
+}
+
+fn is_array(name: &str) -> bool {
+    SECTIONS.iter().any(|section| section.many && section.name == name)
 }
 
 fn slip(found: &str, line: &str, message: &str) -> Option<SyntaxSlip> {

@@ -1,50 +1,141 @@
-//! One table of a scene file whose keys depend on its `kind`, read key by key. What is left over at the end is a mistake.
+//! One table of a scene file, read: each value of the type and within the limits of its key, and every default filled in.
 
-use std::cell::RefCell;
+use std::collections::BTreeMap;
 
-use toml::Spanned;
-use toml::de::DeValue;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
 
+use super::document::{Document, Written};
 use super::entry::Entry;
-use super::fault::{Checked, Fault, Place};
-use super::keys::number;
-use super::meant;
-use super::nearest::nearest;
+use super::fault::{CheckedWhole, Fault, Place};
+use super::keys::{Key, Presence, Section};
 use super::problem::Problem;
-use super::value::{as_float, value_type};
-use crate::printable::breaks_a_line;
+use super::read;
 
-/// The entries of one table.
-pub(super) struct Table<'d, 't> {
-    /// What errors call it: `[geometry]`, `[[support]] 2`.
+/// What one table says.
+pub(super) struct Table {
+    pub section: &'static Section,
+    /// What errors call it.
     pub title: String,
+    /// Its number, from 1, where there may be several.
+    pub number: usize,
+    /// Whether the file has it, or a setting.
+    pub is_given: bool,
     /// Where it begins.
     pub place: Place,
-    entries: Vec<&'d Entry<'t>>,
-    asked: RefCell<Vec<&'static str>>,
+    /// Values in the form that the data of a scene have in JSON, by key.
+    pub values: Map<String, Value>,
+    /// Places of given values: of the whole, and of the items of a list.
+    places: BTreeMap<&'static str, (Place, Vec<Place>)>,
 }
 
-/// An interval of allowed numbers with a reason for it.
-#[derive(Clone, Copy)]
-pub(super) struct Range {
-    /// Greater than this.
-    pub above: f64,
-    /// At most this.
-    pub most: f64,
-    /// Why.
-    pub reason: &'static str,
-}
+impl Table {
+    /// Reads a table, or one that is not there, with the defaults of its keys. A key that one of
+    /// `wrong_names` is said to mean is not said to be missing as well.
+    pub fn read(
+        document: &Document<'_>,
+        section: &'static Section,
+        written: Option<&Written<'_>>,
+        wrong_names: &[Fault],
+    ) -> CheckedWhole<Self> {
+        let mut table = Self {
+            section,
+            title: written.map_or(section.title(), Written::title),
+            number: written.and_then(|written| written.number).unwrap_or_default(),
+            is_given: written.is_some(),
+            place: written.map_or(&document.end, |written| &written.place).clone(),
+            values: Map::new(),
+            places: BTreeMap::new(),
+        };
+        let mut faults = Vec::new();
+        let mut take = |table: &mut Self, key: &'static Key| match table.take(document, key, written) {
+            Ok(()) => true,
+            Err(fault) => {
+                let fault = fault.in_item(section.many.then(|| table.title.clone()));
+                let means_it = |wrong: &Fault| wrong.item == fault.item && wrong.problem.meant() == Some(key.path());
+                let is_told = matches!(fault.problem, Problem::MissingKey { .. }) && wrong_names.iter().any(means_it);
+                faults.extend((!is_told).then_some(*fault));
+                false
+            }
+        };
+        // Which keys it has hangs on its kind.
+        let kind_key = section.kind_key();
+        if kind_key.is_none_or(|key| take(&mut table, key)) {
+            let kind = table.values.get("kind").and_then(Value::as_str).map(str::to_owned);
+            let others = section.keys_of(kind_key.and(kind.as_deref())).filter(|key| Some(*key) != kind_key);
+            others.for_each(|key| _ = take(&mut table, key));
+        }
+        if faults.is_empty() { Ok(table) } else { Err(faults) }
+    }
 
-/// Any finite number.
-pub(super) const ANY: Range = Range { above: f64::NEG_INFINITY, most: f64::INFINITY, reason: "" };
+    /// Takes the value of a key, or its default.
+    fn take(
+        &mut self,
+        document: &Document<'_>,
+        key: &'static Key,
+        written: Option<&Written<'_>>,
+    ) -> Result<(), Box<Fault>> {
+        let entry = |name: &str| written.and_then(|written| written.entry(name));
+        let value = match (entry(key.name), key.presence) {
+            (Some(given), Presence::InsteadOf(other) | Presence::Unless(other)) if entry(other).is_some() => {
+                let other = self.section.keys.iter().find(|it| it.name == other).unwrap_or(key);
+                let also = entry(other.name).map(|entry| entry.place.clone());
+                return Err(Fault::new(Problem::BothGiven { key, other }, &given.place).also(also.as_ref()));
+            }
+            (Some(given), _) => {
+                let items = given.value.get_ref().as_array().into_iter().flatten();
+                let items = items.map(|item| given.place_of(item.span())).collect();
+                self.places.insert(key.name, (given.value_place(), items));
+                read::value(key, given)?
+            }
+            (None, Presence::Default(text)) => match Entry::of_default(key, text) {
+                Ok(entry) => read::value(key, &entry)?,
+                Err(_) => unreachable!("the default of {} is no TOML", key.path()),
+            },
+            (None, Presence::Required) => return Err(missing(document, key, written)),
+            (None, Presence::Unless(other)) if entry(other).is_none() => return Err(missing(document, key, written)),
+            (None, _) => return Ok(()),
+        };
+        self.values.insert(key.name.to_owned(), value);
+        Ok(())
+    }
 
-/// Lengths of a shell, mm.
-pub(super) const LENGTH: Range =
-    Range { above: 0.0, most: 1e6, reason: "lengths are positive, in mm, and at most a kilometre" };
+    /// The word of its kind.
+    pub fn kind(&self) -> &str {
+        self.word("kind")
+    }
 
-impl<'d, 't> Table<'d, 't> {
-    pub fn new(title: String, place: Place, entries: Vec<&'d Entry<'t>>) -> Self {
-        Self { title, place, entries, asked: RefCell::default() }
+    /// Its name, or else one by its number: "support 2".
+    pub fn name(&self) -> String {
+        let numbered = || format!("{} {}", self.section.name, self.number);
+        self.get::<Option<String>>("name").unwrap_or_else(numbered)
+    }
+
+    /// The word of a key; empty where it has none.
+    pub fn word(&self, name: &str) -> &str {
+        self.values.get(name).and_then(Value::as_str).unwrap_or_default()
+    }
+
+    /// The value of a key, or its default; `None` of what may be left out where it is.
+    pub fn get<T: DeserializeOwned>(&self, name: &str) -> T {
+        let value = self.values.get(name).cloned().unwrap_or_default();
+        serde_json::from_value(value).unwrap_or_else(|error| unreachable!("{} {name}: {error}", self.title))
+    }
+
+    /// All its values as the data of a scene.
+    pub fn data<T: DeserializeOwned>(&self) -> T {
+        data(&self.title, self.values.clone())
+    }
+
+    /// Where a key's value stands, if it is given.
+    pub fn place_of(&self, name: &str) -> Option<Place> {
+        self.places.get(name).map(|(whole, _)| whole.clone())
+    }
+
+    /// Where an item of a key's value stands, or the whole where it is no list.
+    pub fn place_of_item(&self, name: &str, index: usize) -> Option<Place> {
+        let (whole, items) = self.places.get(name)?;
+        Some(items.get(index).unwrap_or(whole).clone())
     }
 
     /// An error about this table.
@@ -53,191 +144,23 @@ impl<'d, 't> Table<'d, 't> {
         Fault::new(problem, place.unwrap_or(&self.place))
     }
 
-    /// The entry of a key, if it is given.
-    pub fn entry(&self, name: &'static str) -> Option<&'d Entry<'t>> {
-        self.asked.borrow_mut().push(name);
-        self.entries.iter().find(|entry| entry.name == name).copied()
+    /// An error about the value of a key.
+    pub fn wrong_at(&self, name: &str, problem: impl Into<String>, remedy: impl Into<String>) -> Box<Fault> {
+        self.wrong(self.place_of(name).as_ref(), problem, remedy)
     }
+}
 
-    /// Where a key's value stands.
-    pub fn place_of(&self, name: &str) -> Option<Place> {
-        self.entries.iter().find(|entry| entry.name == name).map(|entry| entry.value_place())
-    }
+/// Values by key as the data of a scene, which have fields of the same names.
+pub(super) fn data<T: DeserializeOwned>(title: &str, values: Map<String, Value>) -> T {
+    serde_json::from_value(Value::Object(values)).unwrap_or_else(|error| unreachable!("{title}: {error}"))
+}
 
-    fn required(&self, name: &'static str, example: &str) -> Checked<&'d Entry<'t>> {
-        self.entry(name).ok_or_else(|| self.missing(name, format!("write for example `{name} = {example}`")))
-    }
-
-    /// The error for a key that is not there. One that is no key at all most likely stands in its place, and is told first.
-    pub fn missing(&self, name: &str, remedy: impl Into<String>) -> Box<Fault> {
-        let remedy = remedy.into();
-        let asked = self.asked.borrow();
-        let known = |entry: &Entry<'_>| asked.contains(&entry.name.as_str()) || meant::is_known(&entry.name);
-        match self.entries.iter().find(|entry| !known(entry)) {
-            None => self.wrong(None, format!("`{name}` is missing"), remedy),
-            Some(stray) => {
-                let meant = nearest(&stray.name, std::iter::once(name));
-                let remedy = match meant {
-                    Some(_) => format!("perhaps `{name}` is meant, which is missing: {remedy}"),
-                    None => format!("take it out; `{name}` is missing: {remedy}"),
-                };
-                self.wrong(Some(&stray.place), format!("`{}` is no key of it", stray.name), remedy)
-            }
-        }
-    }
-
-    fn not_a(&self, entry: &Entry<'_>, wanted: &str) -> Box<Fault> {
-        let found = value_type(entry.value.get_ref());
-        let found = super::explain::type_words(found);
-        self.wrong(Some(&entry.value_place()), format!("`{}` must be {wanted}, not {found}", entry.name), "")
-    }
-
-    fn checked(&self, entry: &Entry<'_>, item: &Spanned<DeValue<'_>>, range: Range, wanted: &str) -> Checked<f64> {
-        let place = entry.place_of(item.span());
-        let value = as_float(item.get_ref()).ok_or_else(|| self.not_a(entry, wanted))?;
-        if !value.is_finite() {
-            return Err(self.wrong(Some(&place), format!("`{}` must be a finite number", entry.name), ""));
-        }
-        if value <= range.above || value > range.most {
-            let problem = format!("`{}` cannot be {}", entry.name, number(value));
-            return Err(self.wrong(Some(&place), problem, range.reason));
-        }
-        Ok(value + 0.0)
-    }
-
-    /// A number.
-    pub fn number(&self, name: &'static str, range: Range, example: &str) -> Checked<f64> {
-        let entry = self.required(name, example)?;
-        self.checked(entry, &entry.value, range, "a number")
-    }
-
-    /// A number that may be left out.
-    pub fn number_or(&self, name: &'static str, range: Range, default: f64) -> Checked<f64> {
-        Ok(self.maybe_number(name, range)?.unwrap_or(default))
-    }
-
-    /// A number, if it is given.
-    pub fn maybe_number(&self, name: &'static str, range: Range) -> Checked<Option<f64>> {
-        self.entry(name).map(|entry| self.checked(entry, &entry.value, range, "a number")).transpose()
-    }
-
-    /// Items of a list.
-    fn items(&self, entry: &'d Entry<'t>, wanted: &str) -> Checked<Vec<&'d Spanned<DeValue<'t>>>> {
-        match entry.value.get_ref() {
-            DeValue::Array(items) => Ok(items.iter().collect()),
-            _ => Err(self.not_a(entry, wanted)),
-        }
-    }
-
-    /// A list of numbers, if it is given.
-    pub fn maybe_numbers(&self, name: &'static str) -> Checked<Option<Vec<f64>>> {
-        let Some(entry) = self.entry(name) else { return Ok(None) };
-        let items = self.items(entry, "a list of numbers")?;
-        items
-            .into_iter()
-            .map(|item| self.checked(entry, item, ANY, "a list of numbers"))
-            .collect::<Checked<_>>()
-            .map(Some)
-    }
-
-    /// A fixed count of numbers, if they are given.
-    pub fn maybe_tuple<const N: usize>(&self, name: &'static str, example: &str) -> Checked<Option<[f64; N]>> {
-        let Some(values) = self.maybe_numbers(name)? else { return Ok(None) };
-        <[f64; N]>::try_from(values.as_slice()).map(Some).map_err(|_| {
-            let problem = format!("`{name}` must be a list of {N} numbers, and holds {}", values.len());
-            self.wrong(self.place_of(name).as_ref(), problem, format!("write for example `{name} = {example}`"))
-        })
-    }
-
-    /// A fixed count of numbers.
-    pub fn tuple<const N: usize>(&self, name: &'static str, example: &str) -> Checked<[f64; N]> {
-        self.required(name, example)?;
-        self.maybe_tuple(name, example)?.ok_or_else(|| self.wrong(None, format!("`{name}` is missing"), ""))
-    }
-
-    /// Rows of a fixed count of numbers, if they are given.
-    pub fn maybe_rows<const N: usize>(&self, name: &'static str, example: &str) -> Checked<Option<Vec<[f64; N]>>> {
-        let Some(entry) = self.entry(name) else { return Ok(None) };
-        let wanted = format!("a list of lists of {N} numbers");
-        let mut rows = Vec::new();
-        for item in self.items(entry, &wanted)? {
-            let DeValue::Array(numbers) = item.get_ref() else { return Err(self.not_a(entry, &wanted)) };
-            let place = entry.place_of(item.span());
-            let values: Vec<f64> =
-                numbers.iter().map(|item| self.checked(entry, item, ANY, &wanted)).collect::<Checked<_>>()?;
-            rows.push(<[f64; N]>::try_from(values.as_slice()).map_err(|_| {
-                let problem = format!("`{name}` must be {wanted}, and one has {}", values.len());
-                self.wrong(Some(&place), problem, format!("write for example `{name} = {example}`"))
-            })?);
-        }
-        Ok(Some(rows))
-    }
-
-    /// Text, if it is given.
-    pub fn maybe_text(&self, name: &'static str) -> Checked<Option<String>> {
-        let Some(entry) = self.entry(name) else { return Ok(None) };
-        let text = entry.value.get_ref().as_str().ok_or_else(|| self.not_a(entry, "text in quotes"))?;
-        match text.chars().find(|c| breaks_a_line(*c)) {
-            None => Ok(Some(text.to_owned())),
-            Some(c) => {
-                let problem = format!("`{name}` holds the character U+{:04X}, which cannot be seen", u32::from(c));
-                Err(self.wrong(self.place_of(name).as_ref(), problem, "names are one line of ordinary characters"))
-            }
-        }
-    }
-
-    /// One of some words, if it is given.
-    pub fn maybe_word<T: Copy>(&self, name: &'static str, words: &[(&'static str, T)]) -> Checked<Option<T>> {
-        let Some(text) = self.maybe_text(name)? else { return Ok(None) };
-        words.iter().find(|(word, _)| *word == text).map(|(_, value)| Some(*value)).ok_or_else(|| {
-            let all: Vec<String> = words.iter().map(|(word, _)| format!("\"{word}\"")).collect();
-            let meant = nearest(&text, words.iter().map(|(word, _)| *word));
-            let remedy = match meant {
-                Some(meant) => format!("perhaps \"{meant}\" is meant; allowed are {}", all.join(", ")),
-                None => format!("allowed are {}", all.join(", ")),
-            };
-            self.wrong(self.place_of(name).as_ref(), format!("`{name}` cannot be \"{text}\""), remedy)
-        })
-    }
-
-    /// One of some words.
-    pub fn word<T: Copy>(&self, name: &'static str, words: &[(&'static str, T)]) -> Checked<T> {
-        let example = words.first().map_or("", |(word, _)| word);
-        self.required(name, &format!("\"{example}\""))?;
-        self.maybe_word(name, words)?.ok_or_else(|| self.wrong(None, format!("`{name}` is missing"), ""))
-    }
-
-    /// true or false.
-    pub fn switch_or(&self, name: &'static str, default: bool) -> Checked<bool> {
-        let Some(entry) = self.entry(name) else { return Ok(default) };
-        entry.value.get_ref().as_bool().ok_or_else(|| self.not_a(entry, "true or false"))
-    }
-
-    /// A list of words, if it is given.
-    pub fn maybe_words(&self, name: &'static str) -> Checked<Option<Vec<String>>> {
-        let Some(entry) = self.entry(name) else { return Ok(None) };
-        let wanted = "a list of words in quotes";
-        let text = |item: &Spanned<DeValue<'_>>| item.get_ref().as_str().map(str::to_owned);
-        let words =
-            self.items(entry, wanted)?.into_iter().map(|item| text(item).ok_or_else(|| self.not_a(entry, wanted)));
-        words.collect::<Checked<_>>().map(Some)
-    }
-
-    /// Refuses keys that nobody asked for.
-    pub fn finish(self) -> Checked<()> {
-        let asked = self.asked.borrow().clone();
-        let Some(extra) = self.entries.iter().find(|entry| !asked.contains(&entry.name.as_str())) else {
-            return Ok(());
-        };
-        let given = |name: &&&'static str| self.entries.iter().any(|entry| entry.name == **name);
-        let open = || asked.iter().filter(|name| !given(name)).copied();
-        let mut all: Vec<String> = asked.iter().map(|name| format!("`{name}`")).collect();
-        all.sort();
-        all.dedup();
-        let remedy = match nearest(&extra.name, open()) {
-            Some(meant) => format!("perhaps `{meant}` is meant; the keys here are {}", all.join(", ")),
-            None => format!("the keys here are {}", all.join(", ")),
-        };
-        Err(self.wrong(Some(&extra.place), format!("`{}` is no key of it", extra.name), remedy))
+/// The error for a key that is not there.
+pub(super) fn missing(document: &Document<'_>, key: &'static Key, written: Option<&Written<'_>>) -> Box<Fault> {
+    let place = written.map_or(&document.end, |written| &written.place);
+    let fault = Fault::new(Problem::MissingKey { key }, place);
+    match written.and_then(|written| document.line_end(written)) {
+        Some(end) => fault.edit(&end, format!("\n{} = {}", key.name, key.example)),
+        None => fault,
     }
 }

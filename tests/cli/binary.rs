@@ -36,6 +36,22 @@ fn help() {
 }
 
 #[test]
+fn help_on_scenes_table_by_table() {
+    let all = stdout(&["help", "scene"]);
+    for topic in foldline::scene::help_topics() {
+        let part = stdout(&["help", "scene", topic]);
+        assert!(all.contains(&part) && part.len() > 100, "{topic}");
+    }
+    assert!(stdout(&["help", "scene", "support"]).starts_with("[[support]]  "));
+    assert_eq!(stdout(&["help", "scene", "[[support]]"]), stdout(&["help", "scene", "support"]));
+    let schema: serde_json::Value = serde_json::from_str(&stdout(&["help", "scene", "--json-schema"])).unwrap();
+    assert_eq!(schema["required"], serde_json::json!(["geometry", "material", "mesh", "load"]));
+    insta::assert_snapshot!(refusal(&["help", "scene", "suport"], 2), @"foldline: no help on `suport`; there is help on geometry, material, ply, mesh, symmetry, load, support, action, probe, adapt, solver, continuation, pipeline, output, expect, places; did you mean `support`?");
+    refusal(&["help", "run", "support"], 2);
+    refusal(&["help", "run", "--json-schema"], 2);
+}
+
+#[test]
 fn every_option_stands_in_the_long_help_and_the_short() {
     for subcommand in ["run", "inspect", "plot", "help"] {
         let [long, short] = [["help", subcommand], [subcommand, "-h"]].map(|arguments| stdout(&arguments));

@@ -529,6 +529,7 @@ fn general_geometry() {
             (PLATE, "kind = \"cylinder-panel\"\nlength_mm = 9.0\nradius_mm = 0.1\narc_deg = 90.0"),
             (PLATE, "kind = \"annulus\"\ninner_radius_mm = 9.0\nouter_radius_mm = 3.0\narc_deg = 90.0"),
             (PLATE, "kind = \"sphere-zone\"\nradius_mm = 9.0\nlatitude_deg = [0.0, 90.0]\narc_deg = 90.0"),
+            (PLATE, "kind = \"sphere-zone\"\nradius_mm = 9.0\nlatitude_deg = [72.0, 0.0]\narc_deg = 90.0"),
             (PLATE, "kind = \"sphere-zone\"\nradius_mm = 9.0\nlatitude_deg = 45.0\narc_deg = 90.0"),
             (PLATE, "kind = \"nurbs\"\ndegrees = [1, 1]"),
             (PLATE, "kind = \"nurbs\"\nfile = \"nowhere.json\""),
@@ -598,6 +599,57 @@ fn another_kind_is_meant() {
     pin("another_kind_is_meant", &(of_springs + "\n" + &of_plates));
 }
 
+/// Units, slips and symbols in tables of which there may be several.
+#[test]
+fn hints_in_supports_and_actions() {
+    const LIFT: &str = "on = \"u-end\"\nkind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, 0.02]";
+    pin(
+        "hints_in_supports_and_actions",
+        &general_errors(&[
+            (LIFT, "on = [1.0, 0.5]\nkind = \"force\"\nforce_kn = [0.0, 0.0, 0.004]"),
+            (LIFT, "on = [1.0, 0.5]\nkind = \"force\"\nforce = [0.0, 0.0, 4.0]"),
+            (LIFT, "kind = \"pressure\"\npressure_kpa = 1.5"),
+            (LIFT, "kind = \"pressure\"\npressure_mpa = \"1.5 kPa\""),
+            (LIFT, "kind = \"natural-curvature\"\nchange_per_m = [20.0, 0.0, 0.0]"),
+            ("on = \"v-start\"", "on = \"vstart\""),
+            ("on = \"v-start\"", "edge = \"v-start\""),
+            ("hold = [\"y\"]", "hold = [\"Y\"]"),
+            ("hold = [\"y\"]", "held = [\"y\"]"),
+            ("z_mm = 0.5", "uz = 0.5"),
+            ("z_mm = 0.5", "z_cm = 0.05"),
+            ("increment = 0.25", "increment_deg = 0.25"),
+            ("increment = 0.25", "step = 0.25"),
+            ("youngs_modulus_1_mpa = 140000.0", "e1_gpa = 140"),
+            ("width_mm = 40.0", "width_m = 0.04"),
+            ("component = \"z\"", "componnet = \"z\""),
+        ]),
+    );
+}
+
+/// All that is wrong with names and values is told at once, stray keys first, or else all that does not go together; ten
+/// mistakes at most.
+#[test]
+fn several_mistakes() {
+    let of_spring = RIGHT
+        .replace("radius_mm = 10.0\n", "")
+        .replace("arc_deg = 110.0", "banana = 1\narc_deg = 400.0")
+        .replace("sense = \"opposite\"", "sense = \"up\"")
+        .replace("[output]", "[ouptut]");
+    let of_plate = GENERAL
+        .replace("kind = \"clamped\"", "")
+        .replace("on = \"v-start\"", "on = \"vstart\"\ncolour = \"red\"")
+        .replace("angle_deg = 0.0", "angle_rad = 0.0")
+        .replace("[0.0, 0.0, 0.02]", "[0.0, 0.02]");
+    let strays: String = (1..=13).map(|number| format!("banana_{number} = {number}\n")).collect();
+    let many = RIGHT.to_owned() + &strays;
+    let together = RIGHT
+        .replace("elements = [4, 4]", "elements = [4, 5]")
+        .replace("increment_deg = 0.4\n", "increment_deg = 61.0\n")
+        .replace("thickness_mm = 0.1", "thickness_mm = 12.0");
+    let errors = [of_spring, of_plate, many, together].map(|text| report(&parse(&text, "scene.toml").unwrap_err()));
+    pin("several_mistakes", &errors.join("\n"));
+}
+
 #[test]
 fn general_material_and_load() {
     pin(
@@ -654,6 +706,7 @@ fn general_supports_actions_and_probes() {
             ("component = \"z\"", "component = \"radial\""),
             ("[0.0, 0.0, 0.02]", "0.02\nalong = \"radial\""),
             ("[0.0, 0.0, 0.02]", "[0.0, 0.0, 0.02]\nalong = \"normal\""),
+            ("on = \"u-end\"\nkind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, 0.02]", "kind = \"gravity\""),
             ("kind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, 0.02]", "kind = \"gravity\""),
             (
                 "on = \"u-end\"\nkind = \"line-force\"\nforce_n_per_mm = [0.0, 0.0, 0.02]",
@@ -671,7 +724,11 @@ fn general_supports_actions_and_probes() {
             ("support = \"root\"", "support = \"foot\""),
             ("name = \"tip\"\n", ""),
             ("name = \"root moment\"", "name = \"tip\""),
-            ("kind = \"reaction\"", "kind = \"section-moment\"\non = \"u-end\""),
+            (
+                "kind = \"reaction\"\nsupport = \"root\"\ncomponent = \"moment-y\"",
+                "kind = \"section-moment\"\non = \"u-end\"\ncomponent = \"y\"",
+            ),
+            ("kind = \"reaction\"", "kind = \"section-moment\"\non = \"u=0.5\""),
             ("[[probe]]\nname = \"tip\"", "[[probe]]\nname = \"tip\"\ncolour = \"red\""),
         ]),
     );

@@ -1,5 +1,6 @@
 //! The scenes in `pipelines/`: all parse, and say what their names say.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -117,5 +118,45 @@ fn plies_take_from_their_material_what_they_lack() {
     assert_eq!(plies[0].law.thermal_expansion_2_per_k, Some(2e-6));
     assert_eq!((plies[0].law.poissons_ratio_12, plies[0].density_kg_m3), (0.3, Some(1500.0)));
     let error = parse(&text.replace("youngs_modulus_2_mpa = 1e4", ""), "laminate.toml").unwrap_err().to_string();
-    assert!(error.contains("`youngs_modulus_2_mpa` is missing"), "{error}");
+    assert!(error.contains("[[ply]] 1 lacks `youngs_modulus_2_mpa`"), "{error}");
+}
+
+/// What the JSON Schema refuses as well (`tests/cli/schema.py`).
+#[test]
+fn wrong_scenes_are_refused() {
+    #[derive(serde::Deserialize)]
+    struct Base {
+        scene: String,
+        slips: Vec<[String; 2]>,
+    }
+    let bases: BTreeMap<String, Base> = toml::from_str(include_str!("wrong_scenes.toml")).unwrap();
+    let mut count = 0;
+    for Base { scene, slips } in bases.values() {
+        parse(scene, "right.toml").unwrap();
+        for [right, wrong] in slips {
+            assert_eq!(scene.matches(right).count(), 1, "`{right}` does not name one place");
+            assert!(parse(&scene.replace(right, wrong), "wrong.toml").is_err(), "`{wrong}` is taken");
+            count += 1;
+        }
+    }
+    assert!(count >= 50, "{count}");
+}
+
+/// What a log keeps of a scene with a surface from a file is the scene written out.
+#[test]
+fn every_scene_written_out_is_the_same_scene() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders =
+        ["pipelines", "pipelines/extreme", "pipelines/verification", "tests/restart", "tests/verification/scenes"];
+    let entries = folders.iter().flat_map(|folder| fs::read_dir(root.join(folder)).unwrap());
+    let mut count = 0;
+    for path in
+        entries.map(|entry| entry.unwrap().path()).filter(|path| path.extension().is_some_and(|it| it == "toml"))
+    {
+        let Ok(scene) = parse(&fs::read_to_string(&path).unwrap(), path.to_str().unwrap()) else { continue };
+        let again = parse(&scene.to_toml(), "written.toml").unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((again.hash(), &again), (scene.hash(), &scene), "{}", path.display());
+        count += 1;
+    }
+    assert!(count >= 80, "{count}");
 }

@@ -1,12 +1,21 @@
 //! Properties of scenes: no text brings the parser down, and the hash means what it says.
 
-use foldline::scene::{KEYS, Key, Kind, Presence, Reach, Scene, Stage, parse, parse_with_settings};
+use foldline::scene::{Key, Kind, Presence, Reach, SECTIONS, Scene, Stage, parse, parse_with_settings};
 use proptest::prelude::*;
 
 const RIGHT: &str = include_str!("../../pipelines/baseline-quarter.toml");
 
+/// A scene with supports, actions and probes of its own.
+const PLATE: &str = include_str!("../../src/scene/structure_example.toml");
+
 fn right() -> Scene {
     parse(RIGHT, "baseline-quarter.toml").unwrap()
+}
+
+/// Keys of the tables of a tape spring.
+fn keys() -> Vec<&'static Key> {
+    let single = SECTIONS.iter().filter(|section| !section.many);
+    single.flat_map(|section| section.keys_of(section.example_kind())).collect()
 }
 
 /// Whatever comes of a text, it can be shown.
@@ -32,8 +41,18 @@ fn any_value() -> impl Strategy<Value = String> {
     ]
 }
 
+/// A name of a key, or a word that one takes.
+fn any_word() -> impl Strategy<Value = &'static str> {
+    let of_key = |key: &'static Key| {
+        let choices = if let Kind::Word(choices) = key.kind { choices } else { &[] };
+        choices.iter().map(|choice| choice.word).chain([key.name])
+    };
+    let words: Vec<&str> = SECTIONS.iter().flat_map(|section| section.keys).flat_map(of_key).collect();
+    prop::sample::select(words)
+}
+
 fn any_key() -> impl Strategy<Value = &'static Key> {
-    (0..KEYS.len()).prop_map(|index| KEYS[index])
+    (0..keys().len()).prop_map(|index| keys()[index])
 }
 
 proptest! {
@@ -54,6 +73,23 @@ proptest! {
         let end = (at + length).min(RIGHT.len());
         prop_assume!(RIGHT.is_char_boundary(at) && RIGHT.is_char_boundary(end));
         is_handled(&format!("{}{piece}{}", &RIGHT[..at], &RIGHT[end..]), &[]);
+    }
+
+    #[test]
+    fn a_scene_of_supports_and_actions_with_pieces_replaced_is_handled(
+        at in 0..PLATE.len(),
+        length in 0usize..40,
+        piece in "\\PC{0,6}|[\\x00-\\x7f]{0,6}",
+        word in any_word(),
+        other in any_word(),
+        value in any_value(),
+    ) {
+        let end = (at + length).min(PLATE.len());
+        prop_assume!(PLATE.is_char_boundary(at) && PLATE.is_char_boundary(end));
+        is_handled(&format!("{}{piece}{}", &PLATE[..at], &PLATE[end..]), &[]);
+        is_handled(&PLATE.replace(word, other), &[]);
+        is_handled(&PLATE.replacen(&format!("{word}\""), &format!("{other}\""), 1), &[]);
+        is_handled(&PLATE.replace(&format!("{word} = "), &format!("{word} = {value}\n# ")), &[]);
     }
 
     #[test]
@@ -116,7 +152,8 @@ fn is_line_of(line: &str, key: &Key) -> bool {
         other.section == key.section
             && (other.presence == Presence::InsteadOf(key.name) || key.presence == Presence::InsteadOf(other.name))
     };
-    let names = KEYS.iter().filter(displaced).map(|other| other.name).chain([key.name]);
+    let all = keys();
+    let names = all.iter().filter(displaced).map(|other| other.name).chain([key.name]);
     names.into_iter().any(|name| line.starts_with(&format!("{name} = ")))
 }
 
@@ -167,7 +204,7 @@ fn another_value(key: &Key) -> Option<&'static str> {
 
 #[test]
 fn the_hash_changes_with_every_key_but_the_free_ones() {
-    for key in KEYS {
+    for key in keys() {
         let Some(value) = another_value(key) else { continue };
         let along_path = key.section == "continuation" && key.name != "control";
         let before: Vec<String> =
@@ -183,7 +220,7 @@ fn the_hash_changes_with_every_key_but_the_free_ones() {
 
 #[test]
 fn free_are_the_outputs_the_target_and_what_is_expected_alone() {
-    let free: Vec<_> = KEYS.iter().filter(|key| key.reach == Reach::Free).map(|key| key.path()).collect();
+    let free: Vec<_> = keys().iter().filter(|key| key.reach == Reach::Free).map(|key| key.path()).collect();
     assert_eq!(
         free,
         [
@@ -209,7 +246,8 @@ fn every_value_of_a_scene_is_a_key_of_the_table() {
     let paths: Vec<_> = right().differences(&nothing_known).into_iter().map(|difference| difference.path).collect();
     assert_eq!(paths, ["adapt.length_limit", "adapt.threshold", "pipeline.stages"]);
     for (section, value) in json.as_object().unwrap() {
-        let keys = || KEYS.iter().filter(|key| key.section == section);
+        let all = keys();
+        let keys = || all.iter().filter(|key| key.section == section);
         assert!(keys().count() > 0, "{section}");
         for name in value.as_object().into_iter().flat_map(|fields| fields.keys()) {
             assert!(keys().any(|key| key.name == name), "{section}.{name} is no key of the table");

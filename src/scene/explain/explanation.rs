@@ -1,6 +1,6 @@
 //! The parts of an explanation, and words that several of them use.
 
-use crate::scene::keys::join_or;
+use crate::scene::keys::{Key, join_or};
 use crate::scene::problem::ValueType;
 
 /// The words around an annotated snippet.
@@ -58,6 +58,16 @@ impl Explanation {
         self.fix = text.into();
         self
     }
+}
+
+/// A table in a sentence: its name in brackets, or `item` where there may be several.
+pub fn table(section: &str, item: Option<&str>) -> String {
+    item.map_or_else(|| format!("[{section}]"), str::to_owned)
+}
+
+/// A key at the beginning of a sentence: `mesh.degree`, or with the table `item` that it stands in.
+pub fn subject(key: &Key, item: Option<&str>) -> String {
+    item.map_or_else(|| format!("`{}`", key.path()), |item| format!("{item}: `{}`", key.name))
 }
 
 /// Where to look when nothing is near.

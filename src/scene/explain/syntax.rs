@@ -1,7 +1,8 @@
 //! Text that is not TOML, in words.
 
 use super::explanation::Explanation;
-use crate::scene::keys::Key;
+use crate::scene::key_table::SECTIONS;
+use crate::scene::keys::{Key, join_or};
 use crate::scene::problem::SyntaxSlip;
 
 pub(super) fn not_toml(message: &str, slip: Option<SyntaxSlip>) -> Explanation {
@@ -14,7 +15,7 @@ pub(super) fn not_toml(message: &str, slip: Option<SyntaxSlip>) -> Explanation {
         Some(SyntaxSlip::TwiceInSingleBrackets) => {
             Explanation::new("there may be several tables of this name, and each stands in two brackets", "again")
                 .also("first here")
-                .help("write `[[ply]]`, `[[support]]`, `[[action]]` or `[[probe]]`, each time")
+                .help(format!("write {}, each time", join_or(&in_two_brackets())))
         }
         Some(SyntaxSlip::BareWord) => Explanation::new("a word stands without quotes", "")
             .example("words stand in double quotes")
@@ -43,4 +44,8 @@ pub(super) fn setting_without_value(key: Option<&Key>) -> Explanation {
         Some(key) => explanation.help(format!("for example `--set {}={}`", key.path(), key.example.trim_matches('"'))),
         None => explanation.help("for example `--set solver.max_iterations=200`"),
     }
+}
+
+fn in_two_brackets() -> Vec<String> {
+    SECTIONS.iter().filter(|section| section.many).map(|section| format!("`{}`", section.title())).collect()
 }

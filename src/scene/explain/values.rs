@@ -1,17 +1,21 @@
 //! Wrong values, in words.
 
-use super::explanation::{Explanation, lower, shorten, type_words};
-use crate::scene::key_table::KEYS;
-use crate::scene::keys::{Key, Kind, Presence, Unit, number};
+use super::explanation::{Explanation, lower, shorten, subject, type_words};
+use crate::scene::key_table::all_keys;
+use crate::scene::keys::{Form, Key, Kind, Presence, Unit, number};
 use crate::scene::problem::{Direction, ValueType};
 
-fn must_be(key: &Key, label: impl Into<String>) -> Explanation {
-    Explanation::new(format!("`{}` must be {}", key.path(), key.allowed()), label)
+fn must_be(key: &Key, item: Option<&str>, label: impl Into<String>) -> Explanation {
+    Explanation::new(format!("{} must be {}", subject(key, item), key.allowed()), label)
 }
 
-pub(super) fn wrong_type(key: &Key, found: ValueType) -> Explanation {
-    let explanation = must_be(key, format!("this is {}", type_words(found)));
-    let instead = KEYS.iter().find(|other| {
+fn cannot_be(key: &Key, item: Option<&str>, found: &str) -> Explanation {
+    Explanation::new(format!("{} cannot be \"{}\"", subject(key, item), shorten(found)), "")
+}
+
+pub(super) fn wrong_type(key: &Key, item: Option<&str>, found: ValueType) -> Explanation {
+    let explanation = must_be(key, item, format!("this is {}", type_words(found)));
+    let instead = all_keys().find(|other| {
         other.section == key.section && other.presence == Presence::InsteadOf(key.name) && found != ValueType::Text
     });
     let explanation = match instead {
@@ -20,38 +24,52 @@ pub(super) fn wrong_type(key: &Key, found: ValueType) -> Explanation {
     };
     match (&key.kind, found) {
         (Kind::Stages, ValueType::Text) => explanation.fix("one stage is a list, too"),
-        (Kind::Number(_), ValueType::Text) if key.unit != Unit::None => {
+        (Kind::Words(_), ValueType::Text) => explanation.fix("one word is a list, too"),
+        (Kind::Number(_) | Kind::NumberOrPair(_), ValueType::Text) if key.unit != Unit::None => {
             explanation.fix(format!("a plain number of {}: the unit is in the name of the key", key.unit.words()))
         }
-        (Kind::Number(_) | Kind::Count(_) | Kind::Pair(_), ValueType::Text) => explanation.fix("without quotes"),
+        (Kind::Number(_) | Kind::NumberOrPair(_) | Kind::Count(_) | Kind::Pair(_), ValueType::Text) => {
+            explanation.fix("without quotes")
+        }
         _ => explanation.fix("did you mean this?"),
     }
 }
 
-pub(super) fn not_whole(key: &Key, value: f64) -> Explanation {
+pub(super) fn not_whole(key: &Key, item: Option<&str>, value: f64) -> Explanation {
     if value.fract() == 0.0 {
-        return must_be(key, "written as a number with decimals").fix("whole numbers are written without a point");
+        let explanation = must_be(key, item, "written as a number with decimals");
+        return explanation.fix("whole numbers are written without a point");
     }
-    must_be(key, "this is not a whole number")
+    must_be(key, item, "this is not a whole number")
 }
 
-pub(super) fn not_a_pair(key: &Key, found: usize) -> Explanation {
+pub(super) fn wrong_length(key: &Key, item: Option<&str>, found: usize) -> Explanation {
     let label = match found {
         0 => "an empty list".into(),
         1 => "a list of one".into(),
         _ => format!("a list of {found}"),
     };
-    must_be(key, label)
-        .help(format!("the first is along the length, the second along the arc: `{} = {}`", key.name, key.example))
+    let explanation = must_be(key, item, label);
+    let example = format!("`{} = {}`", key.name, key.example);
+    match key.kind {
+        Kind::Pair(_) => {
+            explanation.help(format!("the first is along the length, the second along the arc: {example}"))
+        }
+        _ => explanation.help(format!("for example {example}")),
+    }
 }
 
-pub(super) fn unknown_word(key: &Key, found: &str, meant: Option<&str>) -> Explanation {
-    let Kind::Word(choices) = &key.kind else { return Explanation::default() };
-    let explanation = Explanation::new(format!("`{}` cannot be \"{}\"", key.path(), shorten(found)), "");
+pub(super) fn unknown_word(key: &Key, item: Option<&str>, found: &str, meant: Option<&str>) -> Explanation {
+    let (Kind::Word(choices) | Kind::Words(choices)) = key.kind else { return Explanation::default() };
+    let explanation = cannot_be(key, item, found);
     let explanation = match choices {
         [only] => explanation.note(format!("the only one so far is \"{}\": {}", only.word, lower(only.meaning))),
-        _ => choices.iter().fold(explanation, |explanation, choice| {
-            explanation.note(format!("\"{}\" is {}", choice.word, choice.meaning))
+        _ if choices.iter().all(|choice| choice.meaning.is_empty()) => {
+            explanation.note(format!("it is {}", key.allowed()))
+        }
+        _ => choices.iter().fold(explanation, |explanation, choice| match choice.in_short() {
+            "" => explanation.note(format!("\"{}\"", choice.word)),
+            meaning => explanation.note(format!("\"{}\" is {meaning}", choice.word)),
         }),
     };
     match meant {
@@ -60,20 +78,59 @@ pub(super) fn unknown_word(key: &Key, found: &str, meant: Option<&str>) -> Expla
     }
 }
 
-pub(super) fn not_finite(key: &Key, value: f64) -> Explanation {
-    must_be(key, if value.is_nan() { "not a number" } else { "not finite" })
+pub(super) fn unprintable(key: &Key, item: Option<&str>, character: char) -> Explanation {
+    let title =
+        format!("{} holds the character U+{:04X}, which cannot be seen", subject(key, item), u32::from(character));
+    Explanation::new(title, "").help("names are one line of ordinary characters")
 }
 
-pub(super) fn out_of_range(key: &Key, value: f64) -> Explanation {
-    let (Kind::Number(limits) | Kind::Count(limits) | Kind::Pair(limits)) = &key.kind else {
+pub(super) fn unknown_place(key: &Key, item: Option<&str>, found: &str, meant: Option<&str>) -> Explanation {
+    let explanation = cannot_be(key, item, found).note(format!("it is {}", key.allowed()));
+    match meant {
+        Some(meant) => explanation.fix(format!("did you mean \"{meant}\"?")),
+        None => explanation,
+    }
+}
+
+pub(super) fn no_such_line(key: &Key, item: Option<&str>, found: &str) -> Explanation {
+    let title = format!("{}: there is no line {}", subject(key, item), shorten(found));
+    Explanation::new(title, "")
+        .help("a line lies strictly between 0 and 1; at 0 and 1 are the edges, such as \"u-start\"")
+}
+
+pub(super) fn no_such_point(key: &Key, item: Option<&str>, [u, v]: [f64; 2]) -> Explanation {
+    let title = format!("{}: there is no point ({}, {})", subject(key, item), number(u), number(v));
+    Explanation::new(title, "").help("fractions of u and v run from 0 to 1")
+}
+
+pub(super) fn wrong_form(key: &Key, item: Option<&str>, found: Form) -> Explanation {
+    let found = match found {
+        Form::Edge => "this is an edge",
+        Form::Point => "this is a point",
+        Form::Line => "this is a line inside",
+    };
+    must_be(key, item, found).note(format!("`{}` says: {}", key.name, lower(key.meaning)))
+}
+
+pub(super) fn not_finite(key: &Key, item: Option<&str>, value: f64) -> Explanation {
+    must_be(key, item, if value.is_nan() { "not a number" } else { "not finite" })
+}
+
+pub(super) fn out_of_range(key: &Key, item: Option<&str>, value: f64) -> Explanation {
+    let (Kind::Number(limits)
+    | Kind::NumberOrPair(limits)
+    | Kind::Numbers(_, limits)
+    | Kind::Count(limits)
+    | Kind::Pair(limits)) = &key.kind
+    else {
         return Explanation::default();
     };
     let reason = limits.broken_by(value).map_or("", |limit| limit.reason);
     let in_pascal = value * 1e-6;
     if key.unit == Unit::Megapascal && limits.broken_by(in_pascal).is_none() {
-        return must_be(key, reason).help(format!("if this is in Pa, it is {} MPa", number(in_pascal)));
+        return must_be(key, item, reason).help(format!("if this is in Pa, it is {} MPa", number(in_pascal)));
     }
-    must_be(key, reason)
+    must_be(key, item, reason)
 }
 
 pub(super) fn odd_elements(direction: Direction, elements: usize, part: &str) -> Explanation {

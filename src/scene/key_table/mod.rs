@@ -1,80 +1,57 @@
-//! Every key of a scene file. Nothing about a key is written down anywhere else.
+//! Every key of a scene file: its type, unit, limits, default, meaning and reach stand here alone.
 //!
 //! | file | tables |
 //! |---|---|
-//! | `shell` | what the shell is |
-//! | `run` | what is done with it |
+//! | `geometry`, `material` | what the shell is |
+//! | `structure` | what holds it, what acts on it, what is measured |
+//! | `mesh`, `run` | how it is made discrete and solved |
 //! | `output` | what is written of it, and how it is to end |
 
+mod geometry;
+mod material;
+mod mesh;
 mod output;
 mod run;
-mod shell;
-
-pub(super) use output::*;
-pub(super) use run::*;
-pub(super) use shell::*;
+mod structure;
 
 use super::keys::{Key, Section};
 
 /// The tables of a scene file, in the order in which one would write them.
-pub static SECTIONS: [Section; 11] = [
-    section("geometry", true, "The undeformed mid-surface."),
-    section("material", true, "Constitutive law and thickness."),
-    section("mesh", true, "Spline space and quadrature that the run starts with."),
-    section("symmetry", false, "Which part of the shell is modelled."),
-    section("load", true, "What moves the shell."),
-    section("adapt", false, "When and how far the mesh is refined."),
-    section("solver", false, "Tolerances and limits of the equilibrium solver."),
-    section("continuation", false, "How the path of equilibria is followed."),
-    section("pipeline", false, "The stages of one load step."),
-    section("output", false, "What is written beside the states; never changes a state."),
-    section("expect", false, "How the run is to end; `foldline extremes` alone looks at it."),
+pub static SECTIONS: &[Section] = &[
+    one("geometry", true, "The undeformed mid-surface.", geometry::GEOMETRY),
+    one("material", true, "Constitutive law and thickness.", material::MATERIAL),
+    many("ply", "A layer of a laminate, from bottom (the side that n points away from) to top.", material::PLY),
+    one("mesh", true, "Spline space and quadrature that the run starts with.", mesh::MESH),
+    one("symmetry", false, "Which part of the shell is modelled.", mesh::SYMMETRY),
+    one("load", true, "What moves the shell.", run::LOAD),
+    many("support", "What holds the shell, where [load] is of kind \"steps\"; at least one.", structure::SUPPORT),
+    many(
+        "action",
+        "What acts, where [load] is of kind \"steps\", which needs an action or a support's motion that is not zero.",
+        structure::ACTION,
+    ),
+    many(
+        "probe",
+        "A quantity that every equilibrium reports by name (foldline run, inspect, inspect --json).",
+        structure::PROBE,
+    ),
+    one("adapt", false, "When and how far the mesh is refined.", mesh::ADAPT),
+    one("solver", false, "Tolerances and limits of the equilibrium solver.", run::SOLVER),
+    one("continuation", false, "How the path of equilibria is followed.", run::CONTINUATION),
+    one("pipeline", false, "The stages of one load step.", run::PIPELINE),
+    one("output", false, "What is written beside the states; never changes a state.", output::OUTPUT),
+    one("expect", false, "How the run is to end; `foldline extremes` alone looks at it.", output::EXPECT),
 ];
 
-/// The keys of a scene file, table by table.
-pub static KEYS: [&Key; 40] = [
-    &GEOMETRY_KIND,
-    &LENGTH,
-    &RADIUS,
-    &ARC,
-    &MATERIAL_KIND,
-    &YOUNGS_MODULUS,
-    &POISSONS_RATIO,
-    &THICKNESS,
-    &DENSITY,
-    &OFFSET,
-    &THERMAL_EXPANSION,
-    &DEGREE,
-    &ELEMENTS,
-    &QUADRATURE,
-    &PART,
-    &LOAD_KIND,
-    &SENSE,
-    &ROTATION,
-    &INCREMENT,
-    &LONGEST_INCREMENT,
-    &THRESHOLD,
-    &LENGTH_LIMIT,
-    &LENGTH_LIMIT_MM,
-    &TOLERANCE,
-    &MAX_ITERATIONS,
-    &LEAST_INCREMENT,
-    &SNAP_TOLERANCE,
-    &CONTROL,
-    &LONGEST_STEP,
-    &SHORTEST_STEP,
-    &MOST_STEPS,
-    &STAGES,
-    &SYNC,
-    &MESH_HISTORY,
-    &OUTCOME,
-    &SAME_AS,
-    &LEAST_BITS,
-    &PEAK,
-    &LAST,
-    &INEXACT,
-];
+/// The keys of a scene file, table by table; those of one name stand once for each kind of table that has its own.
+pub fn all_keys() -> impl Iterator<Item = &'static Key> + Clone {
+    SECTIONS.iter().flat_map(|section| section.keys)
+}
 
-const fn section(name: &'static str, required: bool, meaning: &'static str) -> Section {
-    Section { name, required, meaning }
+const fn one(name: &'static str, required: bool, meaning: &'static str, keys: &'static [Key]) -> Section {
+    Section { name, many: false, required, meaning, keys }
+}
+
+const fn many(name: &'static str, meaning: &'static str, keys: &'static [Key]) -> Section {
+    Section { name, many: true, required: false, meaning, keys }
 }

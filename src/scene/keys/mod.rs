@@ -1,0 +1,210 @@
+//! What can be said about a key of a scene file. The keys themselves stand in `key_table`; reading, checking,
+//! suggesting, explaining, comparing, writing, the help text and the schema all draw on that one table.
+//!
+//! | file | what |
+//! |---|---|
+//! | `kind` | types and limits of values |
+//! | `unit` | units, the endings of names |
+//! | `wording` | numbers and lists in sentences, and numbers in TOML |
+
+mod kind;
+mod unit;
+mod wording;
+
+pub(super) use kind::choice;
+pub use kind::{Choice, Form, Kind, Length, Limit, Limits};
+pub use unit::Unit;
+pub(super) use wording::{join_or, number, toml_float};
+
+/// A table of a scene file, or the items of an array of tables.
+#[derive(Debug, PartialEq)]
+pub struct Section {
+    /// Its name, without the brackets.
+    pub name: &'static str,
+    /// Whether there may be several, each in two brackets.
+    pub many: bool,
+    /// Whether a scene must have it.
+    pub required: bool,
+    /// What it is about.
+    pub meaning: &'static str,
+    /// Its keys, of all its kinds, in the order in which one would write them.
+    pub keys: &'static [Key],
+}
+
+impl Section {
+    /// Its name in brackets.
+    pub fn title(&self) -> String {
+        if self.many { format!("[[{}]]", self.name) } else { format!("[{}]", self.name) }
+    }
+
+    /// The key that says of which kind the table is, where other keys depend on it.
+    pub fn kind_key(&self) -> Option<&'static Key> {
+        let has_kinds = self.keys.iter().any(|key| !key.kinds.is_empty());
+        self.keys.iter().find(|key| key.name == "kind").filter(|_| has_kinds)
+    }
+
+    /// The kind that examples are of.
+    pub fn example_kind(&self) -> Option<&'static str> {
+        self.kind_key().map(|key| key.example.trim_matches('"'))
+    }
+
+    /// The keys of a table of this kind; those of every kind where it is `None`.
+    pub fn keys_of<'k>(&self, kind: Option<&'k str>) -> impl Iterator<Item = &'static Key> + Clone + use<'k> {
+        self.keys.iter().filter(move |key| kind.is_none_or(|kind| key.belongs_to(kind)))
+    }
+
+    /// The key of this name in a table of this kind.
+    pub fn key(&self, kind: Option<&str>, name: &str) -> Option<&'static Key> {
+        self.keys_of(kind).find(|key| key.name == name)
+    }
+
+    /// How far the widest-reaching of its keys reaches.
+    pub fn reach(&self) -> Reach {
+        self.keys.iter().map(|key| key.reach).max().unwrap_or(Reach::Everything)
+    }
+}
+
+/// A key of a scene file, and all that is known about it.
+#[derive(Debug, PartialEq)]
+pub struct Key {
+    /// The table in which it stands.
+    pub section: &'static str,
+    /// The kinds of that table that have it; all where it is empty.
+    pub kinds: &'static [&'static str],
+    /// Its name, with the unit as its ending.
+    pub name: &'static str,
+    /// Unit of its value.
+    pub unit: Unit,
+    /// Type and limits of its value.
+    pub kind: Kind,
+    /// What holds where it is missing.
+    pub presence: Presence,
+    /// How far a change of it reaches into a run.
+    pub reach: Reach,
+    /// What it means.
+    pub meaning: &'static str,
+    /// A value as it would stand in a scene file.
+    pub example: &'static str,
+    /// What else people call it: symbols, and names in other programs; in lower case.
+    pub aliases: &'static [&'static str],
+}
+
+/// Keys as the key table writes them down: required, reaching everything and of every kind of table, unless it says
+/// otherwise.
+impl Key {
+    /// A key whose unit is the ending of its name.
+    pub(super) const fn new(section: &'static str, name: &'static str, kind: Kind, example: &'static str) -> Self {
+        let (presence, reach) = (Presence::Required, Reach::Everything);
+        let unit = Unit::of_name(name);
+        Self { section, kinds: &[], name, unit, kind, presence, reach, meaning: "", example, aliases: &[] }
+    }
+
+    /// Its meaning.
+    pub(super) const fn means(self, meaning: &'static str) -> Self {
+        Self { meaning, ..self }
+    }
+
+    /// Of tables of these kinds alone.
+    pub(super) const fn of(self, kinds: &'static [&'static str]) -> Self {
+        Self { kinds, ..self }
+    }
+
+    /// What holds where it is missing.
+    pub(super) const fn or(self, presence: Presence) -> Self {
+        Self { presence, ..self }
+    }
+
+    /// How far a change of it reaches.
+    pub(super) const fn reaches(self, reach: Reach) -> Self {
+        Self { reach, ..self }
+    }
+
+    /// The same key in another table.
+    pub(super) const fn in_table(
+        self,
+        section: &'static str,
+        kinds: &'static [&'static str],
+        presence: Presence,
+    ) -> Self {
+        Self { section, kinds, presence, ..self }
+    }
+
+    /// What else it is called.
+    pub(super) const fn also_called(self, aliases: &'static [&'static str]) -> Self {
+        Self { aliases, ..self }
+    }
+}
+
+impl Key {
+    /// Section and name, as in `solver.tolerance`.
+    pub fn path(&self) -> String {
+        format!("{}.{}", self.section, self.name)
+    }
+
+    /// The words that it takes.
+    pub(super) fn words(&self) -> impl Iterator<Item = &'static str> + Clone + use<> {
+        let choices = if let Kind::Word(choices) = self.kind { choices } else { &[] };
+        choices.iter().map(|choice| choice.word)
+    }
+
+    /// Whether tables of this kind have it.
+    pub fn belongs_to(&self, kind: &str) -> bool {
+        self.kinds.is_empty() || self.kinds.contains(&kind)
+    }
+
+    /// The name without the unit.
+    pub fn stem(&self) -> &'static str {
+        match self.name.strip_suffix(self.unit.suffix()) {
+            Some(stem) if !self.unit.suffix().is_empty() => stem.trim_end_matches('_'),
+            _ => self.name,
+        }
+    }
+
+    /// What is allowed, in words, with the unit.
+    pub fn allowed(&self) -> String {
+        self.kind.words(self.unit)
+    }
+}
+
+/// How far a change of a key reaches into a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// No state changes: what is written beside the states, and where the run stops.
+    Free,
+    /// The steps taken change, not the problem solved: a state of one run can start the other.
+    Steps,
+    /// What supports and actions are called: no state changes, though the scene is another.
+    Names,
+    /// What acts from a load on: states of loads before it are the same.
+    LaterLoads,
+    /// The problem changes: no state of one run means anything in the other.
+    Everything,
+}
+
+/// What holds where a key is missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// It must be there.
+    Required,
+    /// A default, as it would stand in a scene.
+    Default(&'static str),
+    /// A default that follows from other keys, in words.
+    Follows(&'static str),
+    /// It stands in for another key of the same table; at most one of the two is given.
+    InsteadOf(&'static str),
+    /// It must be there unless another key of the same table is.
+    Unless(&'static str),
+}
+
+impl Presence {
+    /// A sentence about it.
+    pub fn words(self) -> String {
+        match self {
+            Presence::Required => "Required.".into(),
+            Presence::Default(value) => format!("Default: {value}."),
+            Presence::Follows(rule) => format!("Default: {rule}."),
+            Presence::InsteadOf(other) => format!("In place of {other}."),
+            Presence::Unless(other) => format!("Required unless there is {other}."),
+        }
+    }
+}

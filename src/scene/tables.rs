@@ -1,0 +1,61 @@
+//! All tables of a scene file, each read by itself: what is wrong with one hides nothing of another.
+
+use super::document::{Document, Written};
+use super::fault::{CheckedWhole, Fault, Place};
+use super::keys::{Presence, Section};
+use super::names;
+use super::problem::Problem;
+use super::table::Table;
+
+/// The tables of a scene: one of each that there is one of, and as many of the others as are written.
+pub(super) struct Tables(Vec<Table>);
+
+impl Tables {
+    /// Reads them. What is wrong comes as in the text where it is a name, and else in the order of the table of keys.
+    pub fn read(document: &Document<'_>) -> CheckedWhole<Self> {
+        let wrong_names = names::check(document);
+        let is_told = |name: &str| wrong_names.iter().any(|fault| fault.problem.meant().as_deref() == Some(name));
+        // Of a table that is most likely of another kind nothing can be said.
+        let of_other_kind = |fault: &&Fault| matches!(fault.problem, Problem::OfOtherKind { .. });
+        let unread: Vec<&Place> = wrong_names.iter().filter(of_other_kind).map(|fault| &fault.place).collect();
+        let is_read = |table: &&Written<'_>| !table.entries.iter().any(|entry| unread.contains(&&entry.place));
+        let (mut tables, mut faults) = (Vec::new(), Vec::new());
+        let mut keep = |table: CheckedWhole<Table>| match table {
+            Ok(table) => tables.push(table),
+            Err(found) => faults.extend(found),
+        };
+        for section in document.sections {
+            let written = || document.tables.iter().filter(|table| table.name == section.name);
+            if written().next().is_some() {
+                let tables = written().filter(is_read).filter(|table| section.many == table.number.is_some());
+                tables.for_each(|table| keep(Table::read(document, section, Some(table), &wrong_names)));
+            } else if section.required {
+                keep(if is_told(section.name) { Err(vec![]) } else { Err(vec![*missing_section(document, section)]) });
+            } else if !section.many {
+                keep(Table::read(document, section, None, &wrong_names));
+            }
+        }
+        faults.splice(0..0, wrong_names);
+        if faults.is_empty() { Ok(Self(tables)) } else { Err(faults) }
+    }
+
+    /// The table of this name, of which there is one.
+    pub fn one(&self, name: &str) -> &Table {
+        let mut tables = self.all(name);
+        tables.next().unwrap_or_else(|| unreachable!("there is no table [{name}]"))
+    }
+
+    /// The tables of this name.
+    pub fn all(&self, name: &str) -> impl Iterator<Item = &Table> {
+        self.0.iter().filter(move |table| table.section.name == name)
+    }
+}
+
+fn missing_section(document: &Document<'_>, section: &'static Section) -> Box<Fault> {
+    let keys = section.keys_of(section.example_kind());
+    let required = keys.filter(|key| key.presence == Presence::Required);
+    let lines: String = required.map(|key| format!("\n{} = {}", key.name, key.example)).collect();
+    let gap = if document.end.span.end == 0 { "" } else { "\n\n" };
+    Fault::new(Problem::MissingSection { section }, &document.end)
+        .edit(&document.end, format!("{gap}{}{lines}", section.title()))
+}
