@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 /// The text with what a terminal obeys, but line feeds and tabs, shown by pictures. XML would not take control characters
 /// either.
-#[cfg(feature = "cli")]
 pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     shown(text, is_obeyed)
 }
@@ -16,7 +15,6 @@ pub(crate) fn one_line(text: &str) -> Cow<'_, str> {
 
 /// Whether a terminal obeys a character instead of showing it: control characters, and those that turn the direction of
 /// writing or begin a line.
-#[cfg(feature = "cli")]
 pub(crate) fn is_obeyed(c: char) -> bool {
     breaks_a_line(c) && !matches!(c, '\n' | '\t')
 }

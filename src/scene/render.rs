@@ -17,7 +17,7 @@ pub(super) fn coloured(fault: &Fault, sources: &[Source]) -> String {
 }
 
 fn render(fault: &Fault, sources: &[Source], renderer: &Renderer) -> String {
-    let words = explain(fault);
+    let words = explain(fault).printable();
     let mut report = vec![what_is_wrong(fault, sources, &words)];
     if !fault.edits.is_empty() {
         report.push(how_to_mend_it(fault, sources, &words));

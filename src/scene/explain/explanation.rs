@@ -1,5 +1,6 @@
 //! The parts of an explanation, and words that several of them use.
 
+use crate::printable::printable;
 use crate::scene::keys::{Key, join_or};
 use crate::scene::problem::ValueType;
 
@@ -27,6 +28,23 @@ pub struct Explanation {
 impl Explanation {
     pub fn new(title: impl Into<String>, label: impl Into<String>) -> Self {
         Self { title: title.into(), label: label.into(), ..Self::default() }
+    }
+
+    /// The same without what a terminal obeys: words of a scene stand in it.
+    pub fn printable(self) -> Self {
+        let Self { title, label, also, alone, notes, help, example, fix } = self;
+        let plain = |text: String| printable(&text).into_owned();
+        let all = |texts: Vec<String>| texts.into_iter().map(plain).collect();
+        Self {
+            title: plain(title),
+            label: plain(label),
+            also: plain(also),
+            alone: plain(alone),
+            notes: all(notes),
+            help: all(help),
+            example: plain(example),
+            fix: plain(fix),
+        }
     }
 
     pub fn also(mut self, text: impl Into<String>) -> Self {
