@@ -1,5 +1,6 @@
 //! The annotated snippet of an error.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use annotate_snippets::renderer::DecorStyle;
@@ -7,6 +8,7 @@ use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Patch, Rendere
 
 use super::explain::{Explanation, explain};
 use super::fault::{Fault, Place, Source};
+use crate::printable::is_obeyed;
 
 pub(super) fn plain(fault: &Fault, sources: &[Source]) -> String {
     render(fault, sources, &Renderer::plain())
@@ -28,7 +30,7 @@ fn render(fault: &Fault, sources: &[Source], renderer: &Renderer) -> String {
 fn what_is_wrong<'a>(fault: &'a Fault, sources: &'a [Source], words: &'a Explanation) -> Group<'a> {
     let source = &sources[fault.place.source];
     let primary = annotation(AnnotationKind::Primary, source, &fault.place, &words.label);
-    let mut first = Snippet::source(&source.text).path(&source.name).annotation(primary);
+    let mut first = Snippet::source(shown(&source.text)).path(&source.name).annotation(primary);
     let mut second = None;
     if let Some(also) = &fault.also {
         let source = &sources[also.source];
@@ -36,7 +38,7 @@ fn what_is_wrong<'a>(fault: &'a Fault, sources: &'a [Source], words: &'a Explana
         if also.source == fault.place.source {
             first = first.annotation(context);
         } else {
-            second = Some(Snippet::source(&source.text).path(&source.name).annotation(context));
+            second = Some(Snippet::source(shown(&source.text)).path(&source.name).annotation(context));
         }
     }
     let group = Level::ERROR.primary_title(&words.title).element(first);
@@ -53,12 +55,28 @@ fn how_to_mend_it<'a>(fault: &'a Fault, sources: &'a [Source], words: &'a Explan
     let source = &sources[fault.place.source];
     let edits = fault.edits.iter().filter(|(place, _)| place.source == fault.place.source);
     let patches = edits.map(|(place, text)| Patch::new(within(source, place), text));
-    Level::HELP.secondary_title(&words.fix).element(Snippet::source(&source.text).patches(patches))
+    Level::HELP.secondary_title(&words.fix).element(Snippet::source(shown(&source.text)).patches(patches))
 }
 
 fn annotation<'a>(kind: AnnotationKind, source: &Source, place: &Place, label: &'a str) -> Annotation<'a> {
     let annotation = kind.span(within(source, place));
     if label.is_empty() { annotation } else { annotation.label(label) }
+}
+
+/// The text of a source with other characters for those that a terminal obeys and the renderer lets through; each as long, so
+/// that places stay what they are.
+fn shown(text: &str) -> Cow<'_, str> {
+    let is_let_through = |c: char| is_obeyed(c) && (!c.is_ascii() || c == '\u{7f}');
+    if !text.contains(is_let_through) {
+        return text.into();
+    }
+    let other = |c: char| match c.len_utf8() {
+        _ if !is_let_through(c) => c,
+        1 => '?',
+        2 => '·',
+        _ => char::REPLACEMENT_CHARACTER,
+    };
+    text.chars().map(other).collect::<String>().into()
 }
 
 /// The bytes of a place, cut to whole characters of the text.
