@@ -18,7 +18,7 @@
 //! | `format` | topics, encodings, versions, limits, times |
 //! | `codec`, `soundness` | states and meshes as bytes, and what they must satisfy |
 //! | `message`, `manifest` | reports, commits, the end, who wrote it |
-//! | `ledger`, `summary`, `encoder`, `encode_error`, `backend`, `writer` | from a stage to bytes in a file |
+//! | `ledger`, `summary`, `encoder`, `encode_error`, `backend`, `writer`, `write_error` | from a stage to bytes in a file |
 //! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
 //! | `checkpoint`, `parts`, `index`, `index_keeper`, `long`, `asked` | a long log, of which only what is asked for is read |
 //! | `portions` | a log of any length, read through without holding it |
@@ -117,6 +117,7 @@ mod summary;
 mod thin;
 mod trace;
 mod verify;
+mod write_error;
 mod writer;
 
 pub use agreement::Disagreement;
@@ -146,4 +147,5 @@ pub use stretch::LostManifest;
 pub use thin::{ThinError, Thinned, thin};
 pub use trace::{ITERATE_TOPIC, TraceRow, trace_file};
 pub use verify::{Finding, Level, verify, verify_log};
-pub use writer::{JournalWriter, ViewerTopics, WriteError};
+pub use write_error::WriteError;
+pub use writer::{JournalWriter, ViewerTopics};
