@@ -224,7 +224,12 @@ pub(super) static PROBE: &[Key] = &[
              others the first in the scene counts. On half a shell: half of what a support that crosses the cut exerts on the \
              whole",
         ),
-        choice("section-moment", "N mm that the side of larger u or v exerts on the other, about the line's middle"),
+        choice(
+            "section-moment",
+            "N mm that the side of larger u or v exerts on the other, about the line's middle. Loads are cut by the line, reactions \
+             are not: within an element or two of a support, or across one, it may be off by 10 % and more; cut farther away or \
+             read the reaction",
+        ),
         choice("energy", "strain energy, N mm"),
         choice(
             "bending-strain",
