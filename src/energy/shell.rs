@@ -34,10 +34,10 @@ impl Shell {
     }
 
     /// Gradient of the strain energy, N, where `natural` is the state without forces.
-    fn residual(&self, at: At, natural: Option<NaturalState>) -> Vec<[f64; 3]> {
-        let mut residual = vec![[0.0; 3]; at.displacement.len()];
+    pub(crate) fn residual(&self, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> Vec<[f64; 3]> {
+        let mut residual = vec![[0.0; 3]; displacement.len()];
         let part = self.part(natural);
-        part.add(at.displacement, Want::Residual, &mut residual, &mut Blocks::default());
+        part.add(displacement, Want::Residual, &mut residual, &mut Blocks::default());
         residual
     }
 }
@@ -48,7 +48,7 @@ impl Term for Shell {
     }
 
     fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
-        let residual = self.residual(at, self.free_strains.at(at.parameter));
+        let residual = self.residual(at.displacement, self.free_strains.at(at.parameter));
         forces.iter_mut().zip(residual).for_each(|(sum, force)| *sum = sub(*sum, force));
     }
 
@@ -65,8 +65,8 @@ impl Term for Shell {
     fn add_rates(&self, at: At, rates: &mut [[f64; 3]]) {
         // Forces are linear in the free strain.
         let Some(beyond) = self.free_strains.beyond(at.parameter) else { return };
-        let there = self.residual(at, Some(beyond));
-        let here = self.residual(at, self.free_strains.at(at.parameter));
+        let there = self.residual(at.displacement, Some(beyond));
+        let here = self.residual(at.displacement, self.free_strains.at(at.parameter));
         for (sum, (there, here)) in rates.iter_mut().zip(there.into_iter().zip(here)) {
             *sum = sub(*sum, sub(there, here));
         }

@@ -132,12 +132,16 @@ impl Tangent<'_> {
     pub fn of(term: &dyn Term, at: At, pattern: &BlockPattern) -> [Blocks; 2] {
         let mut stiffness = Blocks::zeros(pattern);
         let mut skew = if term.has_skew() { Blocks::zeros(pattern) } else { Blocks::default() };
-        let symmetry = (!term.has_skew()).then(Symmetry::default);
-        let (stiffness_of, skew_of) = (&mut stiffness, &mut skew);
-        let mut tangent = Tangent { pattern, stiffness: stiffness_of, skew: skew_of, term: "one term", symmetry };
-        term.add_tangent(at, &mut tangent);
-        tangent.check();
+        Tangent { pattern, stiffness: &mut stiffness, skew: &mut skew, term: "one term", symmetry: None }
+            .take(term, at);
         [stiffness, skew]
+    }
+
+    /// Takes the tangent of a term, and looks whether that is as symmetric as the term says.
+    fn take(mut self, term: &dyn Term, at: At) {
+        self.symmetry = (!term.has_skew()).then(Symmetry::default);
+        term.add_tangent(at, &mut self);
+        self.check();
     }
 
     /// Ends the program where the term hides a skew part.
@@ -329,10 +333,7 @@ impl Terms {
     pub fn add_tangent(&self, at: At, pattern: &BlockPattern, stiffness: &mut Blocks) -> Blocks {
         let mut skew = if self.have_skew() { Blocks::zeros(pattern) } else { Blocks::default() };
         for Named { name, term } in self.list.iter().filter(|named| named.term.has_tangent()) {
-            let symmetry = (!term.has_skew()).then(Symmetry::default);
-            let mut tangent = Tangent { pattern, stiffness, skew: &mut skew, term: name, symmetry };
-            term.add_tangent(at, &mut tangent);
-            tangent.check();
+            Tangent { pattern, stiffness, skew: &mut skew, term: name, symmetry: None }.take(&**term, at);
         }
         skew
     }

@@ -3,7 +3,7 @@
 use crate::energy::{At, Discretization, Want, with_locked};
 use crate::equilibrium::vector::length;
 use crate::model::{Blocks, NaturalState};
-use crate::shell::{add, sub};
+use crate::shell::add;
 
 /// Sums over all elements and terms; buffers are kept between calls.
 #[derive(Debug, Default)]
@@ -54,10 +54,7 @@ impl Assembled {
         displacement: &[[f64; 3]],
         natural: Option<NaturalState>,
     ) -> Vec<[f64; 3]> {
-        let residual = vec![[0.0; 3]; displacement.len()];
-        let mut there = Self { residual, ..Self::default() };
-        there.assemble_shell(discretization, displacement, natural, Want::Residual);
-        there.residual.iter().zip(&self.residual).map(|(g1, g0)| sub(*g1, *g0)).collect()
+        subtract(&discretization.shell.residual(displacement, natural), &self.residual)
     }
 
     fn add_terms(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64, want: Want) {
