@@ -39,7 +39,8 @@ def main(program: str) -> int:
                 faults.append(f"`{after}` in place of `{before}` is accepted")
 
     print(*faults, f"{len(right)} scenes, {wrong} wrong ones, {len(faults)} faults", sep="\n")
-    return 1 if faults or len(right) < 90 or wrong < 50 else 0
+    # A tree without its scenes would pass unseen.
+    return 1 if faults or len(right) < 50 or wrong < 50 else 0
 
 
 if __name__ == "__main__":
