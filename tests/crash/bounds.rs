@@ -96,7 +96,9 @@ pub fn measured(place: &Place, arguments: &str) -> (Option<i32>, u64, String) {
     });
     let (began, mut peak) = (Instant::now(), 0);
     let code = loop {
-        if let Ok(status) = std::fs::read_to_string(format!("/proc/{}/status", child.id())) {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        // For a moment the child still has the memory, and the name, of the thread that spawned it.
+        if status.starts_with("Name:\tfoldline\n") {
             let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
             let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok());
             peak = peak.max(kilobytes.unwrap_or(0) << 10);
