@@ -16,6 +16,8 @@ pub struct State {
     pub displacement: Vec<[f64; 3]>,
     /// New knots each way that evaluate-indicators asks for; emptied by refine-knots.
     pub marked: [Vec<f64>; 2],
+    /// Knots in each direction that evaluate-indicators finds superfluous; emptied by coarsen-knots.
+    pub superfluous: [Vec<f64>; 2],
     /// The finer mesh that refine-knots made; project-displacements puts it in the place of `mesh`.
     pub refined: Option<Arc<Mesh>>,
     /// Load step: 0 before the first solve.
@@ -39,6 +41,19 @@ pub struct State {
     pub largest_force_n: f64,
     /// What the last refinement changed, and ripples since; `None` before the first, and where the shell jumped on it.
     pub refinement: Option<Refinement>,
+    /// The last estimate of the error on the present mesh, where a tolerance asks for one.
+    pub estimate: Option<Estimate>,
+}
+
+/// An estimate of the error that the mesh causes, and what tells when it no longer holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Load step that it was made at.
+    pub step: u64,
+    /// Error of the measured quantity, relative.
+    pub relative_error: f64,
+    /// Largest max|κ|h in each direction then, dimensionless.
+    pub largest_indicator: [f64; 2],
 }
 
 /// What a refinement changed at a state.
@@ -216,6 +231,7 @@ impl State {
             displacement: vec![[0.0; 3]; mesh.control_points.len()],
             mesh: Arc::new(mesh),
             marked: Default::default(),
+            superfluous: Default::default(),
             refined: None,
             step: 0,
             stage: None,
@@ -227,6 +243,7 @@ impl State {
             drive: DriveMemory::default(),
             largest_force_n: 0.0,
             refinement: None,
+            estimate: None,
         }
     }
 
@@ -241,6 +258,7 @@ impl State {
             mesh: _,
             displacement,
             marked,
+            superfluous,
             refined,
             step,
             stage,
@@ -252,6 +270,7 @@ impl State {
             drive: DriveMemory { control, course },
             largest_force_n,
             refinement,
+            estimate,
         } = self;
         let mut feed = Feed::new("foldline state");
         feed.bytes(mesh.as_bytes());
@@ -283,6 +302,15 @@ impl State {
             feed.bytes(b"refinement");
             feed.numbers(&[*changed_n_mm, *growth, *ripple_n_mm]);
             feed.numbers(expected_n_mm.as_slice());
+        }
+        if superfluous.iter().any(|knots| !knots.is_empty()) {
+            feed.bytes(b"superfluous");
+            superfluous.iter().for_each(|knots| feed.numbers(knots));
+        }
+        if let Some(Estimate { step, relative_error, largest_indicator: [one, other] }) = estimate {
+            feed.bytes(b"estimate");
+            feed.integer(*step);
+            feed.numbers(&[*relative_error, *one, *other]);
         }
         feed.finish()
     }

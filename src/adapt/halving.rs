@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::adapt::project_displacements;
 use crate::energy::TermSource;
-use crate::equilibrium::{Configuration, LinearBuckling, LinearRelease, Workspace};
+use crate::equilibrium::{Configuration, LinearBuckling, Placed, Workspace};
 use crate::model::MOST_CONTROL_POINTS;
 use crate::scene::Scene;
 use crate::shell::norm;
@@ -53,7 +53,7 @@ pub struct Halving {
 pub struct Halved {
     work: Workspace,
     halving: Halving,
-    relaxed: LinearRelease,
+    relaxed: Placed,
     parameter: f64,
     largest_force: f64,
 }
@@ -76,12 +76,13 @@ impl Halved {
         let integrated = work.energy(&displacement, state.parameter);
         let at = Configuration { displacement: &displacement, ..Configuration::of(state) };
         let held = work.energy(&vec![[0.0; 3]; displacement.len()], state.parameter);
-        let relaxed = work.linear_release(at).ok()?;
+        let release = work.linear_release(at).ok()?;
         let energy = state.strain_energy_n_mm / scene.symmetry.copies() as f64;
         let largest = displacement.iter().map(|moved| norm(*moved)).fold(0.0, f64::max);
         let sizes_mm = [largest, longest_side(&finer)];
-        let LinearRelease { energy: released, motion_mm, .. } = relaxed;
+        let (released, motion_mm) = (release.energy, release.motion_mm());
         let halving = Halving { energy, integrated, released, motion_mm, sizes_mm, held };
+        let relaxed = release.after(1.0, &work);
         Some(Self { work, halving, relaxed, parameter: state.parameter, largest_force: state.largest_force_n })
     }
 
@@ -92,7 +93,7 @@ impl Halved {
 
     /// The workspace of the halved mesh and the relaxed shape on it.
     pub fn relaxed(&mut self) -> (&mut Workspace, Configuration<'_>) {
-        let LinearRelease { displacement, turns, .. } = &self.relaxed;
+        let (displacement, turns) = &self.relaxed;
         let Self { parameter, largest_force, .. } = *self;
         (&mut self.work, Configuration { displacement, turns, parameter, largest_force })
     }

@@ -5,9 +5,10 @@
 
 use rayon::prelude::*;
 
+use crate::adapt::splitting::cuts;
 use crate::energy::Discretization;
 use crate::model::Tables;
-use crate::scene::{Adapt, Geometry, LengthLimit, Scene};
+use crate::scene::{Adapt, Geometry, Indicator, LengthLimit, Scene, Splitting};
 use crate::shell::{PointReference, Strains};
 use crate::spline::{Grid, Spans};
 
@@ -58,11 +59,15 @@ pub fn evaluate_indicators(
 ) -> Indicators {
     let elements = discretization.shell.tables.elements;
     let limit = length_limit(scene, discretization, adapt.length_limit);
+    let threshold = match adapt.indicator {
+        Indicator::BendingStrain(threshold) => threshold,
+        Indicator::Error(_) => [f64::INFINITY; 2],
+    };
     let values: Vec<[f64; 2]> = (0..elements.len())
         .into_par_iter()
         .map(|element| element_indicators(discretization, displacement, element))
         .collect();
-    let judged = Judged { adapt, limit, lengths: &discretization.shell.tables.lengths, values: &values };
+    let judged = Judged { threshold, limit, lengths: &discretization.shell.tables.lengths, values: &values };
     let largest = values.iter().fold([0.0_f64; 2], |most, value| [0, 1].map(|axis| most[axis].max(value[axis])));
     let worst = [0, 1].map(|axis| {
         let too_coarse = (0..values.len()).filter(|element| judged.is_too_coarse(*element, axis));
@@ -74,8 +79,14 @@ pub fn evaluate_indicators(
     let mesh = &discretization.mesh;
     let marked = [0, 1].map(|axis| {
         let bounds = Spans::of(&mesh.knots[axis], mesh.degree[axis]).bounds;
-        let marks = bounds.iter().zip(spans_where(elements, axis, is_marked));
-        marks.filter(|(_, marked)| *marked).map(|([from, to], _)| 0.5 * (from + to)).collect()
+        let parts = |span: usize| match adapt.splitting {
+            Splitting::Halves => 2,
+            Splitting::Parts => {
+                elements.line(axis, span).map(|element| judged.parts(element, axis)).fold(2, usize::max)
+            }
+        };
+        let marks = spans_where(elements, axis, is_marked).into_iter().enumerate().filter(|(_, marked)| *marked);
+        marks.flat_map(|(span, _)| cuts(bounds[span], parts(span))).collect()
     });
     Indicators { largest, marked, blocked: judged.blocked(elements, scene.material.thickness_mm()) }
 }
@@ -91,7 +102,7 @@ fn spans_where(elements: Grid, axis: usize, holds: impl Fn(usize, usize) -> bool
 
 /// The indicators beside what they are compared with.
 struct Judged<'a> {
-    adapt: &'a Adapt,
+    threshold: [f64; 2],
     /// Elements are not halved below this each way, mm.
     limit: [f64; 2],
     lengths: &'a [[f64; 2]],
@@ -100,7 +111,7 @@ struct Judged<'a> {
 
 impl Judged<'_> {
     fn is_above(&self, element: usize, axis: usize) -> bool {
-        self.values[element][axis] > self.adapt.threshold[axis]
+        self.values[element][axis] > self.threshold[axis]
     }
 
     fn may_be_halved(&self, element: usize, axis: usize) -> bool {
@@ -109,6 +120,12 @@ impl Judged<'_> {
 
     fn is_too_coarse(&self, element: usize, axis: usize) -> bool {
         self.is_above(element, axis) && self.may_be_halved(element, axis)
+    }
+
+    /// Parts in which its indicator falls to the threshold, as far as the limit allows, up to four at once.
+    fn parts(&self, element: usize, axis: usize) -> usize {
+        let asked = (self.values[element][axis] / self.threshold[axis]).ceil();
+        asked.min(self.lengths[element][axis] / self.limit[axis]).min(4.0) as usize
     }
 
     /// What the limit keeps far too long.
@@ -121,12 +138,18 @@ impl Judged<'_> {
         let spans = [0, 1].map(|axis| spans_where(elements, axis, is_blocked).into_iter().filter(|is| *is).count());
         let places = (0..self.values.len()).flat_map(|element| [(element, 0), (element, 1)]);
         let blocked = places.filter(|(element, axis)| is_blocked(*element, *axis));
-        let found = blocked.map(|(element, axis)| {
-            [decay_lengths(element, axis), self.values[element][axis] / self.adapt.threshold[axis]]
-        });
+        let found = blocked
+            .map(|(element, axis)| [decay_lengths(element, axis), self.values[element][axis] / self.threshold[axis]]);
         let [decay_lengths, over_threshold] = found.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])?;
         Some(Blocked { spans, decay_lengths, over_threshold })
     }
+}
+
+/// Length of every span in both directions of a mesh, along the longest of its lines, mm.
+pub fn span_lengths(discretization: &Discretization) -> [Vec<f64>; 2] {
+    let Tables { elements, lengths, .. } = &discretization.shell.tables;
+    let of_span = |axis: usize, span: usize| elements.line(axis, span).map(move |element| lengths[element][axis]);
+    [0, 1].map(|axis| (0..elements.counts[axis]).map(|span| of_span(axis, span).fold(0.0, f64::max)).collect())
 }
 
 /// Elements are not halved below this, mm.
@@ -134,15 +157,16 @@ impl Judged<'_> {
 /// Beside forces on points and free edges √(R t) is not enough. Largest error of the deflection under the force, cubic
 /// elements from 4 × 4 on, threshold 0.019, with √(R t), half of it and a quarter: open cylinder pulled at two points (R/t =
 /// 53) 6.3, 1.6, 0.7 %; pinched hemisphere (R/t = 250) 1.3, 0.06, 0.06 %.
-fn length_limit(scene: &Scene, discretization: &Discretization, rule: LengthLimit) -> [f64; 2] {
-    let radius = match scene.geometry {
+pub fn length_limit(scene: &Scene, discretization: &Discretization, rule: LengthLimit) -> [f64; 2] {
+    let radius = || match scene.geometry {
         Geometry::TapeSpring { radius_mm, .. } => radius_mm,
         _ => 1.0 / largest_curvature(discretization),
     };
     let decay_length = |radius: f64| (radius * scene.material.thickness_mm()).sqrt();
     match rule {
-        LengthLimit::SqrtRadiusThickness => [decay_length(radius); 2],
-        LengthLimit::HalfDecayLength => [0.5 * decay_length(radius.min(shorter_side(discretization))); 2],
+        LengthLimit::SqrtRadiusThickness => [decay_length(radius()); 2],
+        LengthLimit::HalfDecayLength => [0.5 * decay_length(radius().min(shorter_side(discretization))); 2],
+        LengthLimit::Thickness => [scene.material.thickness_mm(); 2],
         LengthLimit::Millimetres(length) => length,
     }
 }

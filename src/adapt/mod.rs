@@ -2,16 +2,26 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `error_estimate`, `estimate`, `splitting` | the error that the mesh causes, by direction and span, and the knots that lower it |
+//! | `coarsening` | knots taken out, and the best approximation on what is left |
 //! | `halving` | what halving every element would change |
 //! | `indicators` | refinement indicators, and the marks that they set |
 //! | `refinement` | knots inserted, displacements carried over |
 
+mod coarsening;
+mod error_estimate;
+mod estimate;
 mod halving;
 mod indicators;
 mod refinement;
+mod splitting;
 
+pub use coarsening::Coarsened;
+pub use error_estimate::{DirectionalError, Enriched, Measure};
+pub use estimate::{JudgedMesh, still_holds};
 pub use halving::{Halved, Halving};
 pub use indicators::{
-    Blocked, Indicators, element_strains, evaluate_indicators, largest_bending_strain, largest_strain,
+    Blocked, Indicators, element_strains, evaluate_indicators, largest_bending_strain, largest_strain, length_limit,
+    span_lengths,
 };
 pub use refinement::project_displacements;

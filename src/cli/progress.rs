@@ -261,6 +261,7 @@ mod tests {
             rippled: false,
             marked: [0, 0],
             largest_indicator: [0.0, 0.0],
+            estimated_error: None,
         };
         assert_eq!(live_prefix(Parameter::Rotation, report.parameter, 20.0), "9.600° of 20°");
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve, 5 iterations");

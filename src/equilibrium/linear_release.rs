@@ -6,17 +6,36 @@ use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::Workspace;
 use crate::shell::norm;
 
-/// What the way to equilibrium comes to, to first order, with the residual r on the free unknowns and the stiffness K.
+/// One step of Newton's method from a state out of balance: with the residual r on the free unknowns and the stiffness K, the
+/// unknowns change by −K⁻¹r.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearRelease {
     /// ½ rᵀK⁻¹r of the model, N·mm; negative where K is not positive definite and r mostly in its negative part.
     pub energy: f64,
-    /// The largest motion of a control point in K⁻¹r, mm.
-    pub motion_mm: f64,
-    /// Displacement of the control points with K⁻¹r, mm.
-    pub displacement: Vec<[f64; 3]>,
-    /// Rotation vectors of the rigid sections with it, where one of them turns freely.
-    pub turns: Vec<[f64; 3]>,
+    /// Internal forces less loads on the control points where the step begins, N.
+    pub forces: Vec<[f64; 3]>,
+    /// Motion of the control points, to first order, mm.
+    pub motion: Vec<[f64; 3]>,
+    parameter: f64,
+    free: Vec<f64>,
+    step: Vec<f64>,
+}
+
+/// Displacement of the control points, mm, and rotation vectors of the rigid sections where one of them turns freely.
+pub type Placed = (Vec<[f64; 3]>, Vec<[f64; 3]>);
+
+impl LinearRelease {
+    /// The largest motion of a control point, mm.
+    pub fn motion_mm(&self) -> f64 {
+        self.motion.iter().map(|motion| norm(*motion)).fold(0.0, f64::max)
+    }
+
+    /// Where the shell stands after a share of the step, on the mesh of the workspace that computed it.
+    pub fn after(&self, share: f64, work: &Workspace) -> Placed {
+        let moved = self.free.iter().zip(&self.step).map(|(value, change)| value + share * change).collect();
+        let there = Coordinates::at(&work.discretization.unknowns, moved, self.parameter);
+        (there.displacement, there.placement.turns())
+    }
 }
 
 impl Workspace {
@@ -27,16 +46,20 @@ impl Workspace {
     pub fn linear_release(&mut self, at: Configuration) -> Result<LinearRelease, SolveError> {
         self.factorize_at(at)?;
         let forces = self.forces(at);
-        let unknowns = &self.discretization.unknowns;
-        let Coordinates { free, placement, .. } = Coordinates::of(unknowns, at);
+        let Coordinates { free, placement, parameter, .. } = Coordinates::of(&self.discretization.unknowns, at);
         let residual = placement.restrict(&forces);
-        let mut step = residual.clone();
+        let mut step: Vec<f64> = residual.iter().map(|force| -force).collect();
         self.tangent.solver.solve(&mut step);
-        let motion_mm = placement.velocity(&step, &[]).iter().map(|motion| norm(*motion)).fold(0.0, f64::max);
-        let moved: Vec<f64> = free.iter().zip(&step).map(|(value, change)| value + change).collect();
-        let relaxed = Coordinates::at(unknowns, moved, at.parameter);
-        let energy = 0.5 * product(&residual, &step);
-        let turns = relaxed.placement.turns();
-        Ok(LinearRelease { energy, motion_mm, displacement: relaxed.displacement, turns })
+        let energy = -0.5 * product(&residual, &step);
+        let motion = placement.velocity(&step, &[]);
+        Ok(LinearRelease { energy, forces, motion, parameter, free, step })
+    }
+
+    /// The nearest displacement that supports and joints allow on this mesh: on a finer one than that of the state, unknowns at
+    /// a section are others, and what they give differs by what the coarser one could not show there.
+    pub fn allowed(&self, at: Configuration) -> Placed {
+        let there =
+            Coordinates::at(&self.discretization.unknowns, at.free(&self.discretization.unknowns), at.parameter);
+        (there.displacement, there.placement.turns())
     }
 }

@@ -51,7 +51,7 @@ pub use configuration::{Configuration, Coordinates};
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};
 pub use force_scale::ForceScale;
 pub use iterate::{Effort, Iterate, Observer};
-pub use linear_release::LinearRelease;
+pub use linear_release::{LinearRelease, Placed};
 pub use newton::Equilibrium;
 pub use solve_error::{SolveError, WorkspaceError};
 pub use solved::Solved;

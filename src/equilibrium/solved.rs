@@ -1,7 +1,7 @@
 //! What a solve leaves.
 
 use crate::energy::{At, Balance, Discretization};
-use crate::equilibrium::configuration::Configuration;
+use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::ledger::Before;
 use crate::equilibrium::vector::{length, product};
@@ -44,6 +44,24 @@ pub(super) struct Ended {
 }
 
 impl Workspace {
+    /// Turning ends: moment dΠ/dθ / 2 at each end of the whole shell at a configuration, N·mm. Otherwise 0.
+    pub fn end_moment(&mut self, scene: &Scene, at: Configuration) -> f64 {
+        let forces = self.forces(at);
+        let reactions = Coordinates::of(&self.discretization.unknowns, at).placement.reactions(&forces);
+        self.moment_of(scene, &reactions)
+    }
+
+    fn moment_of(&self, scene: &Scene, reactions: &[f64]) -> f64 {
+        let parts = scene.symmetry.copies() as f64;
+        match scene.end_rotation() {
+            // All given motions are proportional to θ in degrees.
+            Some(_) => {
+                0.5 * parts * product(reactions, &self.discretization.unknowns.given_at(1.0)) * 1.0_f64.to_degrees()
+            }
+            None => 0.0,
+        }
+    }
+
     /// What a solve has found; remembers that stiffness and factor stand there.
     pub(super) fn solved(
         &mut self,
@@ -58,13 +76,8 @@ impl Workspace {
         let put_in = before.put_in(&self.discretization, parameter, &ended.displacement);
         let rounding = last.forces.rounding * length(&ended.displacement);
         self.factored_at = Some(Factored::new(at, last.negative_pivots));
-        let unknowns = &self.discretization.unknowns;
         let parts = scene.symmetry.copies() as f64;
-        let moment = match scene.end_rotation() {
-            // All given motions are proportional to θ in degrees.
-            Some(_) => 0.5 * parts * product(&ended.reactions, &unknowns.given_at(1.0)) * 1.0_f64.to_degrees(),
-            None => 0.0,
-        };
+        let moment = self.moment_of(scene, &ended.reactions);
         let Discretization { mesh, terms, .. } = &self.discretization;
         let beside = terms.energies(At { mesh, displacement: &ended.displacement, parameter });
         // What the shell stores is known without integrating again.

@@ -61,6 +61,7 @@ impl Found<'_> {
             mesh,
             displacement,
             marked,
+            superfluous,
             refined,
             step,
             stage,
@@ -72,6 +73,7 @@ impl Found<'_> {
             drive: DriveMemory { control, course },
             largest_force_n,
             refinement,
+            estimate,
         } = a;
         if *stage == b.stage && control.rejection != b.drive.control.rejection {
             return self.kinds.push(format!("{} against {}", outcome(a), outcome(b)));
@@ -84,12 +86,8 @@ impl Found<'_> {
         if !self.kinds.is_empty() {
             return;
         }
-        let counts = |marked: &[Vec<f64>; 2]| marked.each_ref().map(Vec::len);
-        if counts(marked) == counts(&b.marked) {
-            marked.iter().zip(&b.marked).for_each(|(x, y)| self.list("marked knots", x, y));
-        } else {
-            self.kinds.push(format!("{:?} knot spans marked against {:?}", counts(marked), counts(&b.marked)));
-        }
+        self.knots("knot spans marked", marked, &b.marked);
+        self.knots("knots superfluous", superfluous, &b.superfluous);
         if *negative_pivots != b.negative_pivots {
             self.kinds.push(format!("{negative_pivots} negative pivots against {}", b.negative_pivots));
         }
@@ -106,7 +104,22 @@ impl Found<'_> {
         if let Some((x, y)) = self.both("memory of a refinement", refinement, &b.refinement) {
             self.refinements(x, y, *strain_energy_n_mm);
         }
+        if let Some((x, y)) = self.both("estimate of the error", estimate, &b.estimate) {
+            self.number("step of the estimated error", x.step as f64, y.step as f64);
+            self.number("estimated error", x.relative_error, y.relative_error);
+            self.list("largest indicator", &x.largest_indicator, &y.largest_indicator);
+        }
         self.controls(control, &b.drive.control);
+    }
+
+    /// Knots to insert, or to take out.
+    fn knots(&mut self, what: &'static str, a: &[Vec<f64>; 2], b: &[Vec<f64>; 2]) {
+        let [of_a, of_b] = [a, b].map(|knots| knots.each_ref().map(Vec::len));
+        if of_a == of_b {
+            a.iter().zip(b).for_each(|(x, y)| self.list(what, x, y));
+        } else {
+            self.kinds.push(format!("{of_a:?} {what} against {of_b:?}"));
+        }
     }
 
     fn meshes(&mut self, [knots_name, points_name]: [&'static str; 2], a: &Mesh, b: &Mesh) {

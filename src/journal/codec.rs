@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub use self::bytes::{CODEC_VERSION, CodecError};
 use self::bytes::{decode, encode};
 use self::older::{Older, decode_older};
-use self::versions::{CourseV7, FieldV1, MeshV1, RefinementV6, RejectionV1, StageV1, StateV7};
+use self::versions::{CourseV7, EstimateV8, FieldV1, MeshV1, RefinementV6, RejectionV1, StageV1, StateV7, StateV8};
 use super::format::FIELDS_LIMIT;
 use super::soundness::{check_mesh, check_on_mesh, check_state};
 use crate::digest::extend_with_numbers;
@@ -99,6 +99,7 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField])
         mesh: _,
         displacement,
         marked,
+        superfluous,
         refined,
         step,
         stage,
@@ -110,11 +111,12 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField])
         drive: DriveMemory { control: StepControl { halvings, jump_beyond, rejection }, course },
         largest_force_n,
         refinement,
+        estimate,
     } = state;
     let (course, field) = CourseV7::of(course);
     let fields = [Some(&displacement[..]), field].into_iter().flatten();
     let fields: Vec<EncodedField> = fields.map(|vectors| EncodedField::of(vectors, known)).collect();
-    let stored = StateV7 {
+    let base = StateV7 {
         mesh: *mesh.as_bytes(),
         fields: fields.iter().map(|field| *field.hash.as_bytes()).collect(),
         marked: marked.each_ref().map(Cow::from),
@@ -127,6 +129,7 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField])
             Stage::ProjectDisplacements => StageV1::ProjectDisplacements,
             Stage::ReEquilibrate => StageV1::ReEquilibrate,
             Stage::SwitchBranch => StageV1::SwitchBranch,
+            Stage::CoarsenKnots => StageV1::CoarsenKnots,
         }),
         parameter: *parameter,
         turns: Cow::from(turns),
@@ -145,6 +148,8 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField])
         largest_force_n: *largest_force_n,
         refinement: refinement.map(RefinementV6::of),
     };
+    let superfluous = superfluous.each_ref().map(Cow::from);
+    let stored = StateV8 { base, superfluous, estimate: estimate.map(EstimateV8::of) };
     Ok(EncodedState { state: encode(CODEC_VERSION, &stored)?, fields })
 }
 
@@ -160,7 +165,7 @@ pub fn decode_state<'a>(
     mesh_hash: Hash,
     expected: Hash,
 ) -> Result<State, CodecError> {
-    let Older { state: stored, heading } = match bytes.first() {
+    let Older { state: StateV8 { base: stored, superfluous, estimate }, heading } = match bytes.first() {
         Some(&CODEC_VERSION) => Older { state: decode(CODEC_VERSION, bytes)?, heading: None },
         _ => decode_older(bytes)?,
     };
@@ -179,7 +184,7 @@ pub fn decode_state<'a>(
     let mut fields = fields.collect::<Result<Vec<Vec<[f64; 3]>>, CodecError>>()?.into_iter();
     let mut displacement = fields.next().unwrap_or_default();
     let field = match (&stored.course, bytes.first()) {
-        (CourseV7::Load { .. }, Some(..CODEC_VERSION)) => Some(displacement.split_off(displacement.len() / 2)),
+        (CourseV7::Load { .. }, Some(..7)) => Some(displacement.split_off(displacement.len() / 2)),
         _ => heading.or_else(|| fields.next()),
     };
     let course = stored.course.with(field).filter(|_| fields.next().is_none());
@@ -187,6 +192,7 @@ pub fn decode_state<'a>(
         mesh,
         displacement,
         marked: stored.marked.map(Cow::into_owned),
+        superfluous: superfluous.map(Cow::into_owned),
         refined: stored.refined.map(|mesh| Arc::new(mesh.into_mesh())),
         step: stored.step,
         stage: stored.stage.map(|stage| match stage {
@@ -196,6 +202,7 @@ pub fn decode_state<'a>(
             StageV1::ProjectDisplacements => Stage::ProjectDisplacements,
             StageV1::ReEquilibrate => Stage::ReEquilibrate,
             StageV1::SwitchBranch => Stage::SwitchBranch,
+            StageV1::CoarsenKnots => Stage::CoarsenKnots,
         }),
         parameter: stored.parameter,
         turns: stored.turns.into_owned(),
@@ -217,6 +224,7 @@ pub fn decode_state<'a>(
         },
         largest_force_n: stored.largest_force_n,
         refinement: stored.refinement.map(RefinementV6::into_memory),
+        estimate: estimate.map(EstimateV8::into_memory),
     };
     let found = state.hash();
     if found != expected {

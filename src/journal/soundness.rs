@@ -2,7 +2,9 @@
 
 use crate::scene::{Drive, Scene, Stage};
 use crate::spline::{DEGREES, KnotFlaw, check_knots};
-use crate::state::{Course, CriticalAhead, DriveMemory, Mesh, PathMemory, Previous, Refinement, State, StepControl};
+use crate::state::{
+    Course, CriticalAhead, DriveMemory, Estimate, Mesh, PathMemory, Previous, Refinement, State, StepControl,
+};
 
 /// What is wrong with a mesh or a state.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -78,7 +80,7 @@ pub enum Flaw {
     /// A marked knot that the mesh cannot have, or one that the refined mesh lacks.
     #[error("{what} knot {value} in direction {} is not a knot that this mesh can have", way + 1)]
     ForeignKnot {
-        /// "marked" or "the mesh's".
+        /// "marked", "superfluous" or "the mesh's".
         what: &'static str,
         /// Parametric direction, 0 or 1.
         way: usize,
@@ -164,6 +166,7 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
         mesh,
         displacement,
         marked,
+        superfluous,
         refined,
         step: _,
         stage: _,
@@ -175,6 +178,7 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
         drive: DriveMemory { control: StepControl { halvings: _, jump_beyond, rejection: _ }, course },
         largest_force_n,
         refinement,
+        estimate,
     } = state;
     if let Some(refined) = refined {
         check_mesh(refined)?;
@@ -196,6 +200,9 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
                 return Err(Flaw::ForeignKnot { what: "marked", way, value });
             }
         }
+        if let Some(&value) = superfluous[way].iter().find(|value| !knots.contains(value)) {
+            return Err(Flaw::ForeignKnot { what: "superfluous", way, value });
+        }
     }
     let expected = mesh.control_points.len();
     let fits = |what, found| if found == expected { Ok(()) } else { Err(Flaw::Length { what, expected, found }) };
@@ -208,6 +215,9 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
     finite("largest force", [*largest_force_n])?;
     if let Some(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }) = refinement {
         finite("change on refining", [*changed_n_mm, *growth, *ripple_n_mm].into_iter().chain(*expected_n_mm))?;
+    }
+    if let Some(Estimate { step: _, relative_error, largest_indicator: [one, other] }) = estimate {
+        finite("estimated error", [*relative_error, *one, *other])?;
     }
     match course {
         Course::Unknown => {}
@@ -247,6 +257,7 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
         mesh,
         displacement,
         marked,
+        superfluous,
         refined,
         step: _,
         stage,
@@ -258,6 +269,7 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
         drive: DriveMemory { control, course },
         largest_force_n,
         refinement,
+        estimate,
     } = state;
     let foreign = |what| Err(Flaw::Foreign { what });
     for way in 0..2 {
@@ -274,6 +286,8 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
     match stage {
         Some(stage) if !is_stage(stage) => return foreign("a stage of another pipeline"),
         _ if !refines && marked.iter().any(|knots| !knots.is_empty()) => return foreign("marked knot spans"),
+        _ if !refines && superfluous.iter().any(|knots| !knots.is_empty()) => return foreign("superfluous knots"),
+        _ if !refines && estimate.is_some() => return foreign("an estimate of its error"),
         _ if !refines && refined.is_some() => return foreign("a refined mesh"),
         _ if !refines && refinement.is_some() => return foreign("a memory of refining"),
         _ if !follows_a_path && matches!(course, Course::Path(_)) => return foreign("a path"),

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::adapt::Enriched;
 use crate::energy::{Discretization, TermSource};
 use crate::equilibrium::{Workspace, WorkspaceError};
 use crate::model::{ModelError, Unknowns};
@@ -13,6 +14,7 @@ use crate::spline::Mesh;
 pub(super) struct MeshInHand {
     work: Option<Workspace>,
     ahead: Option<(Arc<Mesh>, Unknowns)>,
+    enriched: Option<(Arc<Mesh>, [Enriched; 2])>,
 }
 
 impl MeshInHand {
@@ -42,6 +44,22 @@ impl MeshInHand {
             }
         };
         Ok(self.work.insert(work))
+    }
+}
+
+impl MeshInHand {
+    /// The shell on a mesh with the spans of one direction halved, for either direction.
+    pub fn enriched(
+        &mut self,
+        scene: &Scene,
+        own: &[Arc<dyn TermSource>],
+        mesh: &Arc<Mesh>,
+    ) -> Result<&mut [Enriched; 2], WorkspaceError> {
+        let enriched = match self.enriched.take().filter(|(known, _)| is_same(known, mesh)) {
+            Some((_, enriched)) => enriched,
+            None => [Enriched::new(scene, own, mesh, 0)?, Enriched::new(scene, own, mesh, 1)?],
+        };
+        Ok(&mut self.enriched.insert((mesh.clone(), enriched)).1)
     }
 }
 

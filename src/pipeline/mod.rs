@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `stages` | the stages |
+//! | `evaluation`, `measured` | which spans are too coarse, and for what |
 //! | `step` | a step of a drive: what every drive does alike |
 //! | `load_drive`, `path_drive` | steps by load, and by arc length |
 //! | `branch_switch` | from an unstable equilibrium to a stable one |
@@ -15,7 +16,9 @@
 
 mod branch_switch;
 mod doubts;
+mod evaluation;
 mod load_drive;
+mod measured;
 mod mesh_in_hand;
 mod path_control;
 mod path_drive;

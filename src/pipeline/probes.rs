@@ -23,14 +23,38 @@ pub fn read_probes(
     at: Configuration,
     energy: f64,
 ) -> Result<Vec<Reading>, ModelError> {
-    if scene.probes.is_empty() {
+    read(scene, work, at, energy, &scene.probes)
+}
+
+/// Reads the first probe of a scene; `None` where it has none.
+///
+/// # Errors
+/// As for [`read_probes`].
+pub(super) fn read_first_probe(
+    scene: &Scene,
+    work: &mut Workspace,
+    at: Configuration,
+    energy: f64,
+) -> Result<Option<Reading>, ModelError> {
+    let first = &scene.probes[..scene.probes.len().min(1)];
+    Ok(read(scene, work, at, energy, first)?.pop())
+}
+
+fn read(
+    scene: &Scene,
+    work: &mut Workspace,
+    at: Configuration,
+    energy: f64,
+    probes: &[Probe],
+) -> Result<Vec<Reading>, ModelError> {
+    if probes.is_empty() {
         return Ok(Vec::new());
     }
     let forces = work.forces(at);
     let discretization = work.discretization();
     let Coordinates { placement, .. } = Coordinates::of(&discretization.unknowns, at);
     let reader = Reader { scene, discretization, at, placement, forces: &forces, exerted: OnceCell::new(), energy };
-    scene.probes.iter().map(|probe| reader.read(probe)).collect()
+    probes.iter().map(|probe| reader.read(probe)).collect()
 }
 
 struct Reader<'a> {

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::adapt::{evaluate_indicators, project_displacements};
+use crate::adapt::{Coarsened, project_displacements};
 use crate::digest::Hash;
 use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_energy};
 use crate::equilibrium::{Configuration, Iterate, Workspace, WorkspaceError};
 use crate::model::{FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, starting_mesh};
 use crate::pipeline::StageError;
 use crate::pipeline::doubts::{Doubts, doubtful};
+use crate::pipeline::evaluation::Evaluation;
 use crate::pipeline::load_drive::LoadDrive;
 use crate::pipeline::mesh_in_hand::MeshInHand;
 use crate::pipeline::path_drive::PathDrive;
@@ -98,6 +99,7 @@ impl Stages {
             Stage::EvaluateIndicators => self.evaluate(state)?,
             Stage::RefineKnots => self.refine(state)?,
             Stage::ProjectDisplacements => self.project(state)?,
+            Stage::CoarsenKnots => self.coarsen(state)?,
             Stage::ReEquilibrate => self.drive(stage, state, observer)?.re_equilibrate()?,
         };
         next.stage = Some(stage);
@@ -128,20 +130,41 @@ impl Stages {
     }
 
     fn evaluate(&mut self, state: &State) -> Result<(State, Report), StageError> {
-        let (scene, work) = self.workspace(&state.mesh, state.step, Stage::EvaluateIndicators)?;
+        let Self { scene, own, in_hand } = self;
         let Some(adapt) = &scene.adapt else {
             return Err(out_of_order(state, Stage::EvaluateIndicators, "the scene has no [adapt]"));
         };
-        let indicators = evaluate_indicators(scene, adapt, work.discretization(), &state.displacement);
-        let marked = indicators.marked.each_ref().map(Vec::len);
-        let blocked = indicators.blocked.filter(|_| marked == [0, 0]);
-        let report = Report {
-            marked,
-            largest_indicator: indicators.largest,
-            warnings: blocked.map(|blocked| Warning::of_blocked(state, blocked)).into_iter().collect(),
-            ..Report::of(scene, state, work.discretization().unknowns.count())
+        let evaluated = Evaluation { scene, adapt, own, in_hand, state }.run();
+        evaluated.map_err(|cause| no_workspace(cause, &state.mesh, state.step, Stage::EvaluateIndicators))
+    }
+
+    /// Takes superfluous knots out. What the approximation of the displacements costs shows in the energy of the report.
+    fn coarsen(&mut self, state: &State) -> Result<(State, Report), StageError> {
+        if state.superfluous.iter().all(Vec::is_empty) {
+            return Err(out_of_order(state, Stage::CoarsenKnots, "no knot is superfluous"));
+        }
+        let failed = |cause| StageError::Model { step: state.step, stage: Stage::CoarsenKnots, cause };
+        let start = starting_mesh(&self.scene).map_err(failed)?;
+        let coarsened = Coarsened::new(&state.mesh, &state.superfluous, &start);
+        let displacement = coarsened.approximated(&state.displacement);
+        let (scene, work) = self.workspace(&coarsened.mesh, state.step, Stage::CoarsenKnots)?;
+        let at = Configuration { displacement: &displacement, ..Configuration::of(state) };
+        let (displacement, turns) = work.allowed(at);
+        let next = State {
+            mesh: coarsened.mesh.clone(),
+            superfluous: Default::default(),
+            turns,
+            strain_energy_n_mm: scene.symmetry.copies() as f64 * work.energy(&displacement, state.parameter),
+            displacement,
+            drive: DriveMemory {
+                control: state.drive.control,
+                course: state.drive.course.projected(|vectors| coarsened.approximated(vectors)),
+            },
+            estimate: None,
+            ..state.clone()
         };
-        Ok((State { marked: indicators.marked, ..state.clone() }, report))
+        let report = Report::of(scene, &next, work.discretization().unknowns.count());
+        Ok((next, report))
     }
 
     fn refine(&mut self, state: &State) -> Result<(State, Report), StageError> {
@@ -216,6 +239,8 @@ impl Stages {
             drive: DriveMemory { control, course },
             largest_force_n,
             refinement,
+            superfluous: _,
+            estimate: _,
         } = state;
         let project = |vectors: &[[f64; 3]]| project_displacements(mesh, finer, vectors);
         let displacement = project(displacement);
@@ -235,6 +260,8 @@ impl Stages {
             drive: DriveMemory { control: *control, course: course.projected(project) },
             largest_force_n: *largest_force_n,
             refinement: *refinement,
+            superfluous: Default::default(),
+            estimate: None,
         };
         let report = Report::of(scene, &next, work.discretization().unknowns.count());
         Ok((next, report))

@@ -40,7 +40,12 @@ impl Step<'_> {
 
     /// The state where it was, with another attempt to make.
     pub fn stay(&self, control: StepControl, course: Course) -> State {
-        State { drive: DriveMemory { control, course }, marked: Default::default(), ..self.state.clone() }
+        State {
+            drive: DriveMemory { control, course },
+            marked: Default::default(),
+            superfluous: Default::default(),
+            ..self.state.clone()
+        }
     }
 
     /// Report of a solve that was rejected.
@@ -150,6 +155,7 @@ pub(super) fn settle(state: &State, solved: &Solved) -> State {
         displacement: solved.displacement.clone(),
         turns: solved.turns.clone(),
         marked: Default::default(),
+        superfluous: Default::default(),
         moment_n_mm: solved.moment,
         strain_energy_n_mm: solved.balance.stored,
         largest_force_n: solved.largest_force,

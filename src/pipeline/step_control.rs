@@ -90,7 +90,7 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
         None => return Some(Stage::Solve),
         Some(Stage::Solve) if state.drive.control.rejection.is_some() => return Some(Stage::Solve),
         Some(Stage::RefineKnots) => return Some(Stage::ProjectDisplacements),
-        Some(Stage::ProjectDisplacements) => return Some(Stage::ReEquilibrate),
+        Some(Stage::ProjectDisplacements | Stage::CoarsenKnots) => return Some(Stage::ReEquilibrate),
         Some(Stage::Solve | Stage::ReEquilibrate) if has(Stage::SwitchBranch) && is_to_be_left(scene, state) => {
             return Some(Stage::SwitchBranch);
         }
@@ -102,6 +102,9 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
     }
     if has(Stage::RefineKnots) && state.marked.iter().any(|knots| !knots.is_empty()) {
         return Some(Stage::RefineKnots);
+    }
+    if has(Stage::CoarsenKnots) && state.superfluous.iter().any(|knots| !knots.is_empty()) {
+        return Some(Stage::CoarsenKnots);
     }
     (!has_reached(scene, state, scene.load.target())).then_some(Stage::Solve)
 }

@@ -57,6 +57,9 @@ pub struct Report {
     pub marked: [usize; 2],
     /// Largest indicator max|κ|h each way (evaluate-indicators), dimensionless.
     pub largest_indicator: [f64; 2],
+    /// Estimated error of the measured quantity that the mesh causes by its spans in each direction, relative
+    /// (evaluate-indicators, where a tolerance asks for it and the estimate before no longer holds).
+    pub estimated_error: Option<[f64; 2]>,
     /// The scene's probes at a new equilibrium; empty after other stages.
     pub probes: Vec<Reading>,
     /// Arc length: length of the path so far, mm.
@@ -92,6 +95,7 @@ impl Report {
             rippled: false,
             marked: [0, 0],
             largest_indicator: [0.0; 2],
+            estimated_error: None,
             probes: Vec::new(),
             path_length_mm: state.drive.path().map(|path| path.travelled_mm),
             critical_point: None,
@@ -193,6 +197,11 @@ pub struct WrittenReport {
     marked: [usize; 2],
     /// Largest indicator max|κ|h each way (evaluate-indicators), dimensionless.
     largest_indicator: [f64; 2],
+    /// Estimated error of the measured quantity that the mesh causes by its spans in each direction, relative
+    /// (evaluate-indicators, where a tolerance asks for it).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "[f64; 2]")]
+    estimated_error: Option<[f64; 2]>,
     /// The scene's probes at a new equilibrium.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     probes: Vec<Reading>,
@@ -234,6 +243,7 @@ impl From<WrittenReport> for Report {
             rippled: written.rippled,
             marked: written.marked,
             largest_indicator: written.largest_indicator,
+            estimated_error: written.estimated_error,
             probes: written.probes,
             path_length_mm: written.path_length_mm,
             critical_point: written.critical_point,
@@ -269,6 +279,7 @@ impl From<Report> for WrittenReport {
             rippled: report.rippled,
             marked: report.marked,
             largest_indicator: report.largest_indicator,
+            estimated_error: report.estimated_error,
             probes: report.probes,
             path_length_mm: report.path_length_mm,
             critical_point: report.critical_point,

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::data::{
-    Adapt, ArcLength, EndRotation, Geometry, LengthLimit, Load, LoadSteps, Material, MeshSpec, Scene, Solver, Stage,
-    Symmetry,
+    Adapt, ArcLength, EndRotation, Geometry, Indicator, LengthLimit, Load, LoadSteps, Material, MeshSpec, Scene,
+    Solver, Splitting, Stage, Symmetry,
 };
 use super::document::Document;
 use super::error::SceneError;
@@ -222,8 +222,11 @@ fn adapt(tables: &Tables, pipeline: &[Stage]) -> Checked<Option<Adapt>> {
         return if table.is_given { Err(unused) } else { Ok(None) };
     }
     let geometry = tables.one("geometry").kind();
-    let default = match geometry {
-        TAPE_SPRING => LengthLimit::SqrtRadiusThickness,
+    let Some(threshold) = one_or_pair(table, "threshold") else { unreachable!("adapt.threshold has a default") };
+    let indicator = table.get::<Option<f64>>("tolerance").map_or(Indicator::BendingStrain(threshold), Indicator::Error);
+    let default = match (indicator, geometry) {
+        (Indicator::Error(_), _) => LengthLimit::Thickness,
+        (_, TAPE_SPRING) => LengthLimit::SqrtRadiusThickness,
         _ => LengthLimit::HalfDecayLength,
     };
     let length_limit = match one_or_pair(table, "length_limit_mm") {
@@ -237,8 +240,15 @@ fn adapt(tables: &Tables, pipeline: &[Stage]) -> Checked<Option<Adapt>> {
             "write \"half-decay-length\", or `length_limit_mm`, a number or one for each direction",
         ));
     }
-    let Some(threshold) = one_or_pair(table, "threshold") else { unreachable!("adapt.threshold has a default") };
-    Ok(Some(Adapt { threshold, length_limit }))
+    let splitting: Splitting = table.get("splitting");
+    if splitting != Splitting::default() && matches!(indicator, Indicator::Error(_)) {
+        return Err(table.wrong_at(
+            "splitting",
+            "with a tolerance, spans are split in as many parts as the error asks for",
+            "leave it out",
+        ));
+    }
+    Ok(Some(Adapt { indicator, length_limit, splitting }))
 }
 
 fn solver(tables: &Tables, load: &Load) -> Checked<Solver> {

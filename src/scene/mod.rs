@@ -66,9 +66,10 @@ mod write;
 pub use check::{parse, parse_with_settings};
 pub use data::{
     Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Component, Edge, EndRotation, Expectation,
-    ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, LengthLimit, Load, LoadSteps, LoadedArea,
-    Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe, ProbeKind,
-    Quadrature, Reaction, Scene, Seam, Sense, Solver, Stage, Support, SurfaceDirection, Symmetry, SyncPolicy,
+    ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, LengthLimit, Load, LoadSteps,
+    LoadedArea, Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe,
+    ProbeKind, Quadrature, Reaction, Scene, Seam, Sense, Solver, Splitting, Stage, Support, SurfaceDirection, Symmetry,
+    SyncPolicy,
 };
 pub use difference::{Difference, shown_values};
 pub use drive::{Drive, Parameter};

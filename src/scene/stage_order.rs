@@ -20,6 +20,7 @@ pub(super) fn needs(stage: Stage) -> Option<Stage> {
         Stage::RefineKnots => Some(Stage::EvaluateIndicators),
         Stage::ProjectDisplacements => Some(Stage::RefineKnots),
         Stage::ReEquilibrate => Some(Stage::ProjectDisplacements),
+        Stage::CoarsenKnots => Some(Stage::RefineKnots),
     }
 }
 
@@ -28,7 +29,7 @@ fn sequel(stage: Stage) -> Option<Stage> {
     match stage {
         Stage::Solve | Stage::SwitchBranch | Stage::EvaluateIndicators | Stage::ReEquilibrate => None,
         Stage::RefineKnots => Some(Stage::ProjectDisplacements),
-        Stage::ProjectDisplacements => Some(Stage::ReEquilibrate),
+        Stage::ProjectDisplacements | Stage::CoarsenKnots => Some(Stage::ReEquilibrate),
     }
 }
 

@@ -8,12 +8,14 @@
 //! | `knots` | whether knots make a spline space |
 //! | `arc` | exact curves |
 //! | `insertion` | knots inserted |
+//! | `coarsening` | knots taken out: the best approximation |
 //! | `grid` | numbers of rows and columns |
 //! | `mesh` | the spline space with its geometry |
 //! | `surface` | points and derivatives |
 
 mod arc;
 mod basis;
+mod coarsening;
 mod grid;
 mod insertion;
 mod knots;
@@ -22,6 +24,7 @@ mod surface;
 
 pub use arc::{HomogeneousCurve, circular_arc, segment_count, straight_line};
 pub use basis::{DEGREES, Spans, basis_derivatives, basis_derivatives_len, find_span};
+pub use coarsening::Coarsening;
 pub use grid::Grid;
 pub use insertion::{insert_knots, insert_knots_into_net};
 pub use knots::{KnotFlaw, check_knots, control_count};

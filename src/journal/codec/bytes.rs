@@ -7,7 +7,7 @@ use crate::journal::soundness::Flaw;
 use crate::state::Hash;
 
 /// The version in which states are written, in front of each of them.
-pub const CODEC_VERSION: u8 = 7;
+pub const CODEC_VERSION: u8 = 8;
 
 /// Why bytes are not a state or a mesh that can be used.
 #[derive(Debug, thiserror::Error)]

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde::Serialize;
 
 use super::bytes::{CodecError, decode};
-use super::versions::{CourseV7, MeshV1, PathV7, RefinementV6, RejectionV1, StageV1, StateV7};
+use super::versions::{CourseV7, MeshV1, PathV7, RefinementV6, RejectionV1, StageV1, StateV7, StateV8};
 use crate::journal::soundness::Flaw;
 
 /// Its one field holds the displacements and, from version 4 on, behind them those of the equilibrium before.
@@ -87,7 +87,7 @@ pub(super) struct PathV3 {
 
 /// A state of before in the present version, whose one field may hold two, and the heading of its path.
 pub(super) struct Older {
-    pub state: StateV7<'static>,
+    pub state: StateV8<'static>,
     pub heading: Option<Vec<[f64; 3]>>,
 }
 
@@ -96,6 +96,9 @@ pub(super) fn decode_older(bytes: &[u8]) -> Result<Older, CodecError> {
     let sixth = |after| StateV6 { after, largest_force_n: 0.0, refinement: None };
     let third = |after| sixth(StateV5 { after, previous_parameter: None, doublings: 0 });
     let stored = match bytes.first() {
+        Some(7) => {
+            return Ok(Older { state: StateV8::from(decode::<StateV7>(7, bytes)?), heading: None });
+        }
         Some(6) => decode(6, bytes)?,
         Some(5) => sixth(decode(5, bytes)?),
         Some(4) => {
@@ -147,6 +150,6 @@ impl StateV6 {
             largest_force_n,
             refinement,
         };
-        Ok(Older { state, heading })
+        Ok(Older { state: state.into(), heading })
     }
 }

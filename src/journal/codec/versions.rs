@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use crate::state::{Course, CriticalAhead, Mesh, PathMemory, Previous, Refinement};
+use crate::state::{Course, CriticalAhead, Estimate, Mesh, PathMemory, Previous, Refinement};
 
 #[derive(Serialize, Deserialize)]
 pub(super) struct MeshV1<'a> {
@@ -36,7 +36,39 @@ impl<'a> MeshV1<'a> {
 #[derive(Serialize, Deserialize)]
 pub(super) struct FieldV1<'a>(pub Cow<'a, [[f64; 3]]>);
 
-/// Version 7, which is written: every field by the hash of its bytes.
+/// Version 8, which is written: with superfluous knots and the last estimate of the error.
+#[derive(Serialize, Deserialize)]
+pub(super) struct StateV8<'a> {
+    pub base: StateV7<'a>,
+    pub superfluous: [Cow<'a, [f64]>; 2],
+    pub estimate: Option<EstimateV8>,
+}
+
+impl<'a> From<StateV7<'a>> for StateV8<'a> {
+    fn from(base: StateV7<'a>) -> Self {
+        Self { base, superfluous: Default::default(), estimate: None }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+pub(super) struct EstimateV8 {
+    pub step: u64,
+    pub relative_error: f64,
+    pub largest_indicator: [f64; 2],
+}
+
+impl EstimateV8 {
+    pub fn of(Estimate { step, relative_error, largest_indicator }: Estimate) -> Self {
+        Self { step, relative_error, largest_indicator }
+    }
+
+    pub fn into_memory(self) -> Estimate {
+        let Self { step, relative_error, largest_indicator } = self;
+        Estimate { step, relative_error, largest_indicator }
+    }
+}
+
+/// Version 7: every field by the hash of its bytes.
 #[derive(Serialize, Deserialize)]
 pub(super) struct StateV7<'a> {
     pub mesh: [u8; 32],
@@ -160,6 +192,7 @@ pub(super) enum StageV1 {
     ProjectDisplacements,
     ReEquilibrate,
     SwitchBranch,
+    CoarsenKnots,
 }
 
 #[derive(Serialize, Deserialize)]

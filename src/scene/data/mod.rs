@@ -218,12 +218,42 @@ pub struct EndRotation {
 /// When and how far the mesh is refined.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adapt {
-    /// r₀ each way: a knot span is marked where max|κ| h exceeds it (dimensionless). One number in the JSON form where
-    /// both are equal.
-    #[serde(with = "one_or_pair")]
-    pub threshold: [f64; 2],
-    /// Elements are not halved below this length.
+    /// What marks a knot span.
+    #[serde(flatten)]
+    pub indicator: Indicator,
+    /// Elements are not split below this length.
     pub length_limit: LengthLimit,
+    /// How spans that are marked by their bending strain are split.
+    #[serde(default, skip_serializing_if = "Splitting::is_halves")]
+    pub splitting: Splitting,
+}
+
+/// What marks a knot span for refinement, in the JSON form by the key that it has in `[adapt]`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Indicator {
+    /// The paper's: max|κ| h exceeds r₀ in its direction (dimensionless). One number in the JSON form where both are equal.
+    #[serde(rename = "threshold", with = "one_or_pair")]
+    BendingStrain([f64; 2]),
+    /// The mesh may cause this relative error of what the scene measures.
+    #[serde(rename = "tolerance")]
+    Error(f64),
+}
+
+/// How a marked knot span is split.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Splitting {
+    /// In two halves.
+    #[default]
+    Halves,
+    /// In as many parts as indicator and length limit ask for.
+    Parts,
+}
+
+impl Splitting {
+    fn is_halves(&self) -> bool {
+        *self == Splitting::Halves
+    }
 }
 
 /// Least element length.
@@ -235,6 +265,8 @@ pub enum LengthLimit {
     /// ½ √(R t) with the least radius of curvature R of the undeformed shell, or with its shorter side where that is less:
     /// forces on points and at free edges bend over a part of the decay length.
     HalfDecayLength,
+    /// The thickness t.
+    Thickness,
     /// A length each way in mm. One number in the JSON form where both are equal.
     #[serde(with = "one_or_pair")]
     Millimetres([f64; 2]),
@@ -372,17 +404,20 @@ pub enum Stage {
     ReEquilibrate,
     /// Leave an unstable equilibrium along its soft mode, down to a stable one at the same load.
     SwitchBranch,
+    /// Take knots out that no longer pay, by the best approximation in the coarser space.
+    CoarsenKnots,
 }
 
 impl Stage {
     /// All stages, in the order in which a load step runs them. The order in the enum is that in which they came to be: it
     /// decides hashes.
-    pub const ALL: [Stage; 6] = [
+    pub const ALL: [Stage; 7] = [
         Stage::Solve,
         Stage::SwitchBranch,
         Stage::EvaluateIndicators,
         Stage::RefineKnots,
         Stage::ProjectDisplacements,
+        Stage::CoarsenKnots,
         Stage::ReEquilibrate,
     ];
 
@@ -409,6 +444,7 @@ impl Stage {
             Stage::ProjectDisplacements => "project-displacements",
             Stage::ReEquilibrate => "re-equilibrate",
             Stage::SwitchBranch => "switch-branch",
+            Stage::CoarsenKnots => "coarsen-knots",
         }
     }
 }

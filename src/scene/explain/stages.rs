@@ -35,6 +35,7 @@ pub(super) fn wrong_order(problem: &StageOrderProblem) -> Explanation {
         .help(format!("to solve on the mesh as it is: {}", list(&Stage::REFINING[..1])))
         .help(format!("to watch where it is too coarse: {}", list(&Stage::REFINING[..2])))
         .help(format!("to refine it: {}", list(&Stage::REFINING)))
+        .help(format!("to coarsen it again as well: \"{}\" before \"{}\"", Stage::CoarsenKnots, Stage::ReEquilibrate))
         .help("to leave unstable equilibria as well: \"switch-branch\" after \"solve\"".to_string())
 }
 
@@ -53,6 +54,7 @@ fn takes(stage: Stage) -> &'static str {
         Stage::EvaluateIndicators => "measures the bending of an equilibrium that solve has found",
         Stage::RefineKnots => "inserts the knots that evaluate-indicators has marked",
         Stage::ProjectDisplacements => "carries displacements to the mesh that refine-knots has made",
+        Stage::CoarsenKnots => "takes out knots that refine-knots has inserted",
         Stage::ReEquilibrate => "starts from the displacements that project-displacements has carried over",
     }
 }
@@ -61,7 +63,7 @@ fn takes(stage: Stage) -> &'static str {
 fn leaves(stage: Stage) -> &'static str {
     match stage {
         Stage::RefineKnots => "leaves displacements that belong to the mesh before",
-        Stage::ProjectDisplacements => "leaves a mesh on which equilibrium is not found yet",
+        Stage::ProjectDisplacements | Stage::CoarsenKnots => "leaves a mesh on which equilibrium is not found yet",
         Stage::Solve | Stage::SwitchBranch | Stage::EvaluateIndicators | Stage::ReEquilibrate => {
             "leaves an equilibrium"
         }

@@ -81,20 +81,49 @@ pub(super) static ADAPT: &[Key] = &[
         }),
         "0.019",
     )
-    .means("r0: a knot span is marked where max|kappa| h exceeds it (dimensionless).")
+    .means("r0 of the bending-strain indicator: a knot span is marked where max|kappa| h exceeds it (dimensionless).")
     .or(Default("0.019"))
     .reaches(Steps)
     .also_called(&["r0", "r_0"]),
+    adapt(
+        "tolerance",
+        Kind::Number(Limits {
+            low: Limit::included(1e-6, "the equilibria themselves are not found better"),
+            high: Limit::included(0.5, "a mesh that is off by more says nothing"),
+        }),
+        "0.01",
+    )
+    .means("Relative error of the moment of turning ends, or else of the first probe (of the strain energy where there is \
+          none), that the mesh may cause. The run estimates it by halving the knot spans of one direction after the other, and \
+          splits those that lower it most per unknown.")
+    .or(InsteadOf("threshold"))
+    .reaches(Steps)
+    .also_called(&["error", "accuracy", "tol"]),
+    adapt(
+        "splitting",
+        Kind::Word(&[
+            choice("halves", "in two halves"),
+            choice("parts", "in as many parts, up to 4 at once, as their indicator and the length limit ask for"),
+        ]),
+        "\"halves\"",
+    )
+    .means("How spans marked by their bending strain are split; those marked by an error are split in as many parts as that asks for.")
+    .or(Default("\"halves\""))
+    .reaches(Steps),
     adapt(
         "length_limit",
         Kind::Word(&[
             choice("sqrt-radius-thickness", "sqrt(R t), the decay length of bending in the cross-section"),
             choice("half-decay-length", "half of that, with the shorter side of the shell where it is less than R"),
+            choice("thickness", "t: of shorter waves a shell theory knows nothing"),
         ]),
         "\"sqrt-radius-thickness\"",
     )
     .means("Rule for the length below which elements are not halved.")
-    .or(Follows("\"sqrt-radius-thickness\" for tape springs, \"half-decay-length\" for other shells"))
+    .or(Follows(
+        "\"thickness\" with a tolerance; with a threshold \"sqrt-radius-thickness\" for tape springs, \"half-decay-length\" \
+         for other shells",
+    ))
     .reaches(Steps)
     .also_called(&["h_lim", "limit"]),
     adapt(

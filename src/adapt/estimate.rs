@@ -1,0 +1,61 @@
+//! When an estimate of the error is made, what it says of a mesh, and what is to be done about it.
+
+use crate::adapt::DirectionalError;
+use crate::adapt::coarsening::superfluous;
+use crate::adapt::splitting::ToSplit;
+use crate::spline::Mesh;
+use crate::state::{Estimate, State};
+
+/// Share of the tolerance from which on a mesh is refined. Estimates are of first order, and made now and then: a fold that grows
+/// over spans of a length that just serves is off by up to three times what is estimated before and behind them.
+const REFINED_FROM: f64 = 0.3;
+/// Share of the tolerance that refining aims at.
+const REFINED_TO: f64 = 0.15;
+
+/// Load steps for which an estimate holds at most.
+const LONGEST: u64 = 8;
+/// Factors by which the largest indicator of a direction may change while an estimate holds: between these, and the fourth root of
+/// what the error may still grow by (the error of the baseline's moment before its snap grows with the square of the
+/// rotation, that of a fold with its curvature).
+const FACTORS: [f64; 2] = [1.05, 2.0];
+
+/// Whether an estimate made on the same mesh still holds for a state whose largest indicators are these.
+pub fn still_holds(estimate: &Estimate, state: &State, indicators: [f64; 2], tolerance: f64) -> bool {
+    let room = (REFINED_FROM * tolerance / estimate.relative_error).powf(0.25).clamp(FACTORS[0], FACTORS[1]);
+    let is_near = |(now, then): (f64, f64)| now <= room * then && then <= room * now;
+    state.step < estimate.step + LONGEST && indicators.into_iter().zip(estimate.largest_indicator).all(is_near)
+}
+
+/// A mesh with the errors that it causes at an equilibrium.
+#[derive(Clone, Copy, Debug)]
+pub struct JudgedMesh<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// What halving the spans of either direction would change.
+    pub errors: &'a [DirectionalError; 2],
+    /// Relative error of the measured quantity by direction.
+    pub relative: [f64; 2],
+    /// Length of every span of either direction, mm.
+    pub lengths: &'a [Vec<f64>; 2],
+    /// Length that no span is split below, mm.
+    pub limit: [f64; 2],
+    /// Relative error that the mesh may cause.
+    pub tolerance: f64,
+}
+
+impl JudgedMesh<'_> {
+    /// Knots to insert in each direction; none where the mesh does.
+    pub fn marked(&self) -> [Vec<f64>; 2] {
+        if self.relative.iter().sum::<f64>() <= REFINED_FROM * self.tolerance {
+            return Default::default();
+        }
+        let Self { mesh, errors, relative, lengths, limit, .. } = *self;
+        ToSplit { mesh, errors, relative, lengths, limit }.knots(REFINED_TO * self.tolerance)
+    }
+
+    /// Knots that are not in the mesh that the run `start`s with and may leave, so that the error stays below what refining
+    /// aims at.
+    pub fn superfluous(&self, start: &Mesh) -> [Vec<f64>; 2] {
+        superfluous(self, start, REFINED_TO * self.tolerance)
+    }
+}

@@ -1,0 +1,90 @@
+//! Knot spans split so that the estimated error falls below what is asked, for as few unknowns as that takes.
+
+use crate::adapt::DirectionalError;
+use crate::spline::{Mesh, Spans};
+
+/// Parts at most that a span is split in at once: the estimate is of the present mesh.
+const MOST_PARTS: usize = 4;
+
+/// Share of an error that one round of refinement aims to leave, at least. Next to a jump the present shape is far from that on a
+/// finer mesh (a fold on a coarse mesh is wider than it will be), and a round that trusted it would refine where nothing
+/// bends in the end.
+const LEFT_BY_A_ROUND: f64 = 0.125;
+
+/// A span with its share of the error, split in so many parts.
+#[derive(Clone, Copy, Debug)]
+struct Split {
+    direction: usize,
+    span: usize,
+    error: f64,
+    parts: usize,
+    /// Parts at most.
+    most: usize,
+}
+
+/// What is known of the errors of a mesh when its spans are to be split.
+pub(super) struct ToSplit<'a> {
+    pub mesh: &'a Mesh,
+    /// Errors by direction.
+    pub errors: &'a [DirectionalError; 2],
+    /// Relative error of the measured quantity by direction.
+    pub relative: [f64; 2],
+    /// Length of every span, mm.
+    pub lengths: &'a [Vec<f64>; 2],
+    /// Length that no part may fall below, mm.
+    pub limit: [f64; 2],
+}
+
+impl ToSplit<'_> {
+    /// Knots to insert in each direction, so that the estimated relative error falls to `target` or by a round's share.
+    ///
+    /// A span of degree p in k parts has k^(−2(p−1)) of its error left (bending energy; Strang & Fix, *An Analysis of the
+    /// Finite Element Method*, 1973), at the cost of k − 1 rows of control points. Part after part goes to the span that gains
+    /// most per unknown; as gains only fall, no other split of as many unknowns leaves less.
+    pub fn knots(&self, target: f64) -> [Vec<f64>; 2] {
+        let target = target.max(LEFT_BY_A_ROUND * self.relative.iter().sum::<f64>());
+        let mut splits = self.whole();
+        while splits.iter().map(|split| self.left(split)).sum::<f64>() > target {
+            let open = splits.iter_mut().filter(|split| split.parts < split.most);
+            let Some(best) = open.max_by(|a, b| self.gain(a).total_cmp(&self.gain(b))) else { break };
+            best.parts += 1;
+        }
+        [0, 1].map(|direction| {
+            let bounds = Spans::of(&self.mesh.knots[direction], self.mesh.degree[direction]).bounds;
+            let of_direction = splits.iter().filter(|split| split.direction == direction);
+            of_direction.flat_map(|split| cuts(bounds[split.span], split.parts)).collect()
+        })
+    }
+
+    /// All spans, not split yet.
+    fn whole(&self) -> Vec<Split> {
+        let of_direction = |direction: usize| {
+            let shares = &self.errors[direction].shares;
+            let sum: f64 = shares.iter().map(|share| share.abs()).sum();
+            let split = move |(span, share): (usize, &f64)| {
+                let error = if sum > 0.0 { self.relative[direction] * share.abs() / sum } else { 0.0 };
+                let fitting = (self.lengths[direction][span] / self.limit[direction]).min(MOST_PARTS as f64);
+                Split { direction, span, error, parts: 1, most: fitting as usize }
+            };
+            shares.iter().enumerate().map(split)
+        };
+        of_direction(0).chain(of_direction(1)).collect()
+    }
+
+    /// Error that is left of a span in parts.
+    fn left(&self, split: &Split) -> f64 {
+        let order = 2 * (self.mesh.degree[split.direction] - 1);
+        split.error * (split.parts as f64).powi(-(order as i32))
+    }
+
+    /// What one part more takes away per control point of the row that it adds.
+    fn gain(&self, split: &Split) -> f64 {
+        let more = Split { parts: split.parts + 1, ..*split };
+        (self.left(split) - self.left(&more)) / self.mesh.control_counts()[1 - split.direction] as f64
+    }
+}
+
+/// Knots that cut a span in so many equal parts.
+pub(super) fn cuts([from, to]: [f64; 2], parts: usize) -> impl Iterator<Item = f64> {
+    (1..parts).map(move |cut| from + (to - from) * cut as f64 / parts as f64)
+}

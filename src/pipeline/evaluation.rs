@@ -1,0 +1,103 @@
+//! Evaluating indicators: which knot spans are too coarse, and which knots no longer pay.
+
+use std::sync::Arc;
+
+use crate::adapt::{DirectionalError, JudgedMesh, evaluate_indicators, length_limit, span_lengths, still_holds};
+use crate::energy::TermSource;
+use crate::equilibrium::{Configuration, WorkspaceError};
+use crate::model::{ModelError, starting_mesh};
+use crate::pipeline::measured::Measured;
+use crate::pipeline::mesh_in_hand::MeshInHand;
+use crate::record::{Report, Warning};
+use crate::scene::{Adapt, Indicator, Scene, Stage};
+use crate::state::{Estimate, State};
+
+/// A state whose mesh is judged.
+pub(super) struct Evaluation<'a> {
+    pub scene: &'a Scene,
+    pub adapt: &'a Adapt,
+    pub own: &'a [Arc<dyn TermSource>],
+    pub in_hand: &'a mut MeshInHand,
+    pub state: &'a State,
+}
+
+impl Evaluation<'_> {
+    /// The state with its marks, and the report.
+    ///
+    /// # Errors
+    /// Where the mesh, or one with its spans halved, does not fit in memory, or a probe cannot be read.
+    pub fn run(mut self) -> Result<(State, Report), WorkspaceError> {
+        let Self { scene, adapt, state, .. } = self;
+        let work = self.in_hand.workspace(scene, self.own, &state.mesh)?;
+        let indicators = evaluate_indicators(scene, adapt, work.discretization(), &state.displacement);
+        let report = Report {
+            largest_indicator: indicators.largest,
+            ..Report::of(scene, state, work.discretization().unknowns.count())
+        };
+        let next = State { marked: indicators.marked, superfluous: Default::default(), ..state.clone() };
+        let (next, mut report) = match adapt.indicator {
+            Indicator::BendingStrain(_) => (next, report),
+            Indicator::Error(tolerance) => self.by_error(tolerance, next, report)?,
+        };
+        report.marked = next.marked.each_ref().map(Vec::len);
+        let blocked = indicators.blocked.filter(|_| report.marked == [0, 0]);
+        report.warnings = blocked.map(|blocked| Warning::of_blocked(state, blocked)).into_iter().collect();
+        Ok((next, report))
+    }
+
+    /// The same by the error that the mesh causes, unless the estimate before still holds.
+    fn by_error(&mut self, tolerance: f64, next: State, report: Report) -> Result<(State, Report), WorkspaceError> {
+        let largest_indicator = report.largest_indicator;
+        let known = self.state.estimate.as_ref();
+        if known.is_some_and(|known| still_holds(known, self.state, largest_indicator, tolerance)) {
+            return Ok((next, report));
+        }
+        let Some((errors, relative)) = self.errors()? else { return Ok((State { estimate: None, ..next }, report)) };
+        let Self { scene, adapt, state, .. } = *self;
+        let discretization = self.in_hand.workspace(scene, self.own, &state.mesh)?.discretization();
+        let judged = JudgedMesh {
+            mesh: &state.mesh,
+            errors: &errors,
+            relative,
+            lengths: &span_lengths(discretization),
+            limit: length_limit(scene, discretization, adapt.length_limit),
+            tolerance,
+        };
+        let marked = judged.marked();
+        let may_coarsen = scene.pipeline.contains(&Stage::CoarsenKnots) && marked.iter().all(Vec::is_empty);
+        let superfluous = if may_coarsen { judged.superfluous(&starting_mesh(scene)?) } else { Default::default() };
+        let relative_error = relative.iter().sum();
+        let estimate = Some(Estimate { step: state.step, relative_error, largest_indicator });
+        Ok((State { marked, superfluous, estimate, ..next }, Report { estimated_error: Some(relative), ..report }))
+    }
+
+    /// What halving the spans of either direction would change, and the relative errors that are in it; `None` where the
+    /// stiffness on a halved mesh has no factor, as exactly at a limit point.
+    fn errors(&mut self) -> Result<Option<([DirectionalError; 2], [f64; 2])>, WorkspaceError> {
+        let Self { scene, own, state, .. } = *self;
+        let measured = Measured::of(scene);
+        let work = self.in_hand.workspace(scene, own, &state.mesh)?;
+        let here = measured.read(scene, work, Configuration::of(state))?;
+        let slope = measured.slope(scene, work, state, here)?;
+        let mut unread: Option<ModelError> = None;
+        let mut errors = Vec::with_capacity(2);
+        for enriched in self.in_hand.enriched(scene, own, &state.mesh)? {
+            let error = enriched.error_of(state, here, &mut |work, at| {
+                measured.read(scene, work, at).unwrap_or_else(|cause| {
+                    unread = Some(cause);
+                    f64::NAN
+                })
+            });
+            match error {
+                Ok(error) => errors.push(error),
+                Err(_) => return Ok(None),
+            }
+        }
+        if let Some(cause) = unread {
+            return Err(cause.into());
+        }
+        let Ok(errors) = <[DirectionalError; 2]>::try_from(errors) else { return Ok(None) };
+        let relative = errors.each_ref().map(|error| measured.relative_error(scene, state, here, slope, error));
+        Ok(Some((errors, relative)))
+    }
+}

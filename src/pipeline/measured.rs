@@ -1,0 +1,112 @@
+//! What a tolerance is about: the quantity of a scene whose error counts.
+
+use crate::adapt::DirectionalError;
+use crate::equilibrium::{Configuration, Workspace};
+use crate::model::ModelError;
+use crate::pipeline::probes::read_first_probe;
+use crate::scene::{ProbeKind, Scene};
+use crate::shell::{add, norm, scaled};
+use crate::state::{Course, PathMemory, Previous, State};
+
+/// Share of the mean moment so far, or of the largest displacement, that a smaller moment or displacement is compared with: where
+/// one passes through zero, no relative error of it can be asked for.
+const SMALL: f64 = 0.1;
+
+/// Share of the first step of a path along which a rate is taken.
+const SHORT: f64 = 1e-3;
+
+/// The quantity whose error counts: the moment of turning ends, or else the first probe, or else the strain energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Measured {
+    Moment,
+    Probe,
+    Energy,
+}
+
+impl Measured {
+    pub fn of(scene: &Scene) -> Self {
+        match (scene.end_rotation(), scene.probes.is_empty()) {
+            (Some(_), _) => Self::Moment,
+            (None, false) => Self::Probe,
+            (None, true) => Self::Energy,
+        }
+    }
+
+    /// Reads it at a configuration on the mesh of a workspace.
+    ///
+    /// # Errors
+    /// Where the probe asks for what there is not.
+    pub fn read(self, scene: &Scene, work: &mut Workspace, at: Configuration) -> Result<f64, ModelError> {
+        let energy = |work: &Workspace| scene.symmetry.copies() as f64 * work.energy(at.displacement, at.parameter);
+        match self {
+            Self::Moment => Ok(work.end_moment(scene, at)),
+            Self::Probe => {
+                let stored = energy(work);
+                Ok(read_first_probe(scene, work, at, stored)?.map_or(0.0, |reading| reading.value))
+            }
+            Self::Energy => Ok(energy(work)),
+        }
+    }
+
+    /// The relative error of a state where the quantity is `here`, from what halving the spans of one direction would change.
+    /// `slope` is the rate of the quantity with the parameter.
+    ///
+    /// Next to a limit point what changes at one value of the parameter grows without bound, where the curve hardly moves: what
+    /// counts is the shift of the curve, along the quantity or along the parameter, whichever is less.
+    pub fn relative_error(
+        self,
+        scene: &Scene,
+        state: &State,
+        here: f64,
+        slope: Option<f64>,
+        error: &DirectionalError,
+    ) -> f64 {
+        let of_energy = scene.symmetry.copies() as f64 * error.energy.abs() / state.strain_energy_n_mm.abs();
+        if self == Self::Energy {
+            // The first-order change of the energy is twice what equilibrium releases.
+            return of_energy;
+        }
+        let of_quantity = error.measured.abs() / self.scale(scene, state, here);
+        let of_parameter = slope.map_or(f64::INFINITY, |slope| (error.measured / (slope * state.parameter)).abs());
+        let shift = of_quantity.min(of_parameter);
+        if shift.is_finite() { shift } else { of_energy }
+    }
+
+    /// Rate of the quantity with the parameter, from where the equilibrium came from; `None` where that is not known.
+    ///
+    /// # Errors
+    /// As for [`Self::read`].
+    pub fn slope(
+        self,
+        scene: &Scene,
+        work: &mut Workspace,
+        state: &State,
+        here: f64,
+    ) -> Result<Option<f64>, ModelError> {
+        let at = Configuration::of(state);
+        let (displacement, parameter) = match &state.drive.course {
+            Course::Unknown => return Ok(None),
+            Course::Load(Previous { displacement, parameter }) => (displacement.clone(), *parameter),
+            Course::Path(PathMemory { heading, parameter_rate, first_mm, .. }) => {
+                let back = -SHORT * first_mm;
+                let moved = state.displacement.iter().zip(heading).map(|(u, rate)| add(*u, scaled(back, *rate)));
+                (moved.collect(), state.parameter + back * parameter_rate)
+            }
+        };
+        let before = self.read(scene, work, Configuration { displacement: &displacement, parameter, ..at })?;
+        Ok(Some((here - before) / (state.parameter - parameter)))
+    }
+
+    /// What its error is compared with.
+    fn scale(self, scene: &Scene, state: &State, here: f64) -> f64 {
+        let least = match self {
+            // Both ends turn: Π = 2 ∫ M dθ.
+            Self::Moment => 0.5 * state.strain_energy_n_mm / state.parameter.to_radians(),
+            Self::Probe if matches!(scene.probes[0].kind, ProbeKind::Displacement { .. }) => {
+                state.displacement.iter().map(|moved| norm(*moved)).fold(0.0, f64::max)
+            }
+            Self::Probe | Self::Energy => 0.0,
+        };
+        here.abs().max(SMALL * least.abs())
+    }
+}
