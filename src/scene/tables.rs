@@ -8,7 +8,7 @@ use super::problem::Problem;
 use super::table::Table;
 
 /// Tables of one name in a scene: pairs of them are compared.
-const MOST_OF_A_NAME: usize = 10_000;
+const MOST_OF_A_NAME: usize = 2000;
 
 /// The tables of a scene: one of each that there is one of, and as many of the others as are written.
 pub(super) struct Tables(Vec<Table>);
