@@ -28,10 +28,11 @@ pub(super) fn check(tables: &Tables, supports: &[Support], actions: &[Action]) -
     let actions = actions.iter().zip(loaded).filter_map(|(action, table)| {
         Some(Site { name: format!("action \"{}\"", action.name), on: place_of(&action.kind)?, table })
     });
+    let edges = EDGES.map(|(edge, name)| (Place::Edge(edge), format!("the edge \"{name}\"")));
     let mut before: Vec<Site> = Vec::new();
     for site in supports.chain(actions) {
-        let edges = EDGES.iter().map(|(edge, name)| (Place::Edge(*edge), format!("the edge \"{name}\"")));
-        let others = before.iter().map(|other| (other.on, other.name.clone()));
+        let edges = edges.iter().map(|(on, name)| (*on, name));
+        let others = before.iter().map(|other| (other.on, &other.name));
         let mut gaps = edges.chain(others).filter_map(|(on, name)| Some((gap(site.on, on)?, name)));
         if let Some((gap, other)) = gaps.next() {
             return Err(site.table.wrong_at(

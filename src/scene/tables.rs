@@ -7,6 +7,9 @@ use super::names;
 use super::problem::Problem;
 use super::table::Table;
 
+/// Tables of one name in a scene: pairs of them are compared.
+const MOST_OF_A_NAME: usize = 2000;
+
 /// The tables of a scene: one of each that there is one of, and as many of the others as are written.
 pub(super) struct Tables(Vec<Table>);
 
@@ -26,7 +29,9 @@ impl Tables {
         };
         for section in document.sections {
             let written = || document.tables.iter().filter(|table| table.name == section.name);
-            if written().next().is_some() {
+            if let Some(first_of_too_many) = written().nth(MOST_OF_A_NAME) {
+                keep(Err(vec![*too_many(section, written().count(), &first_of_too_many.place)]));
+            } else if written().next().is_some() {
                 let tables = written().filter(is_read).filter(|table| section.many == table.number.is_some());
                 tables.for_each(|table| keep(Table::read(document, section, Some(table), &wrong_names)));
             } else if section.required {
@@ -49,6 +54,15 @@ impl Tables {
     pub fn all(&self, name: &str) -> impl Iterator<Item = &Table> {
         self.0.iter().filter(move |table| table.section.name == name)
     }
+}
+
+fn too_many(section: &Section, count: usize, place: &Place) -> Box<Fault> {
+    let problem = Problem::Table {
+        table: section.title(),
+        problem: format!("there are {count} of them, and a scene takes no more than {MOST_OF_A_NAME}"),
+        remedy: "write what is alike as one table: points along a line, layers of one angle".into(),
+    };
+    Fault::new(problem, place)
 }
 
 fn missing_section(document: &Document<'_>, section: &'static Section) -> Box<Fault> {

@@ -285,3 +285,18 @@ fn deep_nesting_is_handled() {
         is_handled(&format!("[{}a]", "a.".repeat(depth)), &[]);
     }
 }
+
+/// Pairs of tables are compared, so their number has a limit; up to it that takes no time to speak of.
+#[test]
+fn a_scene_of_too_many_tables_is_refused() {
+    let with_forces = |count: usize| {
+        let force = |index| {
+            format!("[[action]]\nname = \"{index}\"\nkind = \"force\"\non = [0.5, 0.5]\nforce_n = [0.0, 0.0, 1.0]\n")
+        };
+        parse(&format!("{PLATE}\n{}", (1..count).map(force).collect::<String>()), "scene.toml")
+    };
+    assert_eq!(with_forces(2000).unwrap().actions.len(), 2000);
+    let refused = with_forces(2001).unwrap_err();
+    let told = "[[action]]: there are 2001 of them, and a scene takes no more than 2000";
+    assert_eq!((refused.summary(), refused.problems().count()), (told.to_owned(), 1));
+}

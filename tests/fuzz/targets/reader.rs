@@ -1,4 +1,4 @@
-//! The target of the fuzzer; see the `README.md` of this folder.
+//! The target `reader` of the fuzzer; see the `README.md` of this folder.
 #![no_main]
 
 #[path = "../crafted.rs"]
