@@ -1,4 +1,4 @@
-//! What stores energy and what acts: one file a term, and their balance.
+//! Terms that store energy or act as loads, one file each, and their balance.
 //!
 //! | file | what |
 //! |---|---|
@@ -29,10 +29,10 @@ pub use kernel::Want;
 pub(crate) use load_balance::check_balance;
 pub(crate) use remarks::remarks;
 pub(crate) use shell::with_locked;
-pub use shell::{ElementSums, Part, Shell, strain_energy};
+pub use shell::{ElementSums, Shell, ShellElements, strain_energy};
 pub use term::{At, Tangent, Term, TermSource, Terms};
 
-/// Build of the element kernel that this machine runs.
+/// Name of the build of the element kernel that this machine runs.
 pub fn kernel_name() -> &'static str {
     Build::detect().name()
 }

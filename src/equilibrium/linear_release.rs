@@ -6,21 +6,23 @@ use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::Workspace;
 use crate::shell::norm;
 
-/// What the way to equilibrium comes to, to first order, with the residual r on the free unknowns and the stiffness K.
+/// First-order estimate of the motion to equilibrium and its energy, with the residual r on the free unknowns and the
+/// stiffness K.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearRelease {
-    /// ½ rᵀK⁻¹r of the model, N·mm; negative where K is not positive definite and r mostly in its negative part.
+    /// Energy that the model releases, ½ rᵀK⁻¹r, N·mm; negative where K is not positive definite and r lies mostly in
+    /// its negative part.
     pub energy: f64,
-    /// The largest motion of a control point in K⁻¹r, mm.
+    /// Largest motion of a control point in K⁻¹r, mm.
     pub motion_mm: f64,
-    /// Displacement of the control points with K⁻¹r, mm.
+    /// Displacement of the control points after the motion K⁻¹r, mm.
     pub displacement: Vec<[f64; 3]>,
-    /// Rotation vectors of the rigid sections with it, where one of them turns freely.
+    /// Rotation vectors of the rigid sections after that motion, radians, where one of them turns freely.
     pub turns: Vec<[f64; 3]>,
 }
 
 impl Workspace {
-    /// Computes the release of a state.
+    /// Estimates the energy that a state out of balance releases.
     ///
     /// # Errors
     /// Where the stiffness has no factor.

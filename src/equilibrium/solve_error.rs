@@ -4,7 +4,7 @@ use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::sparse::FactorError;
 use crate::model::ModelError;
 
-/// Why no equilibrium was found.
+/// Reasons why a solve found no equilibrium.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveError {
     /// The iterations ran out.
@@ -12,7 +12,7 @@ pub enum SolveError {
     TooManyIterations {
         /// The last iterate.
         last: Iterate,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// No step along the descent direction lowers the energy.
@@ -20,7 +20,7 @@ pub enum SolveError {
     LineSearchFailed {
         /// The last iterate.
         last: Iterate,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// Energy or residual is not a number.
@@ -28,15 +28,15 @@ pub enum SolveError {
     NotANumber {
         /// The last iterate.
         last: Iterate,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// The stiffness has no factor.
     #[error("the stiffness cannot be factored: {cause}")]
     Factor {
-        /// What the solver found.
+        /// Error of the sparse solver.
         cause: FactorError,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// Nothing moves as the parameter changes: there is no path to follow.
@@ -44,9 +44,9 @@ pub enum SolveError {
         "nothing moves as the parameter changes at {parameter}: give the loads or motions a history that goes on there"
     )]
     NothingMoves {
-        /// The parameter.
+        /// Value of the scene's parameter.
         parameter: f64,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// The observer asked to stop.
@@ -54,13 +54,13 @@ pub enum SolveError {
     Stopped {
         /// The last iterate.
         last: Iterate,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
 }
 
 impl SolveError {
-    /// An iterate, where its energy and residual are numbers.
+    /// Returns an iterate where its energy and residual are numbers, and the error otherwise.
     pub(super) fn unless_finite(last: Iterate, effort: Effort) -> Result<Iterate, Self> {
         if last.is_finite() { Ok(last) } else { Err(Self::NotANumber { last, effort }) }
     }
@@ -77,7 +77,7 @@ impl SolveError {
         }
     }
 
-    /// The last iterate, where there is one.
+    /// Last iterate of the failed solve, where there is one.
     pub fn last(&self) -> Option<&Iterate> {
         match self {
             Self::TooManyIterations { last, .. }
@@ -89,7 +89,7 @@ impl SolveError {
     }
 }
 
-/// Why a scene has no buffers on a mesh.
+/// Reasons why no workspace could be built for a scene on a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WorkspaceError {
     /// Supports or loads do not fit the mesh.

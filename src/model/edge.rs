@@ -37,11 +37,11 @@ pub fn edge_rows(mesh: &Mesh, edge: Edge) -> Result<EdgeRows, ModelError> {
 
 /// Control points of an edge, and of the row beside it.
 pub fn rows_of(mesh: &Mesh, edge: Edge) -> [Vec<usize>; 2] {
-    let (way, at_end) = side(edge);
-    let count = mesh.control_counts()[way];
+    let (direction, at_end) = side(edge);
+    let count = mesh.control_counts()[direction];
     [0, 1].map(|k| {
         let along = if at_end { count - 1 - k } else { k };
-        mesh.grid().line(way, along).collect()
+        mesh.grid().line(direction, along).collect()
     })
 }
 
@@ -53,15 +53,15 @@ pub fn side(edge: Edge) -> (usize, bool) {
 
 /// The point of an edge at a parameter along it.
 pub fn on_edge(mesh: &Mesh, edge: Edge, parameter: f64) -> SurfacePoint {
-    let (way, at_end) = side(edge);
+    let (direction, at_end) = side(edge);
     let end = if at_end { 1.0 } else { 0.0 };
-    mid_surface_point(mesh, &[], if way == 0 { [end, parameter] } else { [parameter, end] })
+    mid_surface_point(mesh, &[], if direction == 0 { [end, parameter] } else { [parameter, end] })
 }
 
 /// Normal at the point of the edge where the inner control point lies square to the edge.
 fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f64; 3], ModelError> {
-    let (way, _) = side(edge);
-    let running = 1 - way;
+    let (direction, _) = side(edge);
+    let running = 1 - direction;
     let target = mesh.point(control);
     let degree = mesh.degree[running];
     let mut parameter = mesh.knots[running][j + 1..j + 1 + degree].iter().sum::<f64>() / degree as f64;
@@ -86,8 +86,8 @@ fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f
 }
 
 fn centroid(mesh: &Mesh, edge: Edge) -> [f64; 3] {
-    let (way, _) = side(edge);
-    let running = 1 - way;
+    let (direction, _) = side(edge);
+    let running = 1 - direction;
     let (mut length, mut moment) = (0.0, [0.0; 3]);
     for [parameter, weight] in span_points(mesh, running, CENTROID_POINTS) {
         let point = on_edge(mesh, edge, parameter);

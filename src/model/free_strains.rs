@@ -88,7 +88,7 @@ impl FreeStrains {
 
 /// Area of the undeformed surface, mm².
 fn reference_area(mesh: &Mesh) -> f64 {
-    let [along, across] = [0, 1].map(|way| span_points(mesh, way, mesh.degree[way] + 1));
+    let [along, across] = [0, 1].map(|direction| span_points(mesh, direction, mesh.degree[direction] + 1));
     let points = along.iter().flat_map(|one| across.iter().map(move |two| (one, two)));
     points
         .map(|([u, along], [v, across])| {

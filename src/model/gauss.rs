@@ -10,7 +10,7 @@ pub fn gauss_points([from, to]: [f64; 2], count: usize) -> impl Iterator<Item = 
 }
 
 /// Those of all spans of a direction, with so many on each.
-pub fn span_points(mesh: &Mesh, way: usize, count: usize) -> Vec<[f64; 2]> {
-    let spans = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
+pub fn span_points(mesh: &Mesh, direction: usize, count: usize) -> Vec<[f64; 2]> {
+    let spans = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
     spans.into_iter().flat_map(|span| gauss_points(span, count)).collect()
 }

@@ -149,9 +149,8 @@ impl Supports {
 
     /// No displacement across the plane of a line, and slopes that are even on both sides of it.
     fn mirror_line(&mut self, index: usize, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
-        let line = Line::new(mesh, mirror.way, mirror.parameter).map_err(|reason| ModelError::NotASymmetryPlane {
-            support: mirror.support.clone(),
-            reason: reason.to_string(),
+        let line = Line::new(mesh, mirror.direction, mirror.parameter).map_err(|reason| {
+            ModelError::NotASymmetryPlane { support: mirror.support.clone(), reason: reason.to_string() }
         })?;
         let points: Vec<usize> = line.places.iter().chain(&line.slopes).flatten().map(|(point, _)| *point).collect();
         self.check_sections_keep(&points, mirror)?;

@@ -3,7 +3,7 @@
 use crate::model::ModelError;
 use crate::model::edge::{rows_of, side};
 use crate::model::limits::{ANGLE, SAME_PARAMETER};
-use crate::model::place::parameters_of;
+use crate::model::parametrize::parameters_of;
 use crate::model::symmetric_line::Line;
 use crate::model::symmetry_plane::{NoPlane, square_to, symmetry_plane};
 use crate::scene::{Edge, Hold, Place, Scene, Support};
@@ -18,7 +18,7 @@ pub struct Mirror {
     /// The edge; `None` for a line inside.
     pub edge: Option<Edge>,
     /// The direction (0 or 1) whose parameter is the same all along it.
-    pub way: usize,
+    pub direction: usize,
     /// That parameter.
     pub parameter: f64,
     /// Unit normal of the plane.
@@ -34,36 +34,36 @@ impl Mirror {
     pub fn all(scene: &Scene, supports: &[Support], mesh: &Mesh) -> Result<Vec<Self>, ModelError> {
         let mut mirrors: Vec<Self> = Vec::new();
         for support in supports.iter().filter(|support| support.hold == Hold::Symmetric) {
-            let (edge, way, parameter) = match support.on {
+            let (edge, direction, parameter) = match support.on {
                 Place::Edge(edge) => {
-                    let (way, at_end) = side(edge);
-                    (Some(edge), way, if at_end { 1.0 } else { 0.0 })
+                    let (direction, at_end) = side(edge);
+                    (Some(edge), direction, if at_end { 1.0 } else { 0.0 })
                 }
                 Place::Line(direction, fraction) => {
-                    let way = direction.index();
-                    (None, way, parameters_of(&scene.geometry, [fraction; 2])[way])
+                    let direction = direction.index();
+                    (None, direction, parameters_of(&scene.geometry, [fraction; 2])[direction])
                 }
                 Place::Point(_) | Place::Whole => return Err(ModelError::NotAnEdge { support: support.name.clone() }),
             };
-            let plane = plane_of(mesh, edge, way, parameter).map_err(|reason| ModelError::NotASymmetryPlane {
+            let plane = plane_of(mesh, edge, direction, parameter).map_err(|reason| ModelError::NotASymmetryPlane {
                 support: support.name.clone(),
                 reason: reason.to_string(),
             })?;
             let normal = mirrors.iter().fold(plane, |normal, other| square_to(normal, other.normal));
-            mirrors.push(Self { support: support.name.clone(), edge, way, parameter, normal });
+            mirrors.push(Self { support: support.name.clone(), edge, direction, parameter, normal });
         }
         Ok(mirrors)
     }
 
     /// The point of the surface at a parameter along it.
     pub(super) fn point(&self, mesh: &Mesh, parameter: f64) -> SurfacePoint {
-        let at = if self.way == 0 { [self.parameter, parameter] } else { [parameter, self.parameter] };
+        let at = if self.direction == 0 { [self.parameter, parameter] } else { [parameter, self.parameter] };
         mid_surface_point(mesh, &[], at)
     }
 
     /// Its points at the ends and in the middle of each span.
     pub(super) fn samples(&self, mesh: &Mesh) -> Vec<SurfacePoint> {
-        let running = 1 - self.way;
+        let running = 1 - self.direction;
         let spans = Spans::of(&mesh.knots[running], mesh.degree[running]).bounds;
         let parameters = spans.into_iter().flat_map(|[from, to]| [from, 0.5 * (from + to), to]);
         parameters.map(|parameter| self.point(mesh, parameter)).collect()
@@ -82,9 +82,9 @@ impl Mirror {
 }
 
 /// Unit normal of the plane of symmetry that an edge, or a line inside, can lie in.
-fn plane_of(mesh: &Mesh, edge: Option<Edge>, way: usize, parameter: f64) -> Result<[f64; 3], NoPlane> {
+fn plane_of(mesh: &Mesh, edge: Option<Edge>, direction: usize, parameter: f64) -> Result<[f64; 3], NoPlane> {
     let Some(edge) = edge else {
-        let line = Line::new(mesh, way, parameter)?;
+        let line = Line::new(mesh, direction, parameter)?;
         return symmetry_plane(&line.points(mesh), &line.steps(mesh));
     };
     let [points, beside] = rows_of(mesh, edge).map(|row| {

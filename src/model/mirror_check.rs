@@ -9,7 +9,7 @@ use crate::model::edge::side;
 use crate::model::limits::ANGLE;
 use crate::model::mirror::Mirror;
 use crate::model::mirror_image::check_own_image;
-use crate::model::place::parameters_of;
+use crate::model::parametrize::parameters_of;
 use crate::model::scene_supports::supports_of;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{ActionKind, ForceVector, Material, Place, Scene, SurfaceDirection};
@@ -39,7 +39,7 @@ fn check_material(material: &Material, mesh: &Mesh, mirror: &Mirror) -> Result<(
     }
     for point in mirror.samples(mesh) {
         let tangents = [point.derivatives[0], point.derivatives[1]];
-        let terms = shear_coupling(material, tangents, unit(point.derivatives[1 - mirror.way]));
+        let terms = shear_coupling(material, tangents, unit(point.derivatives[1 - mirror.direction]));
         if !terms.is_empty() {
             return Err(ModelError::MaterialNotMirrored {
                 support: mirror.support.clone(),
@@ -64,7 +64,7 @@ fn check_natural_states(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(
             _ => continue,
         };
         for point in &points {
-            let (e1, along) = (unit(point.derivatives[0]), unit(point.derivatives[1 - mirror.way]));
+            let (e1, along) = (unit(point.derivatives[0]), unit(point.derivatives[1 - mirror.direction]));
             let normal = unit(cross(point.derivatives[0], point.derivatives[1]));
             let (cos, sin) = (dot(along, e1), dot(along, cross(normal, e1)));
             let shear = |[s11, s22, s12]: [f64; 3]| 2.0 * cos * sin * (s22 - s11) + (cos * cos - sin * sin) * s12;
@@ -119,16 +119,16 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
     let is_on = |on: &Place| match on {
         Place::Edge(edge) => Some(*edge) == mirror.edge,
         Place::Line(direction, fraction) => {
-            let way = direction.index();
-            way == mirror.way && mirror.is_at(parameters_of(&scene.geometry, [*fraction; 2])[way])
+            let direction = direction.index();
+            direction == mirror.direction && mirror.is_at(parameters_of(&scene.geometry, [*fraction; 2])[direction])
         }
-        Place::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.way]),
+        Place::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.direction]),
         Place::Whole => false,
     };
     // A line the other way meets the plane in a point.
     let meets = |on: &Place| match on {
-        Place::Edge(edge) => side(*edge).0 != mirror.way,
-        Place::Line(direction, _) => direction.index() != mirror.way,
+        Place::Edge(edge) => side(*edge).0 != mirror.direction,
+        Place::Line(direction, _) => direction.index() != mirror.direction,
         Place::Point(_) | Place::Whole => false,
     };
     for action in &scene.actions {

@@ -10,7 +10,7 @@ use crate::model::ModelError;
 use crate::model::edge::{on_edge, side};
 use crate::model::limits::{ANGLE, POSITION, ROUNDING, SAME_PARAMETER};
 use crate::model::mirror::Mirror;
-use crate::model::place::{parameters_of, sample_parameters};
+use crate::model::parametrize::{parameters_of, sample_parameters};
 use crate::model::scene_supports::supports_of;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{
@@ -34,7 +34,7 @@ struct Plane {
 
 /// A support or an action, as far as a mirror changes it.
 #[derive(Clone)]
-struct Part {
+struct SupportOrAction {
     /// In words.
     name: String,
     /// What no mirror changes.
@@ -58,7 +58,7 @@ pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Re
         return refused("the line does not lie in its middle, at 0.5".into());
     }
     let origin = mirror.point(mesh, 0.0).position;
-    let samples = samples(mesh, mirror.way);
+    let samples = samples(mesh, mirror.direction);
     let size = samples.iter().map(|[point, _]| norm(sub(*point, origin))).fold(0.0, f64::max);
     let plane = Plane { normal: mirror.normal, origin, rounding_mm: POSITION * size };
     let off = samples.iter().map(|[point, opposite]| (norm(sub(plane.point(*point), *opposite)), *point));
@@ -71,11 +71,11 @@ pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Re
         ));
     }
     let supports = supports_of(scene);
-    let supports = supports.iter().map(|support| Part::of_support(scene, mesh, support, origin));
-    let actions = scene.actions.iter().filter_map(|action| Part::of_action(scene, mesh, action));
-    let parts: Vec<Part> = supports.chain(actions).collect();
-    let count = |part: &Part| parts.iter().filter(|other| plane.is_same(part, other)).count();
-    let unmatched = |part: &&Part| plane.image(part).is_none_or(|image| count(&image) != count(part));
+    let supports = supports.iter().map(|support| SupportOrAction::of_support(scene, mesh, support, origin));
+    let actions = scene.actions.iter().filter_map(|action| SupportOrAction::of_action(scene, mesh, action));
+    let parts: Vec<SupportOrAction> = supports.chain(actions).collect();
+    let count = |part: &SupportOrAction| parts.iter().filter(|other| plane.is_same(part, other)).count();
+    let unmatched = |part: &&SupportOrAction| plane.image(part).is_none_or(|image| count(&image) != count(part));
     match parts.iter().find(unmatched) {
         Some(part) => refused(format!("{} has no mirror image on the other side", part.name)),
         None => Ok(()),
@@ -83,11 +83,11 @@ pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Re
 }
 
 /// Points of the surface, two in every span each way, each with the one that stands opposite.
-fn samples(mesh: &Mesh, way: usize) -> Vec<[[f64; 3]; 2]> {
-    let [us, vs] = [0, 1].map(|way| sample_parameters(mesh, way));
+fn samples(mesh: &Mesh, direction: usize) -> Vec<[[f64; 3]; 2]> {
+    let [us, vs] = [0, 1].map(|direction| sample_parameters(mesh, direction));
     let pair = |at: [f64; 2]| {
         let mut opposite = at;
-        opposite[way] = 1.0 - at[way];
+        opposite[direction] = 1.0 - at[direction];
         [at, opposite].map(|at| mid_surface_point(mesh, &[], at).position)
     };
     us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])).map(pair).collect()
@@ -95,16 +95,16 @@ fn samples(mesh: &Mesh, way: usize) -> Vec<[[f64; 3]; 2]> {
 
 /// Points of a place that tell it from others.
 fn points_of(scene: &Scene, mesh: &Mesh, on: Place) -> Vec<[f64; 3]> {
-    let along = |way: usize, fraction: f64| {
-        [0.0, 0.5, 1.0].map(|along| if way == 0 { [fraction, along] } else { [along, fraction] }).to_vec()
+    let along = |direction: usize, fraction: f64| {
+        [0.0, 0.5, 1.0].map(|along| if direction == 0 { [fraction, along] } else { [along, fraction] }).to_vec()
     };
     let fractions = match on {
         Place::Point(at) => vec![at],
         Place::Line(ParametricDirection::U, fraction) => along(0, fraction),
         Place::Line(ParametricDirection::V, fraction) => along(1, fraction),
         Place::Edge(edge) => {
-            let (way, at_end) = side(edge);
-            along(way, if at_end { 1.0 } else { 0.0 })
+            let (direction, at_end) = side(edge);
+            along(direction, if at_end { 1.0 } else { 0.0 })
         }
         Place::Whole => vec![],
     };
@@ -112,7 +112,7 @@ fn points_of(scene: &Scene, mesh: &Mesh, on: Place) -> Vec<[f64; 3]> {
     fractions.into_iter().map(position).collect()
 }
 
-impl Part {
+impl SupportOrAction {
     fn of_support(scene: &Scene, mesh: &Mesh, support: &Support, origin: [f64; 3]) -> Self {
         let (kind, vectors, turns) = match &support.hold {
             Hold::Symmetric => ("symmetric", vec![], vec![]),
@@ -149,8 +149,8 @@ impl Part {
             ActionKind::Force { on, force_n } => (Place::Point(on), forced("force", force_n)),
             ActionKind::LineForce { on, force_n_per_mm } => (on, forced("line force", force_n_per_mm)),
             ActionKind::EdgeMoment { on, moment_n } => {
-                let (way, _) = side(on);
-                let along = unit(on_edge(mesh, on, 0.5).derivatives[1 - way]);
+                let (direction, _) = side(on);
+                let along = unit(on_edge(mesh, on, 0.5).derivatives[1 - direction]);
                 (Place::Edge(on), ("edge moment".into(), vec![], vec![scaled(moment_n, along).map(Some)]))
             }
             ActionKind::AreaForce { .. }
@@ -188,9 +188,9 @@ impl Plane {
         (!(0..3).any(parted)).then(|| [0, 1, 2].map(|c| vector[c].map(|_| image[c])))
     }
 
-    fn image(&self, part: &Part) -> Option<Part> {
+    fn image(&self, part: &SupportOrAction) -> Option<SupportOrAction> {
         let turned = |turn: &Given| Some(self.given(turn)?.map(|component| component.map(|value| -value)));
-        Some(Part {
+        Some(SupportOrAction {
             points: part.points.iter().map(|point| self.point(*point)).collect(),
             vectors: part.vectors.iter().map(|vector| self.given(vector)).collect::<Option<_>>()?,
             turns: part.turns.iter().map(turned).collect::<Option<_>>()?,
@@ -199,7 +199,7 @@ impl Plane {
     }
 
     /// Whether two parts do the same in the same place. A mirror turns lines that cross it round.
-    fn is_same(&self, one: &Part, other: &Part) -> bool {
+    fn is_same(&self, one: &SupportOrAction, other: &SupportOrAction) -> bool {
         let near = |(a, b): (&[f64; 3], &[f64; 3])| norm(sub(*a, *b)) <= 2.0 * self.rounding_mm;
         let alike = |(a, b): (&Given, &Given)| {
             let [x, y] = [a, b].map(|vector| vector.map(Option::unwrap_or_default));

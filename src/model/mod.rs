@@ -7,8 +7,8 @@
 //! | `shape` | the surface of a scene in its fewest elements |
 //! | `joint` | knot lines across which it is smooth |
 //! | `soundness`, `thinness`, `overhang` | whether a shell can have it |
-//! | `subdivision`, `patch` | the mesh that a run starts from |
-//! | `place`, `edge`, `direction` | parameters of fractions; rows and normals of edges; directions at a point |
+//! | `subdivision`, `start` | the mesh that a run starts from |
+//! | `parametrize`, `edge`, `direction` | parameters of fractions; rows and normals of edges; directions at a point |
 //! | `expressions` | places as sums of control points |
 //! | `symmetry_plane`, `symmetric_line`, `mirror` | planes of symmetry |
 //! | `mirror_check`, `mirror_image` | whether what acts there is its own image |
@@ -48,8 +48,7 @@ mod mirror;
 mod mirror_check;
 mod mirror_image;
 mod overhang;
-mod patch;
-mod place;
+mod parametrize;
 mod placement;
 mod quadrature;
 mod reactions;
@@ -59,6 +58,7 @@ mod rotation;
 mod scene_supports;
 mod shape;
 mod soundness;
+mod start;
 mod subdivision;
 mod supports;
 mod symmetric_line;
@@ -81,12 +81,12 @@ pub(crate) use gauss::gauss_points;
 pub use limits::MOST_CONTROL_POINTS;
 pub(crate) use limits::ROUNDING;
 pub(crate) use mirror::Mirror;
-pub use patch::starting_mesh;
-pub(crate) use place::{line_place, parameters_of};
+pub(crate) use parametrize::{line_place, parameters_of};
 pub use placement::Placement;
 pub(crate) use quadrature::PointCounts;
 pub use reactions::{Exerted, PointForces};
 pub(crate) use rigid_motion::{HELD, free_motions};
+pub use start::starting_mesh;
 pub use supports::Supports;
 pub(crate) use tables::{BATCH, LANES};
 pub use tables::{PointTable, Tables};

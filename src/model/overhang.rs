@@ -2,7 +2,7 @@
 
 use crate::model::ModelError;
 use crate::model::limits::ANGLE;
-use crate::model::place::sample_parameters;
+use crate::model::parametrize::sample_parameters;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{ActionKind, ForceVector, LoadedArea, Scene};
 use crate::shell::{cross, dot, norm};
@@ -23,7 +23,7 @@ pub(super) fn check_overhangs(scene: &Scene, mesh: &Mesh) -> Result<(), ModelErr
         if norm(force) == 0.0 {
             continue;
         }
-        let [us, vs] = [0, 1].map(|way| sample_parameters(mesh, way));
+        let [us, vs] = [0, 1].map(|direction| sample_parameters(mesh, direction));
         let points = us.iter().flat_map(|u| vs.iter().map(|v| mid_surface_point(mesh, &[], [*u, *v])));
         let facing = points.map(|point| {
             let normal = unit(cross(point.derivatives[0], point.derivatives[1]));

@@ -46,7 +46,7 @@ impl Pose {
 
 impl Unknowns {
     /// The displacement that belongs to free unknowns at a parameter.
-    pub fn place(&self, unknowns: &[f64], parameter: f64) -> Placement<'_> {
+    pub fn configure(&self, unknowns: &[f64], parameter: f64) -> Placement<'_> {
         Placement::new(self, unknowns, parameter)
     }
 

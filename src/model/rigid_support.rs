@@ -12,7 +12,7 @@ use crate::model::ModelError;
 use crate::model::body::{Body, HeldMotions};
 use crate::model::elimination::Expression;
 use crate::model::expressions::control_expressions;
-use crate::model::place::parameters_of;
+use crate::model::parametrize::parameters_of;
 use crate::model::rigid_motion::free_motions;
 use crate::model::supports::Supports;
 use crate::scene::{Place, Scene};

@@ -136,12 +136,12 @@ fn raised_to(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError>
         knots: [unit(&patch.knots_u), unit(&patch.knots_v)],
         control_points: weighted.collect(),
     };
-    for way in 0..2 {
-        if degree[way] < mesh.degree[way] {
-            return Err(ModelError::DegreeTooLow { geometry: mesh.degree[way], mesh: degree[way] });
+    for direction in 0..2 {
+        if degree[direction] < mesh.degree[direction] {
+            return Err(ModelError::DegreeTooLow { geometry: mesh.degree[direction], mesh: degree[direction] });
         }
-        while mesh.degree[way] < degree[way] {
-            mesh = raised(&mesh, way);
+        while mesh.degree[direction] < degree[direction] {
+            mesh = raised(&mesh, direction);
         }
     }
     Ok(mesh)
@@ -149,8 +149,8 @@ fn raised_to(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError>
 
 /// The same surface with the degree in one direction higher by one: the space in which every distinct knot has one more
 /// multiplicity contains it, so interpolating at the Greville points is exact.
-fn raised(mesh: &Mesh, way: usize) -> Mesh {
-    let old = &mesh.knots[way];
+fn raised(mesh: &Mesh, direction: usize) -> Mesh {
+    let old = &mesh.knots[direction];
     let mut knots = Vec::with_capacity(2 * old.len());
     for (index, knot) in old.iter().enumerate() {
         knots.push(*knot);
@@ -158,7 +158,7 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
             knots.push(*knot);
         }
     }
-    let degree = mesh.degree[way] + 1;
+    let degree = mesh.degree[direction] + 1;
     let count = control_count(&knots, degree);
     let greville: Vec<f64> = (0..count)
         .map(|k| (knots[k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64).clamp(0.0, 1.0))
@@ -174,27 +174,27 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
         matrix
     };
     let counts = mesh.control_counts();
-    let values = collocate(old, mesh.degree[way], counts[way]);
+    let values = collocate(old, mesh.degree[direction], counts[direction]);
     let square = collocate(&knots, degree, count);
     // Nonsingular by Schoenberg and Whitney: each Greville point lies inside the support of its function.
     let map = square.lu().solve(&values).unwrap_or(values);
-    let across = counts[1 - way];
+    let across = counts[1 - direction];
     let mut new_counts = counts;
-    new_counts[way] = count;
-    let index = |counts: [usize; 2], along: usize, j: usize| Grid::new(counts).index_along(way, along, j);
+    new_counts[direction] = count;
+    let index = |counts: [usize; 2], along: usize, j: usize| Grid::new(counts).index_along(direction, along, j);
     let mut control_points = vec![[0.0; 4]; count * across];
     for j in 0..across {
         for row in 0..count {
             let target = &mut control_points[index(new_counts, row, j)];
-            for column in 0..counts[way] {
+            for column in 0..counts[direction] {
                 let source = mesh.control_points[index(counts, column, j)];
                 (0..4).for_each(|c| target[c] += map[(row, column)] * source[c]);
             }
         }
     }
     let mut raised = Mesh { degree: mesh.degree, knots: mesh.knots.clone(), control_points };
-    raised.degree[way] = degree;
-    raised.knots[way] = knots;
+    raised.degree[direction] = degree;
+    raised.knots[direction] = knots;
     raised
 }
 

@@ -37,7 +37,7 @@ impl Sample {
     }
 
     fn between(mesh: &Mesh, one: &Sample, other: &Sample, share: f64) -> Self {
-        Self::new(mesh, [0, 1].map(|way| one.at[way] + share * (other.at[way] - one.at[way])))
+        Self::new(mesh, [0, 1].map(|direction| one.at[direction] + share * (other.at[direction] - one.at[direction])))
     }
 }
 
@@ -46,7 +46,7 @@ impl Sample {
 /// # Errors
 /// Where it does.
 pub fn check_normals(mesh: &Mesh) -> Result<(), ModelError> {
-    let [along, across] = [0, 1].map(|way| parameters(mesh, way));
+    let [along, across] = [0, 1].map(|direction| parameters(mesh, direction));
     let grid: Vec<Vec<Sample>> =
         along.iter().map(|u| across.iter().map(|v| Sample::new(mesh, [*u, *v])).collect()).collect();
     let largest = grid.iter().flatten().map(|sample| norm(sample.area)).fold(0.0, f64::max);
@@ -67,9 +67,9 @@ pub fn check_normals(mesh: &Mesh) -> Result<(), ModelError> {
 }
 
 /// Parameters of the grid: both ends of every span, and more in between than an area that is a polynomial has turning points.
-fn parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
-    let steps = 2 * mesh.degree[way] + 1;
-    let bounds = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
+fn parameters(mesh: &Mesh, direction: usize) -> Vec<f64> {
+    let steps = 2 * mesh.degree[direction] + 1;
+    let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
     let inside = |[from, to]: [f64; 2]| (0..steps).map(move |k| from + (to - from) * k as f64 / steps as f64);
     bounds.into_iter().flat_map(inside).chain([1.0]).collect()
 }
@@ -130,11 +130,12 @@ impl Gaps {
         let corner = mesh.point(0);
         let arms = mesh.points().map(|point| sub(point, corner));
         let tolerance = POSITION * arms.map(norm).fold(0.0, f64::max);
-        let gap = |way: usize, reversed: bool| {
-            let on =
-                |end: f64, at: f64| mid_surface_point(mesh, &[], if way == 0 { [end, at] } else { [at, end] }).position;
+        let gap = |direction: usize, reversed: bool| {
+            let on = |end: f64, at: f64| {
+                mid_surface_point(mesh, &[], if direction == 0 { [end, at] } else { [at, end] }).position
+            };
             let distance = |at: f64| norm(sub(on(0.0, at), on(1.0, if reversed { 1.0 - at } else { at })));
-            parameters(mesh, 1 - way).into_iter().map(distance).fold(0.0, f64::max)
+            parameters(mesh, 1 - direction).into_iter().map(distance).fold(0.0, f64::max)
         };
         Self { same: [gap(0, false), gap(1, false)], reversed: [gap(0, true), gap(1, true)], tolerance }
     }
@@ -154,15 +155,17 @@ pub fn check_seam(mesh: &Mesh, seam: Option<Seam>) -> Result<(), ModelError> {
     const EDGES: [&str; 2] = ["u-start and u-end", "v-start and v-end"];
     let gaps = Gaps::new(mesh);
     let shown = |gap: f64| significant(gap, 3);
-    let meeting = (0..2).find(|way| gaps.same[*way] <= gaps.tolerance);
-    let reversed = (0..2).find(|way| gaps.reversed[*way] <= gaps.tolerance);
+    let meeting = (0..2).find(|direction| gaps.same[*direction] <= gaps.tolerance);
+    let reversed = (0..2).find(|direction| gaps.reversed[*direction] <= gaps.tolerance);
     match (seam, meeting, reversed) {
-        (None, Some(way), _) => Err(ModelError::EdgesMeet {
-            edges: EDGES[way],
-            gap_mm: shown(gaps.same[way]),
+        (None, Some(direction), _) => Err(ModelError::EdgesMeet {
+            edges: EDGES[direction],
+            gap_mm: shown(gaps.same[direction]),
             tolerance_mm: shown(gaps.tolerance),
         }),
-        (None | Some(Seam::Smooth), _, Some(way)) => Err(ModelError::EdgesMeetReversed { edges: EDGES[way] }),
+        (None | Some(Seam::Smooth), _, Some(direction)) => {
+            Err(ModelError::EdgesMeetReversed { edges: EDGES[direction] })
+        }
         (Some(_), None, None) => {
             Err(ModelError::NoSeam { gaps_mm: gaps.same.map(shown), tolerance_mm: shown(gaps.tolerance) })
         }

@@ -17,25 +17,25 @@ const EVEN_SPEED: f64 = 1.7;
 /// Where fewer elements are asked for than the surface has spans.
 pub fn subdivide(mesh: Mesh, elements: [usize; 2]) -> Result<Mesh, ModelError> {
     let mut new: [Vec<f64>; 2] = Default::default();
-    for way in 0..2 {
-        let spans: Vec<Span> = Spans::of(&mesh.knots[way], mesh.degree[way])
+    for direction in 0..2 {
+        let spans: Vec<Span> = Spans::of(&mesh.knots[direction], mesh.degree[direction])
             .bounds
             .into_iter()
-            .map(|bounds| Span::measured(&mesh, way, bounds))
+            .map(|bounds| Span::measured(&mesh, direction, bounds))
             .collect();
-        if elements[way] < spans.len() {
-            let direction = ["u", "v"][way];
-            return Err(ModelError::TooFewElements { direction, asked: elements[way], least: spans.len() });
+        if elements[direction] < spans.len() {
+            let name = ["u", "v"][direction];
+            return Err(ModelError::TooFewElements { direction: name, asked: elements[direction], least: spans.len() });
         }
         let lengths: Vec<f64> = spans.iter().map(Span::length).collect();
-        let pieces = shared_out(&lengths, elements[way]);
+        let pieces = shared_out(&lengths, elements[direction]);
         let even = pieces.iter().all(|count| *count == pieces[0]);
         for (index, (span, count)) in spans.iter().zip(&pieces).enumerate() {
             let [from, to] = span.bounds;
             let uniform = even && (spans.len() as f64 * from - index as f64).abs() < 1e-12;
-            new[way].extend((1..*count).map(|k| match (span.has_even_speed(), uniform) {
+            new[direction].extend((1..*count).map(|k| match (span.has_even_speed(), uniform) {
                 // Uniform spans are divided as multiples of one number, so that equal meshes have equal bits.
-                (true, true) => (index * count + k) as f64 / elements[way] as f64,
+                (true, true) => (index * count + k) as f64 / elements[direction] as f64,
                 (true, false) => from + (to - from) * k as f64 / *count as f64,
                 (false, _) => span.at(k as f64 / *count as f64),
             }));
@@ -52,14 +52,14 @@ struct Span {
 }
 
 impl Span {
-    fn measured(mesh: &Mesh, way: usize, bounds: [f64; 2]) -> Self {
+    fn measured(mesh: &Mesh, direction: usize, bounds: [f64; 2]) -> Self {
         let [from, to] = bounds;
         let step = (to - from) / STEPS as f64;
         let mut length = 0.0;
         let sum = |k: usize| {
             let parameter = from + (k as f64 + 0.5) * step;
-            let at = if way == 0 { [parameter, 0.5] } else { [0.5, parameter] };
-            length += step * norm(mid_surface_point(mesh, &[], at).derivatives[way]);
+            let at = if direction == 0 { [parameter, 0.5] } else { [0.5, parameter] };
+            length += step * norm(mid_surface_point(mesh, &[], at).derivatives[direction]);
             length
         };
         Self { bounds, lengths: (0..STEPS).map(sum).collect() }

@@ -26,14 +26,14 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// The line on which the parameter of direction `way` has a value.
+    /// The line on which the parameter of direction `direction` has a value.
     ///
     /// # Errors
     /// Where no spline keeps its slope there.
-    pub(super) fn new(mesh: &Mesh, way: usize, parameter: f64) -> Result<Self, NoPlane> {
+    pub(super) fn new(mesh: &Mesh, direction: usize, parameter: f64) -> Result<Self, NoPlane> {
         let mut line = Self { places: Vec::new(), slopes: Vec::new() };
         let mut rate = None;
-        for [value, slope] in line_terms(mesh, way, parameter) {
+        for [value, slope] in line_terms(mesh, direction, parameter) {
             let sum = |terms: &Sum| terms.iter().map(|(_, factor)| factor).sum::<f64>();
             let steepest = slope.iter().map(|(_, factor)| factor.abs()).fold(0.0, f64::max);
             let total = sum(&value);

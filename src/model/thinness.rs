@@ -41,7 +41,7 @@ struct Sample {
 impl Extent {
     /// Of the surface of a mesh, which has a normal everywhere.
     pub fn of(mesh: &Mesh, material: &Material) -> Self {
-        let [us, vs] = [0, 1].map(|way| span_points(mesh, way, POINTS));
+        let [us, vs] = [0, 1].map(|direction| span_points(mesh, direction, POINTS));
         let sample = |[u, along]: [f64; 2], [v, across]: [f64; 2]| {
             let SurfacePoint { position, derivatives } = mid_surface_point(mesh, &[], [u, v]);
             let curvature = PointReference::new(derivatives, material, 1.0).largest_curvature();
@@ -60,9 +60,12 @@ impl Extent {
 }
 
 /// Length of the line through the middle that runs in a direction, mm.
-fn side_mm(mesh: &Mesh, way: usize) -> f64 {
-    let point = |at: f64| mid_surface_point(mesh, &[], if way == 0 { [at, 0.5] } else { [0.5, at] });
-    span_points(mesh, way, POINTS).into_iter().map(|[at, weight]| weight * norm(point(at).derivatives[way])).sum()
+fn side_mm(mesh: &Mesh, direction: usize) -> f64 {
+    let point = |at: f64| mid_surface_point(mesh, &[], if direction == 0 { [at, 0.5] } else { [0.5, at] });
+    span_points(mesh, direction, POINTS)
+        .into_iter()
+        .map(|[at, weight]| weight * norm(point(at).derivatives[direction]))
+        .sum()
 }
 
 /// Refuses a body that is no shell, and a surface drawn too far from its middle.

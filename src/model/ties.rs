@@ -31,7 +31,9 @@ impl Ties {
             Geometry::Nurbs(NurbsPatch { seam: Some(Seam::Smooth), .. }) => closed_directions(mesh),
             _ => [false, false],
         };
-        let closing = |way: usize| if closed[way] { seam(mesh, way).map(|joint| vec![joint]) } else { Ok(vec![]) };
+        let closing = |direction: usize| {
+            if closed[direction] { seam(mesh, direction).map(|joint| vec![joint]) } else { Ok(vec![]) }
+        };
         let mirrors = supports.iter().filter(|support| support.hold == Hold::Symmetric).filter_map(|s| match s.on {
             Place::Edge(edge) => Some(edge),
             _ => None,

@@ -19,7 +19,8 @@ use crate::scene::{Drive, Scene, Stage};
 use crate::spline::Mesh;
 use crate::state::{DriveMemory, Refinement, State};
 
-/// Runs the stages of one scene; keeps buffers of the mesh in hand, which a new one would fill with the same bits.
+/// Runner of the stages of one scene. It keeps buffers of the current mesh, which new ones would fill with the same
+/// bits.
 #[derive(Debug)]
 pub struct Stages {
     scene: Scene,
@@ -33,32 +34,32 @@ impl Stages {
         Self::with_terms(scene, Vec::new())
     }
 
-    /// Stages of a scene with energies or loads of the caller's own.
+    /// Creates the stages of a scene with energies or loads of the caller's own.
     pub fn with_terms(scene: Scene, own: Vec<Arc<dyn TermSource>>) -> Self {
         Self { scene, own, in_hand: MeshInHand::default() }
     }
 
-    /// The terms of the caller's own.
+    /// Sources of the terms of the caller's own.
     pub fn own_terms(&self) -> &[Arc<dyn TermSource>] {
         &self.own
     }
 
-    /// Hash of what decides the results: of the scene, and of the terms where there are any of the caller's own.
+    /// Hash of everything that decides the results: of the scene, and of terms of the caller's own where there are any.
     pub fn hash(&self) -> Hash {
         let terms: Vec<(&str, Hash)> = self.own.iter().map(|source| (source.name(), source.hash())).collect();
         run_hash(&self.scene, &terms)
     }
 
-    /// The scene that the stages run.
+    /// Scene that the stages run.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The state that the scene starts from: undeformed, before the first step.
+    /// Makes the state that the scene starts from: undeformed, before the first step.
     ///
     /// # Errors
-    /// Where the scene cannot be made discrete, its supports and terms leave a rigid motion free, or its loads push one that is
-    /// only held so.
+    /// Where the scene cannot be made discrete, its supports and terms leave a rigid motion free, or its loads do work
+    /// on a rigid motion that only a support of rigid motions holds.
     pub fn start(&mut self) -> Result<State, ModelError> {
         let mut state = State::undeformed(starting_mesh(&self.scene)?);
         let mesh = &state.mesh;
@@ -74,7 +75,7 @@ impl Stages {
         Ok(state)
     }
 
-    /// What supports and actions of the scene come to where its words leave it open: a sentence each.
+    /// Remarks on what the scene leaves open or its theory leaves out, a sentence each.
     ///
     /// # Errors
     /// Where supports or loads do not fit the mesh of the state.
@@ -106,7 +107,7 @@ impl Stages {
         Ok((next, report))
     }
 
-    /// What drives the scene, at a state.
+    /// Creates the drive of the scene at a state.
     fn drive<'a>(
         &'a mut self,
         stage: Stage,
@@ -153,7 +154,7 @@ impl Stages {
             let (step, elements, count) = (state.step, finer.element_counts(), finer.control_points.len());
             return Err(StageError::RefinedTooFar { step, elements, count });
         }
-        // Integrated where the finer mesh is: what the energy changes here is the error of the coarser quadrature, and
+        // The energy is integrated on the finer elements: its change here is the error of the coarser quadrature, and
         // projecting then changes nothing.
         let tables = Tables::on_elements_of(&self.scene, &state.mesh, &finer);
         let natural = FreeStrains::new(&self.scene, &state.mesh).at(state.parameter);
@@ -187,7 +188,7 @@ impl Stages {
         Ok((next, report))
     }
 
-    /// Energy that terms of the caller's own store in the model, N·mm.
+    /// Computes the energy that terms of the caller's own store in the model, N·mm.
     fn stored_by_terms(&mut self, state: &State) -> Result<f64, StageError> {
         if self.own.is_empty() {
             return Ok(0.0);
@@ -240,7 +241,7 @@ impl Stages {
         Ok((next, report))
     }
 
-    /// Adds what is to be said of the state that a stage made, or of the one before it.
+    /// Adds the warnings about the state that a stage made, or about the one before it.
     fn warn(&mut self, before: &State, after: &State, report: &mut Report) -> Result<(), StageError> {
         let refined = matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
         report.warnings.extend(refined.then(|| Warning::of_refining(before, after, report.elements)).flatten());
@@ -255,7 +256,7 @@ impl Stages {
     /// Reads every probe of the scene at an equilibrium.
     ///
     /// # Errors
-    /// Where the scene cannot be made discrete on the state's mesh, or a probe asks for what there is not.
+    /// Where the scene cannot be made discrete on the state's mesh, or a probe asks for what the scene does not have.
     pub fn read_probes(&mut self, state: &State) -> Result<Vec<Reading>, StageError> {
         let made_by = state.stage.unwrap_or(Stage::Solve);
         let (scene, work) = self.workspace(&state.mesh, state.step, made_by)?;

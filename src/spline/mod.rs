@@ -7,8 +7,8 @@
 //! | `basis` | basis functions and spans |
 //! | `knots` | whether knots make a spline space |
 //! | `arc` | exact curves |
-//! | `insertion` | knots inserted |
-//! | `grid` | numbers of rows and columns |
+//! | `insertion` | knot insertion |
+//! | `grid` | numbering of rows and columns |
 //! | `mesh` | the spline space with its geometry |
 //! | `surface` | points and derivatives |
 

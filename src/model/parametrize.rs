@@ -33,8 +33,8 @@ fn on_arc(arc_deg: f64, fraction: f64) -> f64 {
 }
 
 /// Parameters of points spread over a direction: the ends and the middles of its spans.
-pub(super) fn sample_parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
-    let bounds = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
+pub(super) fn sample_parameters(mesh: &Mesh, direction: usize) -> Vec<f64> {
+    let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
     bounds.iter().flat_map(|[from, to]| [*from, 0.5 * (from + to)]).chain([1.0]).collect()
 }
 
@@ -42,7 +42,7 @@ pub(super) fn sample_parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
 #[derive(Clone, Copy, Debug)]
 pub struct LinePlace {
     /// Direction (0 or 1) whose parameter is constant on it.
-    pub way: usize,
+    pub direction: usize,
     /// That parameter.
     pub parameter: f64,
     /// The first control index of that direction whose function stands beyond it.
@@ -52,11 +52,11 @@ pub struct LinePlace {
 /// Where a line or an edge lies; `None` for other places.
 pub fn line_place(scene: &Scene, mesh: &Mesh, on: Place) -> Option<LinePlace> {
     let Place::Line(direction, fraction) = on else { return None };
-    let way = direction.index();
-    let parameter = parameters_of(&scene.geometry, [fraction; 2])[way];
-    let degree = mesh.degree[way];
-    let greville = |k: usize| mesh.knots[way][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;
-    let count = mesh.control_counts()[way];
+    let direction = direction.index();
+    let parameter = parameters_of(&scene.geometry, [fraction; 2])[direction];
+    let degree = mesh.degree[direction];
+    let greville = |k: usize| mesh.knots[direction][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;
+    let count = mesh.control_counts()[direction];
     let first_beyond = (0..count).find(|k| greville(*k) > parameter).unwrap_or(count);
-    Some(LinePlace { way, parameter, first_beyond })
+    Some(LinePlace { direction, parameter, first_beyond })
 }
