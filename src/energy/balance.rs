@@ -2,6 +2,7 @@
 
 /// Balance of energies of the whole shell over a solve, N·mm, formed where the solve ends.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Balance {
     /// Energy that all terms store at the end.
     pub stored: f64,

@@ -2,10 +2,10 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `term` | what a term is, and the sum of those beside the shell |
+//! | `term` | what a term is, and the sum of all other than the shell |
 //! | `shell`, `kernel` | the shell, and its elements |
 //! | `loads` | the actions of a scene |
-//! | `balance` | what is stored, worked and lost |
+//! | `balance` | what is stored, worked and dissipated |
 //! | `discretization` | a scene on a mesh, with all its terms |
 //! | `held` | whether supports and terms hold the shell |
 //! | `load_balance` | whether loads balance where only rigid motions are held |

@@ -133,7 +133,7 @@ fn of_nothing(
         loaded |= all > 0.0;
     }
     let why = match loaded {
-        true => "all loads are on places that supports hold, which take them up at once",
+        true => "all loads act on places that supports hold, which carry them directly",
         false => "all loads, given motions and free strains are zero",
     };
     Ok(Some(format!("nothing acts on the shell, and it will stay as it is: {why}")))
@@ -152,7 +152,7 @@ fn of_images(scene: &Scene, mesh: &Mesh) -> Result<Vec<String>, ModelError> {
         let edges = mirrors.iter().filter(|mirror| mirror.edge.is_some());
         let (mirror, share) = edges.filter_map(|mirror| Some((mirror, mirror.share_across(*force)?))).next()?;
         Some(format!(
-            "action \"{name}\" has {} {unit} across the plane of symmetry of support \"{}\": its image behind that pulls the other way",
+            "action \"{name}\" has {} {unit} across the plane of symmetry of support \"{}\": its image behind that pulls in the opposite direction",
             significant(share.abs(), 4),
             mirror.support
         ))

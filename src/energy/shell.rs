@@ -29,6 +29,7 @@ pub struct Shell {
 
 impl Shell {
     /// Elements of the shell, where `natural` is the state without forces (`None`: the undeformed state).
+    #[doc(hidden)]
     pub fn elements(&self, natural: Option<NaturalState>) -> ShellElements<'_> {
         ShellElements { tables: &self.tables, blocks: &self.blocks, part: 0, natural }
     }
@@ -122,6 +123,7 @@ pub(crate) fn with_locked(energy: f64, natural: Option<NaturalState>) -> f64 {
 }
 
 /// Elements of a shell, and where they add to a matrix on control points that other patches may share.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct ShellElements<'a> {
     /// Tables of the elements.
@@ -218,6 +220,7 @@ impl ShellElements<'_> {
 }
 
 /// Sums over elements beyond those on control points.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ElementSums {
     /// Strain energy, N·mm.

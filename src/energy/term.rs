@@ -153,7 +153,7 @@ impl Tangent<'_> {
         if let Some(Symmetry { difference, size }) = self.symmetry.filter(Symmetry::is_broken) {
             let (name, share) = (self.term, difference.abs() / size);
             panic!(
-                "the tangent of the term \"{name}\" is not symmetric, by {share:.1e} of its size, and it does not say so"
+                "the tangent of the term \"{name}\" is not symmetric, by {share:.1e} of its size, but `has_skew` is false"
             );
         }
     }
@@ -164,7 +164,7 @@ impl Tangent<'_> {
     /// Where the control points neither share an element nor are among the term's own [`Term::pairs`].
     pub fn add(&mut self, [i, j]: [usize; 2], slope: [[f64; 3]; 3]) {
         let Some(block) = self.pattern.block(i.min(j), i.max(j)) else {
-            panic!("the term \"{}\" couples control points {i} and {j}, and does not name the pair", self.term)
+            panic!("the term \"{}\" couples control points {i} and {j}, but does not list the pair", self.term)
         };
         if let Some(symmetry) = &mut self.symmetry {
             symmetry.see([i, j], &slope);

@@ -6,6 +6,7 @@ use crate::model::{Blocks, NaturalState};
 use crate::shell::add;
 
 /// Sums over all elements and terms, in buffers that are kept between calls.
+#[doc(hidden)]
 #[derive(Debug, Default)]
 pub struct Assembled {
     /// Energy that the model stores: strain energy, and what other terms store, N·mm.

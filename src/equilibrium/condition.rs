@@ -18,6 +18,7 @@ const MOST_ITERATIONS: usize = 1000;
 /// Both ends of the spectrum of the stiffness on the free unknowns (its symmetric part, where loads turn with the
 /// shell).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Condition {
     /// Largest magnitude of an eigenvalue, N/mm (all unknowns are lengths).
     pub largest: f64,

@@ -1,4 +1,4 @@
-//! Continuation along the path of equilibria, with the parameter λ as an unknown beside the free unknowns q.
+//! Continuation along the path of equilibria, with the parameter λ as an unknown in addition to the free unknowns q.
 //!
 //! A step of length s goes from a point of the path along its unit tangent t to a point of the plane t·Δx = s: the residual
 //! R(q, λ) and the equation of the plane are solved together by Newton's method (Riks 1979; Wempner 1971; the linear
@@ -39,6 +39,7 @@ pub struct Direction {
 
 /// A point of the path, reached from another.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct ContinuedPoint {
     /// The equilibrium.
     pub solved: Solved,
@@ -59,7 +60,7 @@ pub struct ContinuedPoint {
 pub enum Sense<'s> {
     /// In the direction of a growing (or falling) parameter.
     Parameter { grows: bool },
-    /// At less than a right angle to this motion of the control points.
+    /// In the direction at less than a right angle to this motion of the control points.
     Along(&'s [[f64; 3]]),
 }
 

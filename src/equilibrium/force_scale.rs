@@ -39,6 +39,7 @@ const CLEAR: f64 = 30.0;
 
 /// Forces that the residual at a point is compared with, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ForceScale {
     /// Forces that act here, N: the largest of the norm of the internal forces on all control points (at equilibrium,
     /// the reactions), those of the loads and of the free strain, and a share of the elements' forces before they are
@@ -69,7 +70,7 @@ impl ForceScale {
             true => [length(residual), length(external)],
             false => [length(&subtract(residual, internal)), length(&subtract(external, internal))],
         };
-        // Loads are known, and so are reactions that stand out of the rounding.
+        // Loads are known, and so are reactions that are clear of the rounding.
         let known = match loads > 0.0 {
             true => loads,
             false if reactions > CLEAR * rounding => reactions,

@@ -6,6 +6,7 @@ use crate::model::Unknowns;
 
 /// State of a solve after an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Iterate {
     /// Number of Newton steps taken.
     pub iteration: usize,
@@ -63,6 +64,7 @@ impl Iterate {
 
 /// Iterations and factorizations that a solve spent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Effort {
     /// Number of Newton iterations.
     pub iterations: usize,

@@ -9,6 +9,7 @@ use crate::shell::norm;
 /// First-order estimate of the motion to equilibrium and its energy, with the residual r on the free unknowns and the
 /// stiffness K.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinearRelease {
     /// Energy that the model releases, ½ rᵀK⁻¹r, N·mm; negative where K is not positive definite and r lies mostly in
     /// its negative part.

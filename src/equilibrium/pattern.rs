@@ -15,8 +15,7 @@ const SHARE: usize = 1 << 14;
 /// Map from the blocks on control points to the entries of the matrix.
 #[derive(Debug)]
 pub struct Pattern {
-    /// For each entry of the matrix, the index of the number in the blocks that is copied to it; [`NOWHERE`] where
-    /// there is none.
+    /// Index of the number in the blocks that is copied to each entry of the matrix; [`NOWHERE`] where there is none.
     sources: Vec<u32>,
     projected: Vec<ProjectedBlock>,
 }

@@ -6,6 +6,7 @@ use crate::model::ModelError;
 
 /// Reasons why a solve found no equilibrium.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SolveError {
     /// The iterations ran out.
     #[error("no equilibrium after {} iterations: residual {:.3e} of the forces", last.iteration, last.relative_residual())]
@@ -41,7 +42,7 @@ pub enum SolveError {
     },
     /// Nothing moves as the parameter changes: there is no path to follow.
     #[error(
-        "nothing moves as the parameter changes at {parameter}: give the loads or motions a history that goes on there"
+        "nothing moves as the parameter changes at {parameter}: give the loads or motions a history that continues there"
     )]
     NothingMoves {
         /// Value of the scene's parameter.
@@ -91,6 +92,7 @@ impl SolveError {
 
 /// Reasons why no workspace could be built for a scene on a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WorkspaceError {
     /// Supports or loads do not fit the mesh.
     #[error(transparent)]

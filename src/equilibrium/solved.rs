@@ -10,6 +10,7 @@ use crate::scene::Scene;
 
 /// An equilibrium that a solve found.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Solved {
     /// Displacement of the control points, mm.
     pub displacement: Vec<[f64; 3]>,
@@ -29,7 +30,7 @@ pub struct Solved {
     pub effort: Effort,
 }
 
-/// Where a solve ended.
+/// The configuration that a solve ended at.
 pub(super) struct Ended {
     /// Displacement of the control points, mm.
     pub displacement: Vec<[f64; 3]>,

@@ -31,6 +31,7 @@ const MAX_SHIFTS: usize = 600;
 
 /// The lowest eigenvalue of the stiffness on the free unknowns, with its mode.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SoftMode {
     /// Eigenvalue, N/mm: twice the energy of a small motion along the mode with a root mean square of 1 mm.
     pub eigenvalue: f64,
@@ -71,6 +72,7 @@ pub fn soft_mode(work: &mut Workspace, at: Configuration) -> Result<SoftMode, So
 
 /// First-order estimate of the load at which a shell buckled that is now unstable.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinearBuckling {
     /// Number of negative pivots of the stiffness at the state.
     pub negative: usize,

@@ -14,6 +14,7 @@ use crate::shell::{Hessian, PointReference, dot};
 
 /// Errors of the stiffness of the shell at a state, relative to |x| |K y|.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SymmetryError {
     /// Asymmetry of the Hessians: |x·(K y) − y·(K x)|.
     pub hessians: f64,

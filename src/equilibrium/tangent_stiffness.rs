@@ -215,7 +215,7 @@ mod tests {
         let [[x, z, e], _, tied @ ..] = &solutions[..] else { unreachable!() };
         let share = STIFFNESS * product(e, x) / (1.0 + STIFFNESS * product(e, z));
         let scale = x.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        assert!((share * product(e, z)).abs() > 1e-3 * scale, "the tie tells");
+        assert!((share * product(e, z)).abs() > 1e-3 * scale, "the tie matters");
         for [found, ..] in tied {
             for (i, found) in found.iter().enumerate() {
                 assert!((found - (x[i] - share * z[i])).abs() < 1e-9 * scale, "{i}: {found}");

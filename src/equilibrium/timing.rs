@@ -8,6 +8,7 @@ use crate::model::PointTable;
 
 /// Operations and bytes of the parts of a Newton iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct KernelCost {
     /// Floating-point operations of Σ Fᵀ H F, of which the upper half is formed.
     pub assembly_flops: f64,

@@ -6,11 +6,11 @@ use crate::model::parametrize::parameters_of;
 use crate::scene::{Place, Scene};
 use crate::spline::{Mesh, basis_derivatives, basis_derivatives_len, evaluate_surface, find_span};
 
-/// A weighted sum of control points.
+/// A weighted sum over control points: (control point, weight).
 pub(super) type Sum = Vec<(usize, f64)>;
 
-/// Displacements of a place as weighted sums of control points (weights of 1 in all): each control point of an edge, the
-/// point, each control point of a line.
+/// Expresses the displacements of a place as weighted sums over control points (weights sum to 1): of each control
+/// point of an edge, of the point, of each control point of a line.
 pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Result<Vec<Sum>, ModelError> {
     Ok(match on {
         Place::Edge(edge) => edge_rows(mesh, edge)?.outer.into_iter().map(|point| vec![(point, 1.0)]).collect(),
@@ -27,8 +27,8 @@ pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Resu
     })
 }
 
-/// N_i w_ij and N_i′ w_ij on the line on which the parameter of direction `direction` has a value, with their control points: for each
-/// j, the terms of a control point of the line as a curve and of its derivative across.
+/// Computes N_i w_ij and N_i′ w_ij on the line on which the parameter of direction `direction` has a value, with their
+/// control points: for each j, the terms of a control point of the line as a curve and of its derivative across.
 pub(super) fn line_terms(mesh: &Mesh, direction: usize, parameter: f64) -> Vec<[Sum; 2]> {
     let grid = mesh.grid();
     let degree = mesh.degree[direction];
@@ -45,7 +45,7 @@ pub(super) fn line_terms(mesh: &Mesh, direction: usize, parameter: f64) -> Vec<[
     (0..grid.counts[1 - direction]).map(terms).collect()
 }
 
-/// Terms over their sum: weights of 1 in all.
+/// Divides terms by their sum, so that the weights sum to 1.
 pub(super) fn shares(terms: &[(usize, f64)]) -> Sum {
     let total: f64 = terms.iter().map(|(_, value)| value).sum();
     nonzero(terms.iter().map(|(point, value)| (*point, value / total)).collect())

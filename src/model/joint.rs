@@ -14,19 +14,19 @@ use crate::spline::Mesh;
 /// Three neighbouring lines of control points of which the middle one follows from the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
-    /// Index of the middle line.
+    /// Index of the middle line, which follows from the others.
     pub index: usize,
     /// Index of the line before it.
     pub before: usize,
     /// Index of the line after it.
     pub after: usize,
-    /// Share of the line before, times the sum of both.
+    /// Weight of the line before; only its ratio to the other weight counts.
     pub before_weight: f64,
-    /// Share of the line after, times the sum of both.
+    /// Weight of the line after; only its ratio to the other weight counts.
     pub after_weight: f64,
 }
 
-/// Joints in a direction: interior knots of full multiplicity.
+/// Finds the joints in a direction, which lie at interior knots of full multiplicity.
 ///
 /// # Errors
 /// Where the geometry is not smooth there.
@@ -46,7 +46,7 @@ pub fn joints(mesh: &Mesh, direction: usize) -> Result<Vec<Joint>, ModelError> {
         .collect()
 }
 
-/// The seam where the last line of control points meets the first.
+/// Finds the seam where the last line of control points meets the first.
 ///
 /// # Errors
 /// Where the geometry is not smooth there. The edges must coincide.
@@ -59,9 +59,9 @@ pub fn seam(mesh: &Mesh, direction: usize) -> Result<Joint, ModelError> {
     smooth(mesh, direction, joint, spans)
 }
 
-/// The same surface with the middle line of every joint, and of the seam where it is `closed`, moved on to the straight line
-/// between its neighbours, and the last line of a closed direction on to the first: what is smooth within the tolerance is
-/// smooth to rounding, so that a shell that turns as a whole is not strained.
+/// Moves the middle line of every joint, and of the seam where the surface is `closed`, on to the straight line between
+/// its neighbours, and the last line of a closed direction on to the first. What is smooth within the tolerance becomes
+/// smooth up to rounding, so that a shell that turns as a whole is not strained.
 ///
 /// # Errors
 /// Where the surface is not smooth.
@@ -113,7 +113,7 @@ fn place_of(mesh: &Mesh, direction: usize, along: usize, across: usize) -> [f64;
     mesh.point(mesh.grid().index_along(direction, along, across))
 }
 
-/// Weights of a joint, compared with the geometry on every line across it.
+/// Finds the weights of a joint, and checks them on every line across it.
 fn smooth(mesh: &Mesh, direction: usize, joint: Joint, spans: [f64; 2]) -> Result<Joint, ModelError> {
     let across = 0..mesh.control_counts()[1 - direction];
     let legs: Vec<[[f64; 3]; 2]> = across
@@ -160,7 +160,7 @@ fn smooth(mesh: &Mesh, direction: usize, joint: Joint, spans: [f64; 2]) -> Resul
     Ok(Joint { before_weight, after_weight, ..joint })
 }
 
-/// The knot at which the function of a line is 1: of a seam, the first.
+/// Knot at which the function of a line is 1; for a seam, the first knot.
 fn knot_of(mesh: &Mesh, direction: usize, line: usize) -> f64 {
     mesh.knots[direction][line + 1]
 }

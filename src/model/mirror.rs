@@ -1,4 +1,4 @@
-//! Planes of symmetry: the plane that an edge, or a line inside, lies in.
+//! Planes of symmetry, each with the edge or the line inside that lies in it.
 
 use crate::model::ModelError;
 use crate::model::edge::{rows_of, side};
@@ -13,21 +13,22 @@ use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 /// An edge, or a line inside, in a plane of symmetry.
 #[derive(Clone, Debug)]
 pub struct Mirror {
-    /// Name of its support.
+    /// Name of the support.
     pub support: String,
-    /// The edge; `None` for a line inside.
+    /// Edge in the plane; `None` for a line inside.
     pub edge: Option<Edge>,
-    /// The direction (0 or 1) whose parameter is the same all along it.
+    /// Direction (0 or 1) whose parameter is constant on the edge or line.
     pub direction: usize,
-    /// That parameter.
+    /// Value of that parameter.
     pub parameter: f64,
     /// Unit normal of the plane.
     pub normal: [f64; 3],
 }
 
 impl Mirror {
-    /// The planes of symmetry among some supports. Those that meet at right angles within the tolerance do so to rounding, and
-    /// so do those along an axis: constraints that differ by less than the coordinates' rounding must not both hold.
+    /// Finds the planes of symmetry among some supports. Those that meet at right angles within the tolerance do so to
+    /// rounding, and so do those along an axis: constraints that differ by less than the coordinates' rounding must not
+    /// both hold.
     ///
     /// # Errors
     /// Where an edge does not lie in a plane that the surface crosses at right angles.
@@ -55,13 +56,13 @@ impl Mirror {
         Ok(mirrors)
     }
 
-    /// The point of the surface at a parameter along it.
+    /// Evaluates the point of the surface at a parameter along the edge or line.
     pub(super) fn point(&self, mesh: &Mesh, parameter: f64) -> SurfacePoint {
         let at = if self.direction == 0 { [self.parameter, parameter] } else { [parameter, self.parameter] };
         mid_surface_point(mesh, &[], at)
     }
 
-    /// Its points at the ends and in the middle of each span.
+    /// Samples the edge or line at the ends and in the middle of each span.
     pub(super) fn samples(&self, mesh: &Mesh) -> Vec<SurfacePoint> {
         let running = 1 - self.direction;
         let spans = Spans::of(&mesh.knots[running], mesh.degree[running]).bounds;
@@ -69,19 +70,19 @@ impl Mirror {
         parameters.map(|parameter| self.point(mesh, parameter)).collect()
     }
 
-    /// The share of a vector across the plane, where that is more than rounding.
+    /// Component of a vector across the plane, where that is more than rounding.
     pub(crate) fn share_across(&self, vector: [f64; 3]) -> Option<f64> {
         let share = dot(vector, self.normal);
         (share.abs() > 2.0 * ANGLE * norm(vector)).then_some(share)
     }
 
-    /// Whether a parameter across it is its own.
+    /// Whether a parameter in the constant direction is that of the edge or line.
     pub(super) fn is_at(&self, parameter: f64) -> bool {
         (parameter - self.parameter).abs() <= SAME_PARAMETER
     }
 }
 
-/// Unit normal of the plane of symmetry that an edge, or a line inside, can lie in.
+/// Finds the unit normal of the plane of symmetry that an edge, or a line inside, can lie in.
 fn plane_of(mesh: &Mesh, edge: Option<Edge>, direction: usize, parameter: f64) -> Result<[f64; 3], NoPlane> {
     let Some(edge) = edge else {
         let line = Line::new(mesh, direction, parameter)?;

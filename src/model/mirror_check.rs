@@ -20,7 +20,7 @@ use crate::units::{place, significant};
 /// Refuses material and loads that are not their own mirror images at the planes of symmetry that a scene asks for.
 ///
 /// # Errors
-/// Where one is not, or an edge lies in no plane of symmetry.
+/// Where material or loads are not, or an edge lies in no plane of symmetry.
 pub fn check_mirror_images(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
     for mirror in Mirror::all(scene, &supports_of(scene), mesh)? {
         check_material(&scene.material, mesh, &mirror)?;
@@ -81,8 +81,8 @@ fn check_natural_states(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(
     Ok(())
 }
 
-/// The stiffnesses between shear and stretch in axes along a tangent of the surface and across it, where they are more than
-/// rounding, in words.
+/// Describes the stiffnesses between shear and stretch, in axes along a tangent of the surface and across it, that are
+/// more than rounding.
 fn shear_coupling(material: &Material, [a1, a2]: [[f64; 3]; 2], tangent: [f64; 3]) -> Vec<String> {
     let across = cross(unit(cross(a1, a2)), tangent);
     // Covariant strains (11, 22, 2·12) from those in the axes: ε_αβ = ε_ij (A_α·e_i)(A_β·e_j).
@@ -125,7 +125,7 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
         Place::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.direction]),
         Place::Whole => false,
     };
-    // A line the other way meets the plane in a point.
+    // A line in the other direction meets the plane in a point.
     let meets = |on: &Place| match on {
         Place::Edge(edge) => side(*edge).0 != mirror.direction,
         Place::Line(direction, _) => direction.index() != mirror.direction,

@@ -1,10 +1,11 @@
 //! Whether a whole shell is its own mirror image in the plane of a line inside.
 //!
-//! A symmetric line inside holds what a symmetric shell does by itself. On any other it would be a hold that nothing makes:
-//! surface, supports and actions must be mapped onto themselves. The parameter across the line goes over into 1 − ξ; tangents
-//! along it are mirrored and those across mirrored and turned round, so that the normal of the image is the image of the normal:
-//! loads along directions of the surface keep their size. Forces and translations are mirrored, moments and turns mirrored and
-//! turned round. What acts on the whole surface is looked at on the line ([`super::mirror_check`]).
+//! A symmetric line inside holds what a symmetric shell does by itself. On any other shell it would add a support that
+//! does not exist: surface, supports and actions must be mapped onto themselves. The parameter across the line goes
+//! over into 1 − ξ; tangents along it are mirrored and those across mirrored and turned round, so that the normal of
+//! the image is the image of the normal: loads along directions of the surface keep their size. Forces and translations
+//! are mirrored, moments and turns mirrored and turned round. Actions on the whole surface are checked on the line
+//! ([`super::mirror_check`]).
 
 use crate::model::ModelError;
 use crate::model::edge::{on_edge, side};
@@ -23,27 +24,27 @@ use crate::units::{place, significant};
 /// A vector whose components are given or free.
 type Given = [Option<f64>; 3];
 
-/// A mirror that the shell stands on both sides of.
+/// A mirror plane with the shell on both sides.
 struct Plane {
     normal: [f64; 3],
-    /// A point of it, mm.
+    /// Point of the plane, mm.
     origin: [f64; 3],
-    /// Distances below are rounding of coordinates, mm.
+    /// Distance below which a difference is rounding of coordinates, mm.
     rounding_mm: f64,
 }
 
-/// A support or an action, as far as a mirror changes it.
+/// A support or an action, reduced to what a mirror changes.
 #[derive(Clone)]
 struct SupportOrAction {
-    /// In words.
+    /// Name, in words.
     name: String,
-    /// What no mirror changes.
+    /// Everything that no mirror changes, as text.
     kind: String,
-    /// Points of the place: one, or start, middle and end of a line; none for the whole surface.
+    /// Points of its place: one, or start, middle and end of a line; none for the whole surface.
     points: Vec<[f64; 3]>,
-    /// Forces, translations, arms.
+    /// Vectors that are mirrored: forces, translations, arms.
     vectors: Vec<Given>,
-    /// Moments and turns.
+    /// Vectors that are mirrored and turned round: moments and turns.
     turns: Vec<Given>,
     history: History,
 }
@@ -51,7 +52,7 @@ struct SupportOrAction {
 /// Refuses a shell that is not its own mirror image in the plane of a line inside.
 ///
 /// # Errors
-/// Where the line is not in its middle, or a surface point, a support or an action has no image.
+/// Where the line is not in the middle of the shell, or a surface point, a support or an action has no image.
 pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
     let refused = |what: String| Err(ModelError::NotItsOwnImage { support: mirror.support.clone(), what });
     if (mirror.parameter - 0.5).abs() > SAME_PARAMETER {
@@ -82,7 +83,7 @@ pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Re
     }
 }
 
-/// Points of the surface, two in every span each way, each with the one that stands opposite.
+/// Points of the surface, two in every span in each direction, each with the opposite one.
 fn samples(mesh: &Mesh, direction: usize) -> Vec<[[f64; 3]; 2]> {
     let [us, vs] = [0, 1].map(|direction| sample_parameters(mesh, direction));
     let pair = |at: [f64; 2]| {
@@ -93,7 +94,7 @@ fn samples(mesh: &Mesh, direction: usize) -> Vec<[[f64; 3]; 2]> {
     us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])).map(pair).collect()
 }
 
-/// Points of a place that tell it from others.
+/// Points that distinguish a place from others.
 fn points_of(scene: &Scene, mesh: &Mesh, on: Place) -> Vec<[f64; 3]> {
     let along = |direction: usize, fraction: f64| {
         [0.0, 0.5, 1.0].map(|along| if direction == 0 { [fraction, along] } else { [along, fraction] }).to_vec()
@@ -139,7 +140,7 @@ impl SupportOrAction {
         }
     }
 
-    /// `None` for what acts on the whole surface.
+    /// Creates the description of an action; `None` for one on the whole surface.
     fn of_action(scene: &Scene, mesh: &Mesh, action: &Action) -> Option<Self> {
         let forced = |kind: &str, force: ForceVector| match force {
             ForceVector::Components(force) => (kind.to_owned(), vec![force.map(Some)], vec![]),
@@ -180,7 +181,7 @@ impl Plane {
         sub(point, scaled(2.0 * dot(arm, self.normal), self.normal))
     }
 
-    /// `None` where the image of a given component has a share along one that is free.
+    /// Mirrors a vector; `None` where the image of a given component has a share along one that is free.
     fn given(&self, vector: &Given) -> Option<Given> {
         let mixes = |i: usize, j: usize| i != j && (self.normal[i] * self.normal[j]).abs() > ROUNDING;
         let parted = |i: usize| (0..3).any(|j| mixes(i, j) && vector[i].is_some() != vector[j].is_some());
@@ -198,7 +199,7 @@ impl Plane {
         })
     }
 
-    /// Whether two parts do the same in the same place. A mirror turns lines that cross it round.
+    /// Whether two of them do the same in the same place. A mirror reverses lines that cross it.
     fn is_same(&self, one: &SupportOrAction, other: &SupportOrAction) -> bool {
         let near = |(a, b): (&[f64; 3], &[f64; 3])| norm(sub(*a, *b)) <= 2.0 * self.rounding_mm;
         let alike = |(a, b): (&Given, &Given)| {

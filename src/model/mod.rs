@@ -1,21 +1,21 @@
-//! A scene made discrete: the patch that it starts from, and for a mesh its tables, supports and free unknowns.
+//! A scene made discrete: the mesh that it starts from, and the tables, supports and free unknowns of a mesh.
 //!
 //! | file | what |
 //! |---|---|
-//! | `limits` | how near is near enough, how much too much |
+//! | `limits` | tolerances and limits |
 //! | `error` | why a scene cannot be made discrete |
 //! | `shape` | the surface of a scene in its fewest elements |
-//! | `joint` | knot lines across which it is smooth |
-//! | `soundness`, `thinness`, `overhang` | whether a shell can have it |
+//! | `joint` | knot lines across which the surface is smooth |
+//! | `soundness`, `thinness`, `overhang` | whether a shell can have that surface |
 //! | `subdivision`, `start` | the mesh that a run starts from |
-//! | `parametrize`, `edge`, `direction` | parameters of fractions; rows and normals of edges; directions at a point |
-//! | `expressions` | places as sums of control points |
+//! | `parametrize`, `edge`, `direction` | parameters at fractions of length and angle; rows and normals of edges; directions at a point |
+//! | `expressions` | displacements of places as sums over control points |
 //! | `symmetry_plane`, `symmetric_line`, `mirror` | planes of symmetry |
-//! | `mirror_check`, `mirror_image` | whether what acts there is its own image |
+//! | `mirror_check`, `mirror_image` | whether loads, material and shell are their own mirror images |
 //! | `scene_supports` | the supports of a scene |
 //! | `ties` | joints, seams and planes that tie rows |
 //! | `body` | a rigid body and its motions |
-//! | `supports` | what supports ask of a mesh |
+//! | `supports` | the constraints of supports on a mesh |
 //! | `hold`, `rigid_support` | the constraints that each kind makes |
 //! | `rigid_motion` | motions that they leave free |
 //! | `elimination` | constraints eliminated |
@@ -26,8 +26,8 @@
 //! | `connectivity` | control points of each element, and the order of sums |
 //! | `tables` | shape functions at the points |
 //! | `block_pattern`, `blocks` | 3 × 3 blocks of a matrix on control points |
-//! | `free_strains` | strains without energy over the parameter |
-//! | `reactions` | what supports exert |
+//! | `free_strains` | free strains over the parameter |
+//! | `reactions` | forces that supports exert |
 
 mod block_pattern;
 mod blocks;

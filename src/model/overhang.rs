@@ -1,4 +1,5 @@
-//! Forces by the projected area: which of two layers one above the other carries them, the area alone does not say.
+//! Check of forces by the projected area: where two layers lie one above the other, the area alone does not say which
+//! carries them.
 
 use crate::model::ModelError;
 use crate::model::limits::ANGLE;
@@ -12,7 +13,7 @@ use crate::units::place;
 /// Refuses forces by the projected area that meet both sides of the surface.
 ///
 /// # Errors
-/// Where one does, by more than rounding.
+/// Where a force does, by more than rounding.
 pub(super) fn check_overhangs(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
     for action in &scene.actions {
         let ActionKind::AreaForce { force_n_per_mm2: ForceVector::Components(force), per: LoadedArea::Projected } =

@@ -14,9 +14,9 @@ use crate::spline::{Grid, Mesh};
 /// Builds the starting mesh.
 ///
 /// # Errors
-/// Where the ends of a tape spring leave no free control points between them, the mesh is too large, the surface is none
-/// that a shell can have, or too curved or small for its thickness or offset, something is not its own mirror image at a plane of symmetry, or a load by the projected area
-/// meets both sides.
+/// Where the ends of a tape spring leave no free control points between them, the mesh is too large, the surface is not
+/// one that a shell can have or too curved or small for its thickness or offset, something is not its own mirror image
+/// at a plane of symmetry, or a load by the projected area meets both sides.
 pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     let shape = shape(scene)?;
     if scene.end_rotation().is_some() {
@@ -38,8 +38,8 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     Ok(mesh)
 }
 
-/// An edge that a section holds, turning the normal with it, takes two rows of control points; where that across takes two of
-/// three as well, one of the sections loses its hold.
+/// Refuses meshes with too few rows of control points. An edge that a section holds, turning the normal with it, takes
+/// two rows; where the opposite edge takes two of three as well, one of the sections loses its hold.
 fn check_rows(scene: &Scene, shape: &Shape) -> Result<(), ModelError> {
     let is_held = |direction: usize, at_end: bool| {
         scene.supports.iter().any(|support| {

@@ -1,17 +1,17 @@
-//! Knots inside the spans of a surface, so that a mesh has the elements that a scene asks for, as even as can be.
+//! Subdivision of the spans of a surface, so that a mesh has the elements that a scene asks for, as even as possible.
 
 use crate::model::ModelError;
 use crate::shell::norm;
 use crate::spline::{Mesh, Spans, mid_surface_point};
 
-/// Steps in which the length of a span is summed up.
+/// Number of steps in which the length of a span is summed up.
 const STEPS: usize = 64;
-/// Where the speed of the parameter varies by less than this factor in a span, the parameter is divided evenly: arcs of one
-/// segment reach 1.6.
+/// Largest ratio of the parameter's speeds in a span at which the parameter is divided evenly: arcs of one segment
+/// reach 1.6.
 const EVEN_SPEED: f64 = 1.7;
 
-/// Inserts knots so that there are exactly `elements` each way: shared out over the spans by their lengths on the middle
-/// line, at least one for each, and even inside each span.
+/// Inserts knots so that there are exactly `elements` in each direction: shared out over the spans by their lengths on
+/// the middle line, at least one for each, and even inside each span.
 ///
 /// # Errors
 /// Where fewer elements are asked for than the surface has spans.
@@ -47,7 +47,7 @@ pub fn subdivide(mesh: Mesh, elements: [usize; 2]) -> Result<Mesh, ModelError> {
 /// A span between two knots, on the middle line of the other direction.
 struct Span {
     bounds: [f64; 2],
-    /// Lengths from its begin to the ends of [`STEPS`] equal steps of the parameter, mm.
+    /// Lengths from its start to the ends of [`STEPS`] equal steps of the parameter, mm.
     lengths: Vec<f64>,
 }
 
@@ -77,7 +77,7 @@ impl Span {
         most <= EVEN_SPEED * least
     }
 
-    /// The parameter at a fraction of the length.
+    /// Finds the parameter at a fraction of the length.
     fn at(&self, fraction: f64) -> f64 {
         let wanted = fraction * self.length();
         let k = self.lengths.partition_point(|length| *length < wanted).min(STEPS - 1);
@@ -88,8 +88,8 @@ impl Span {
     }
 }
 
-/// Whole numbers of at least 1 that sum to `total` and are nearest to the shares of the lengths: each begins where the
-/// rounded sum of those before it ends, so that a symmetric line is divided symmetrically where that can be.
+/// Distributes `total` over the lengths in whole numbers of at least 1 that are nearest to their shares: each begins
+/// where the rounded sum of those before it ends, so that a symmetric line is divided symmetrically where that can be.
 fn shared_out(lengths: &[f64], total: usize) -> Vec<usize> {
     let whole: f64 = lengths.iter().sum();
     let mut reached = 0.0;

@@ -109,7 +109,7 @@ fn leaves_path(state: &State, to: f64, solved: &Solved) -> bool {
     length(&state.displacement, &solved.displacement) > BRANCH_CHANGE_RATIO * rate * (to - state.parameter)
 }
 
-/// How a solve came to its equilibrium.
+/// The way in which a solve came to its equilibrium.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Arrival {
     /// The solve followed the path.

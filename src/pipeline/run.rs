@@ -11,6 +11,7 @@ use crate::state::{MeshHash, State};
 
 /// Reasons why a run stopped before its target. All stages that the sink took remain valid.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RunError {
     /// A stage failed.
     #[error(transparent)]
@@ -20,8 +21,9 @@ pub enum RunError {
     Sink(#[from] SinkError),
 }
 
-/// How a run ended.
+/// The reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Ending {
     /// The scene's target is reached.
     Finished,

@@ -6,6 +6,7 @@ use crate::scene::Stage;
 
 /// Reasons why a stage could not be run to its end. The state before it remains valid.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StageError {
     /// The increment was cut down to the least one and still no equilibrium was found.
     #[error(
@@ -23,13 +24,13 @@ pub enum StageError {
         least_key: &'static str,
         /// The scene's least increment, in the units of its parameter.
         least: f64,
-        /// Why the last attempt failed.
+        /// Reason why the last attempt failed.
         cause: Box<SolveError>,
     },
     /// Not even the first step has an equilibrium.
     #[error(
         "step {step}, solve: no equilibrium was found near the undeformed shell, at {attempted}, nor at larger increments: \
-         {cause}; look at sizes and units of loads, thickness and geometry, and at what the supports leave free; then take a \
+         {cause}; check sizes and units of loads, thickness and geometry, and what the supports leave free; then take a \
          smaller increment or raise solver.max_iterations"
     )]
     NoStart {
@@ -37,7 +38,7 @@ pub enum StageError {
         step: u64,
         /// Parameter of the last attempt, with its unit.
         attempted: String,
-        /// Why the last attempt failed.
+        /// Reason why the last attempt failed.
         cause: Box<SolveError>,
     },
     /// The shell jumps or loses its stability at a located point, and the solver did not reach the shape beyond it.
@@ -52,13 +53,13 @@ pub enum StageError {
         reached: String,
         /// Parameter beyond the jump, with its unit.
         attempted: String,
-        /// Why the solve failed.
+        /// Reason why the solve failed.
         cause: Box<SolveError>,
     },
     /// The refined mesh has no equilibrium at the load.
     #[error(
         "step {step}, re-equilibrate at {reached} on {} × {} elements: {cause}; raise solver.max_iterations (by arc length: lower continuation.longest_step), or adapt.threshold to \
-         refine less at once, and go on with `foldline run SCENE --resume`",
+         refine less at once, and continue with `foldline run SCENE --resume`",
         elements[0],
         elements[1]
     )]
@@ -69,7 +70,7 @@ pub enum StageError {
         reached: String,
         /// Number of elements in each direction.
         elements: [usize; 2],
-        /// Why the solve failed.
+        /// Reason why the solve failed.
         cause: Box<SolveError>,
     },
     /// The path could not be followed.
@@ -93,8 +94,8 @@ pub enum StageError {
     },
     /// The path is longer than the scene allows.
     #[error(
-        "step {step}: the path has not reached {target} after continuation.most_steps = {most} load steps; it stands at \
-         {reached}; raise most_steps, or longest_step for longer steps, and go on with `foldline run SCENE --resume`"
+        "step {step}: the path has not reached {target} after continuation.most_steps = {most} load steps; it is at \
+         {reached}; raise most_steps, or longest_step for longer steps, and continue with `foldline run SCENE --resume`"
     )]
     PathTooLong {
         /// Number of the load step.
@@ -115,13 +116,13 @@ pub enum StageError {
         step: u64,
         /// Parameter of the state, with its unit.
         reached: String,
-        /// Why the solve failed.
+        /// Reason why the solve failed.
         cause: Box<SolveError>,
     },
     /// No stable equilibrium was found near the unstable one.
     #[error(
         "step {step}, switch-branch at {reached}: after leaving along {modes} modes the equilibrium still has {negative_pivots} \
-         negative pivot(s); take smaller increments, or take switch-branch out of pipeline.stages"
+         negative pivot(s); take smaller increments, or remove switch-branch from pipeline.stages"
     )]
     StillUnstable {
         /// Number of the load step.

@@ -2,6 +2,7 @@
 
 /// Reasons why a sequence of numbers is not a knot vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum KnotFlaw {
     /// There are fewer than 2 (degree + 1) knots.
     Few {
@@ -22,7 +23,7 @@ pub enum KnotFlaw {
     TooNear {
         /// The two knots.
         pair: [f64; 2],
-        /// Their difference relative to the range of all knots.
+        /// Difference of the two, relative to the range of all knots.
         share: f64,
     },
     /// The first or the last knot is not repeated degree + 1 times: the vector is not open (clamped).

@@ -17,7 +17,7 @@ pub struct Mesh {
 impl Mesh {
     /// Number of control points in each direction.
     pub fn control_counts(&self) -> [usize; 2] {
-        [0, 1].map(|k| control_count(&self.knots[k], self.degree[k]))
+        [0, 1].map(|direction| control_count(&self.knots[direction], self.degree[direction]))
     }
 
     /// Grid that numbers the control points.
@@ -42,7 +42,7 @@ impl Mesh {
 
     /// Number of non-empty knot spans (elements) in each direction.
     pub fn element_counts(&self) -> [usize; 2] {
-        [0, 1].map(|k| self.knots[k].windows(2).filter(|pair| pair[0] < pair[1]).count())
+        [0, 1].map(|direction| self.knots[direction].windows(2).filter(|pair| pair[0] < pair[1]).count())
     }
 
     /// Integrals of the B-splines (without the weights) of all control points over the parameter domain, relative to its
@@ -79,9 +79,9 @@ impl Mesh {
     /// Content hash of the mesh; independent of how a log encodes it.
     pub fn hash(&self) -> Hash {
         let mut feed = Feed::new("foldline mesh");
-        for k in 0..2 {
-            feed.integer(self.degree[k] as u64);
-            feed.numbers(&self.knots[k]);
+        for direction in 0..2 {
+            feed.integer(self.degree[direction] as u64);
+            feed.numbers(&self.knots[direction]);
         }
         feed.integer(self.control_points.len() as u64);
         feed.each(self.control_points.as_flattened());

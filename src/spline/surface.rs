@@ -17,7 +17,7 @@ pub struct SurfacePoint {
 pub fn evaluate_surface(mesh: &Mesh, parameters: [f64; 2]) -> ([usize; 2], [Vec<f64>; 6]) {
     let [p1, p2] = mesh.degree;
     let grid = mesh.grid();
-    let span = [0, 1].map(|k| find_span(&mesh.knots[k], mesh.degree[k], parameters[k]));
+    let span = [0, 1].map(|direction| find_span(&mesh.knots[direction], mesh.degree[direction], parameters[direction]));
     let mut along = vec![0.0; basis_derivatives_len(p1)];
     let mut across = vec![0.0; basis_derivatives_len(p2)];
     basis_derivatives(&mesh.knots[0], p1, span[0], parameters[0], &mut along);

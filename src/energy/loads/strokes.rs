@@ -131,7 +131,7 @@ mod tests {
         assert!(work(&about_x).is_finite());
     }
 
-    /// Between two shapes with the same edges a pressure sweeps one volume, on whatever way.
+    /// Between two shapes with the same edges a pressure sweeps one volume, on any path.
     #[test]
     fn a_pressure_does_work_by_the_volume_between() {
         let plate = plate(ActionKind::Pressure { pressure_mpa: 0.7, follower: true });

@@ -6,9 +6,9 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `structure` | which unknowns meet; what a factorization tells |
+//! | `structure` | which unknowns meet; what a factorization returns |
 //! | `envelope` | how far rows reach, and where to cut |
-//! | `chain`, `strips`, `strip_kernel` | rows in strips: where they stand, the solver, its loops |
+//! | `chain`, `strips`, `strip_kernel` | rows in strips: their arrangement, the solver, its loops |
 //! | `supernodal` | any structure |
 
 mod chain;

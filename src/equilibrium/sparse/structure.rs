@@ -2,6 +2,7 @@
 
 /// Reasons why a matrix has no usable factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FactorError {
     /// A pivot is exactly zero or not a number.
     #[error("the pivot of unknown {index} of {size} is zero or not a number")]
