@@ -13,7 +13,7 @@ pub enum ModelError {
          at both ends take 2 each: write at least {least} elements along {along} of the model (mesh.elements)"
     )]
     TooFewRows {
-        /// Direction in which they lie, u or v.
+        /// Direction, u or v.
         along: &'static str,
         /// Number of elements of the model in that direction.
         elements: usize,
@@ -352,7 +352,7 @@ pub enum ModelError {
         motion: String,
         /// Work on that motion, relative to the sum of all forces at their arms.
         share: f64,
-        /// Load factor at which they do.
+        /// Load factor at which they do so.
         load_factor: f64,
     },
     /// A support holds rigid motions alone, and terms of the caller's own hold some of them as well.

@@ -27,8 +27,8 @@ pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Resu
     })
 }
 
-/// Computes N_i w_ij and N_i′ w_ij on the line on which the parameter of direction `direction` has a value, with their
-/// control points: for each j, the terms of a control point of the line as a curve and of its derivative across.
+/// Computes N_i w_ij and N_i′ w_ij on the line on which the parameter of `direction` has a value, with their control
+/// points: for each j, the terms of a control point of the line as a curve and of its derivative across.
 pub(super) fn line_terms(mesh: &Mesh, direction: usize, parameter: f64) -> Vec<[Sum; 2]> {
     let grid = mesh.grid();
     let degree = mesh.degree[direction];

@@ -59,15 +59,15 @@ impl PointCounts {
             Quadrature::FullPlusTwo => {
                 common(both(&|direction| everywhere(mesh, direction, mesh.degree[direction] + 3)))
             }
-            Quadrature::Reduced => common(both(&|k| reduced(mesh, k))),
-            Quadrature::Patch => common(both(&|k| patch(mesh, k))),
+            Quadrature::Reduced => common(both(&|direction| reduced(mesh, direction))),
+            Quadrature::Patch => common(both(&|direction| patch(mesh, direction))),
             Quadrature::Balanced => {
                 let stiffness = shell_stiffness(&scene.material, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
                 let ratio = stretching_over_bending(&stiffness);
                 let is_developable = !is_curved_both_ways(mesh);
                 let full = |direction: usize| everywhere(mesh, direction, mesh.degree[direction] + 1);
-                let bending = both(&|k| if is_developable { patch(mesh, k) } else { full(k) });
-                let stretching = both(&|k| balanced(mesh, k, &bending[k], ratio));
+                let bending = both(&|direction| if is_developable { patch(mesh, direction) } else { full(direction) });
+                let stretching = both(&|direction| balanced(mesh, direction, &bending[direction], ratio));
                 match stretching == bending {
                     true => common(bending),
                     false if stiffness.coupling.is_some() => common(stretching),

@@ -11,10 +11,10 @@
 //! those before it carries nothing:
 //!
 //! 1. planes of symmetry. Near a support, the traction in the cut is what the other half exerts, and that of the support
-//!    across the plane falls to zero there. So the plane takes the force across it at the corner, and a couple between
-//! its    two rows of control points, but no force along it: the whole of that is the support's. The control points of
-//! the    edge follow those next to it, where the whole shell has its own; in degree 2, where both have the same
-//! functions,    reactions of a part and of the whole agree to rounding;
+//!    across the plane falls to zero there. So the plane takes the force across it at the corner, and a couple between its
+//!    two rows of control points, but no force along it: the whole of that is the support's. The control points of the
+//!    edge follow those next to it, where the whole shell has its own; in degree 2, where both have the same functions,
+//!    reactions of a part and of the whole agree to rounding;
 //! 2. other supports, in the order of the scene;
 //! 3. planes of symmetry through lines inside: where the shell is what they say, they carry nothing;
 //! 4. joints. Their forces have neither resultant nor moment.

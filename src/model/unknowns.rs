@@ -46,7 +46,7 @@ pub enum Share {
     Rotation(usize),
 }
 
-/// The quantity that a free unknown is the value of.
+/// The quantity that a free unknown stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Home {
     /// A component of a control point in its frame.

@@ -71,9 +71,9 @@ pub(super) struct Doubts<'a> {
 
 impl Doubts<'_> {
     /// Checks the state; returns the warnings about it.
-    pub fn all(mut self, looked: ReadAt) -> Vec<Warning> {
+    pub fn all(mut self, read_at: ReadAt) -> Vec<Warning> {
         let large_strains = self.large_strains();
-        large_strains.into_iter().chain(self.coarse(looked)).collect()
+        large_strains.into_iter().chain(self.coarse(read_at)).collect()
     }
 
     fn large_strains(&self) -> Option<Warning> {
@@ -83,7 +83,7 @@ impl Doubts<'_> {
     }
 
     /// Warns of what halving every element would change: the energy, else the load at which it buckles, else a probe.
-    fn coarse(&mut self, looked: ReadAt) -> Option<Warning> {
+    fn coarse(&mut self, read_at: ReadAt) -> Option<Warning> {
         if self.refining_has_shown() {
             return None;
         }
@@ -96,7 +96,7 @@ impl Doubts<'_> {
             return (!halving.is_still()).then_some(Warning::CoarseElements { parameter, elements, energy_share });
         }
         // Beyond a critical point the current mesh is unstable as well.
-        let is_stable = looked == ReadAt::AtCriticalPoint || state.negative_pivots == 0;
+        let is_stable = read_at == ReadAt::AtCriticalPoint || state.negative_pivots == 0;
         let buckled = if is_stable { halved.buckling() } else { None };
         if let Some(LinearBuckling { parameter: at, .. }) = buckled {
             return (at < (1.0 - LATE) * parameter).then_some(Warning::LateBuckling {
@@ -106,7 +106,7 @@ impl Doubts<'_> {
             });
         }
         // Near a critical point the halved mesh may lead anywhere.
-        let are_read = looked == ReadAt::AtEnd && !self.scene.probes.is_empty();
+        let are_read = read_at == ReadAt::AtEnd && !self.scene.probes.is_empty();
         if are_read { self.probe_off(halved) } else { None }
     }
 

@@ -6,7 +6,7 @@
 //! | `step` | a step of a drive: what every drive does alike |
 //! | `load_drive`, `path_drive` | steps by load, and by arc length |
 //! | `branch_switch` | from an unstable equilibrium to a stable one |
-//! | `mesh_in_hand` | what stages keep of the current mesh |
+//! | `current_mesh` | what stages keep of the current mesh |
 //! | `step_control`, `path_control` | how far the next step goes |
 //! | `run` | the loop |
 //! | `probes` | readings at an equilibrium |
@@ -14,9 +14,9 @@
 //! | `stage_error` | why a stage did not end |
 
 mod branch_switch;
+mod current_mesh;
 mod doubts;
 mod load_drive;
-mod mesh_in_hand;
 mod path_control;
 mod path_drive;
 mod probes;

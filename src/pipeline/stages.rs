@@ -8,9 +8,9 @@ use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_e
 use crate::equilibrium::{Configuration, Iterate, Workspace, WorkspaceError};
 use crate::model::{FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, starting_mesh};
 use crate::pipeline::StageError;
+use crate::pipeline::current_mesh::CurrentMesh;
 use crate::pipeline::doubts::{Doubts, doubtful};
 use crate::pipeline::load_drive::LoadDrive;
-use crate::pipeline::mesh_in_hand::MeshInHand;
 use crate::pipeline::path_drive::PathDrive;
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step::{Drives, Step, out_of_order};
@@ -25,7 +25,7 @@ use crate::state::{DriveMemory, Refinement, State};
 pub struct Stages {
     scene: Scene,
     own: Vec<Arc<dyn TermSource>>,
-    in_hand: MeshInHand,
+    current: CurrentMesh,
 }
 
 impl Stages {
@@ -36,7 +36,7 @@ impl Stages {
 
     /// Creates the stages of a scene with energies or loads of the caller's own.
     pub fn with_terms(scene: Scene, own: Vec<Arc<dyn TermSource>>) -> Self {
-        Self { scene, own, in_hand: MeshInHand::default() }
+        Self { scene, own, current: CurrentMesh::default() }
     }
 
     /// Sources of the terms of the caller's own.
@@ -63,7 +63,7 @@ impl Stages {
     pub fn start(&mut self) -> Result<State, ModelError> {
         let mut state = State::undeformed(starting_mesh(&self.scene)?);
         let mesh = &state.mesh;
-        let unknowns = self.in_hand.unknowns(&self.scene, mesh)?;
+        let unknowns = self.current.unknowns(&self.scene, mesh)?;
         check_held(&self.scene, mesh, unknowns, &self.own)?;
         check_balance(&self.scene, mesh, unknowns, &self.own)?;
         if unknowns.count() == 0 {
@@ -80,7 +80,7 @@ impl Stages {
     /// # Errors
     /// Where supports or loads do not fit the mesh of the state.
     pub fn remarks(&mut self, state: &State) -> Result<Vec<String>, ModelError> {
-        remarks(&self.scene, &state.mesh, self.in_hand.unknowns(&self.scene, &state.mesh)?, &self.own)
+        remarks(&self.scene, &state.mesh, self.current.unknowns(&self.scene, &state.mesh)?, &self.own)
     }
 
     /// Runs a stage. `observer` sees every Newton iterate.
@@ -124,7 +124,7 @@ impl Stages {
     }
 
     fn workspace(&mut self, mesh: &Arc<Mesh>, step: u64, stage: Stage) -> Result<(&Scene, &mut Workspace), StageError> {
-        let work = self.in_hand.workspace(&self.scene, &self.own, mesh);
+        let work = self.current.workspace(&self.scene, &self.own, mesh);
         Ok((&self.scene, work.map_err(|cause| no_workspace(cause, mesh, step, stage))?))
     }
 
@@ -160,7 +160,7 @@ impl Stages {
         let natural = FreeStrains::new(&self.scene, &state.mesh).at(state.parameter);
         let parts = self.scene.symmetry.copies() as f64;
         let energy = parts * (strain_energy(&tables, &state.displacement, natural) + self.stored_by_terms(state)?);
-        let unknowns = match self.in_hand.unknowns(&self.scene, &finer) {
+        let unknowns = match self.current.unknowns(&self.scene, &finer) {
             Ok(unknowns) => unknowns.count(),
             Err(cause) => return Err(StageError::Model { step: state.step, stage: Stage::RefineKnots, cause }),
         };
@@ -245,10 +245,10 @@ impl Stages {
     fn warn(&mut self, before: &State, after: &State, report: &mut Report) -> Result<(), StageError> {
         let refined = matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
         report.warnings.extend(refined.then(|| Warning::of_refining(before, after, report.elements)).flatten());
-        for (state, looked) in doubtful(&self.scene, before, after, report) {
-            let work = self.in_hand.workspace(&self.scene, &self.own, &state.mesh);
+        for (state, read_at) in doubtful(&self.scene, before, after, report) {
+            let work = self.current.workspace(&self.scene, &self.own, &state.mesh);
             let work = work.map_err(|cause| no_workspace(cause, &state.mesh, report.step, report.stage))?;
-            report.warnings.extend(Doubts { scene: &self.scene, own: &self.own, work, state }.all(looked));
+            report.warnings.extend(Doubts { scene: &self.scene, own: &self.own, work, state }.all(read_at));
         }
         Ok(())
     }

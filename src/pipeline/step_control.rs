@@ -317,7 +317,7 @@ mod tests {
         for iterations in [3, 3, 3, 3, 3, 4, 6, 7, 7, 7, 7] {
             let attempt = next_attempt(&scene, &state);
             let multiple = attempt.target / 0.2;
-            assert!((multiple - multiple.round()).abs() < 1e-9, "steps are multiples of the increment in hand");
+            assert!((multiple - multiple.round()).abs() < 1e-9, "steps are multiples of the current increment");
             state = at(attempt.target, attempt.control_after_success(&scene, &state.drive.control, iterations));
             sizes.push(0.4 / 2.0_f64.powi(state.drive.control.halvings));
         }

@@ -48,13 +48,13 @@ impl Mesh {
     /// Integrals of the B-splines (without the weights) of all control points over the parameter domain, relative to its
     /// area: they sum to 1. ∫N_i dξ = (ξ_{i+p+1} − ξ_i)/(p + 1): de Boor, *A Practical Guide to Splines*, chapter X.
     pub fn basis_integrals(&self) -> Vec<f64> {
-        let ways = [0, 1].map(|direction| {
+        let integrals = [0, 1].map(|direction| {
             let (knots, degree) = (&self.knots[direction], self.degree[direction]);
             let total = knots[knots.len() - 1] - knots[0];
             let integral = |i: usize| (knots[i + degree + 1] - knots[i]) / ((degree + 1) as f64 * total);
             (0..control_count(knots, degree)).map(integral).collect::<Vec<f64>>()
         });
-        ways[0].iter().flat_map(|along| ways[1].iter().map(move |across| along * across)).collect()
+        integrals[0].iter().flat_map(|along| integrals[1].iter().map(move |across| along * across)).collect()
     }
 
     /// Returns the same surface with the knots `new` of each direction (ascending) inserted.

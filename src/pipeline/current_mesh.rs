@@ -11,12 +11,12 @@ use crate::spline::Mesh;
 /// The workspace of the current mesh, and the unknowns of a mesh that has no workspace yet. Both are made once for each
 /// mesh.
 #[derive(Debug, Default)]
-pub(super) struct MeshInHand {
+pub(super) struct CurrentMesh {
     work: Option<Workspace>,
     ahead: Option<(Arc<Mesh>, Unknowns)>,
 }
 
-impl MeshInHand {
+impl CurrentMesh {
     /// Returns the unknowns of a mesh, which are made if they are not kept.
     pub fn unknowns(&mut self, scene: &Scene, mesh: &Arc<Mesh>) -> Result<&Unknowns, ModelError> {
         match &self.work {
