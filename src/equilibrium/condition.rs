@@ -54,7 +54,7 @@ impl Condition {
 /// Finds the largest magnitude of an eigenvalue of a symmetric operator: |A v| for a unit v, which grows from one
 /// iteration to the next, also where eigenvalues of both signs have that magnitude.
 fn magnitude(count: usize, mut apply: impl FnMut(&[f64]) -> Vec<f64>) -> f64 {
-    // The start is the same in every run, and orthogonal to no symmetry.
+    // The start is the same in every run, and has no symmetry.
     let mut vector: Vec<f64> = (0..count).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
     let mut value = product(&vector, &vector).sqrt();
     for iteration in 0..MOST_ITERATIONS {
@@ -63,7 +63,7 @@ fn magnitude(count: usize, mut apply: impl FnMut(&[f64]) -> Vec<f64>) -> f64 {
         let next = product(&vector, &vector).sqrt();
         let settled = (next - value).abs() <= SETTLED * next;
         value = next;
-        // The first value is the length of the start, no eigenvalue.
+        // The first value is the length of the start, not an eigenvalue.
         if (settled && iteration > 0) || !value.is_finite() || value == 0.0 {
             break;
         }

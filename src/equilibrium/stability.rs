@@ -56,7 +56,7 @@ pub fn soft_mode(work: &mut Workspace, at: Configuration) -> Result<SoftMode, So
     let Coordinates { free, placement, .. } = configuration;
     let mass = mass(discretization, tangent, &placement);
     let mut slicing = Slicing { mass, stiffness: tangent.matrix(), tangent, tried: 0 };
-    // The start is the same in every run, and orthogonal to no symmetry.
+    // The start is the same in every run, and has no symmetry.
     let start: Vec<f64> = (0..free.len()).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
     slicing.shift_below(&start)?;
     let (vector, eigenvalue, iterations) = slicing.iterate(start, SETTLED);

@@ -106,10 +106,10 @@ impl Supports {
             });
             for point in &held {
                 if let Some(other) = self.section_of[*point].replace(section) {
-                    let first = self.footprints.iter().find(|trace| trace.section == Some(other));
+                    let first = self.footprints.iter().find(|footprint| footprint.section == Some(other));
                     return Err(ModelError::SectionShared {
                         support: support.name.clone(),
-                        other: first.map_or_else(String::new, |trace| trace.name.clone()),
+                        other: first.map_or_else(String::new, |footprint| footprint.name.clone()),
                     });
                 }
             }
@@ -166,8 +166,8 @@ impl Supports {
         let curve = line.points(mesh);
         let share = 1.0 / curve.len() as f64;
         let middle = curve.iter().fold([0.0; 3], |sum, x| add(sum, scaled(share, *x)));
-        let trace = &mut self.footprints[index];
-        (trace.points, trace.pole, trace.is_inner_mirror) = (points, middle, true);
+        let footprint = &mut self.footprints[index];
+        (footprint.points, footprint.pole, footprint.is_inner_mirror) = (points, middle, true);
         Ok(())
     }
 
@@ -208,10 +208,10 @@ impl Supports {
     }
 
     fn overlap(&self, index: usize, section: usize) -> ModelError {
-        let other = self.footprints.iter().find(|trace| trace.section == Some(section));
+        let other = self.footprints.iter().find(|footprint| footprint.section == Some(section));
         ModelError::SectionShared {
             support: self.footprints[index].name.clone(),
-            other: other.map_or_else(String::new, |trace| trace.name.clone()),
+            other: other.map_or_else(String::new, |footprint| footprint.name.clone()),
         }
     }
 

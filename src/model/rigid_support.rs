@@ -63,9 +63,9 @@ impl Supports {
             }
             self.push(Some(index), expression);
         }
-        let trace = &mut self.footprints[index];
-        trace.points = spread.iter().flat_map(|point| &point.sum).map(|(control, _)| *control).collect();
-        trace.pole = body.middle;
+        let footprint = &mut self.footprints[index];
+        footprint.points = spread.iter().flat_map(|point| &point.sum).map(|(control, _)| *control).collect();
+        footprint.pole = body.middle;
         self.held_motions = Some(HeldMotions { support: index, free });
         Ok(())
     }

@@ -92,10 +92,10 @@ impl Supports {
             self.owner[constraint].map_or("the joints", |index| self.footprints[index].name.as_str()).to_owned();
         let points: Vec<usize> = self.constraints[constraint].iter().map(|(component, _)| component / 3).collect();
         // Neighbouring supports share a few control points with it; the contradicting one shares most.
-        let shared = |trace: &Footprint| points.iter().filter(|point| trace.points.contains(point)).count();
-        let others = self.footprints.iter().filter(|trace| trace.name != support && shared(trace) > 0);
-        let other = others.rev().max_by_key(|trace| shared(trace));
-        ModelError::Contradiction { support, other: other.map(|trace| trace.name.clone()) }
+        let shared = |footprint: &Footprint| points.iter().filter(|point| footprint.points.contains(point)).count();
+        let others = self.footprints.iter().filter(|footprint| footprint.name != support && shared(footprint) > 0);
+        let other = others.rev().max_by_key(|footprint| shared(footprint));
+        ModelError::Contradiction { support, other: other.map(|footprint| footprint.name.clone()) }
     }
 
     pub(super) fn push(&mut self, owner: Option<usize>, expression: Expression) {
@@ -108,9 +108,9 @@ impl Supports {
         for section in points.iter().filter_map(|point| self.section_of[*point]) {
             let motions = self.sections[section].motions_out_of_plane(mirror.normal);
             if !motions.is_empty() {
-                let held = self.footprints.iter().find(|trace| trace.section == Some(section));
+                let held = self.footprints.iter().find(|footprint| footprint.section == Some(section));
                 return Err(ModelError::SectionLeavesPlane {
-                    section: held.map_or_else(String::new, |trace| trace.name.clone()),
+                    section: held.map_or_else(String::new, |footprint| footprint.name.clone()),
                     support: mirror.support.clone(),
                     motions,
                 });
@@ -126,12 +126,14 @@ impl Supports {
             let mut frames = expression.iter().filter_map(|(component, _)| self.section_of.get(component / 3));
             let Some(first) = frames.next() else { continue };
             let Some(other) = frames.find(|frame| *frame != first) else { continue };
-            let section =
-                self.footprints.iter().find(|trace| trace.section.is_some() && trace.section == first.or(*other));
+            let section = self
+                .footprints
+                .iter()
+                .find(|footprint| footprint.section.is_some() && footprint.section == first.or(*other));
             return Err(ModelError::TiedToSection {
                 tie: owner
                     .map_or("a joint of the surface".into(), |index| format!("\"{}\"", self.footprints[index].name)),
-                section: section.map_or_else(String::new, |trace| trace.name.clone()),
+                section: section.map_or_else(String::new, |footprint| footprint.name.clone()),
             });
         }
         Ok(())

@@ -171,7 +171,7 @@ impl Stages {
             ..Report::of(&self.scene, state, unknowns)
         };
         let [before, after] = [&state.mesh, &finer].map(|mesh| mesh.element_counts().iter().product::<usize>() as f64);
-        // Along a path every critical point is located: nothing asks what refining changed.
+        // Along a path every critical point is located: the change by refining is not needed.
         let refinement = (!Drive::of(&self.scene).follows_path()).then(|| Refinement {
             changed_n_mm: (energy - state.strain_energy_n_mm).abs(),
             growth: after / before - 1.0,

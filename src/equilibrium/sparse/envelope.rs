@@ -45,7 +45,7 @@ impl Envelope {
         }
         let (mut before, mut reach) = (0.0, 0);
         for begin in 0..count {
-            // As far as the unknowns before it reach.
+            // The separator reaches as far as the unknowns before it do.
             let cut = begin..reach.max(begin);
             let width = cut.len() as f64;
             let work = f64::max(before, behind[cut.end]) + width.powi(3);

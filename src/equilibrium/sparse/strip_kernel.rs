@@ -246,7 +246,7 @@ fn diagonal_block<V: FourLanes>(
             store(sums[s], &mut numbers);
             let pivot = if place < used { numbers[tile][s] } else { 1.0 };
             inverses[place] = 1.0 / pivot;
-            // Neither zero, nor so small that it has no inverse, nor infinite, nor not a number.
+            // The pivot must not be zero, too small to have an inverse, infinite or NaN.
             if !inverses[place].is_finite() || inverses[place] == 0.0 {
                 return Err(place);
             }

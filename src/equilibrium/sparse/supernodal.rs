@@ -119,7 +119,7 @@ impl SupernodalSolver {
             Default::default(),
         );
         if let Some(LdltError::ZeroPivot { index }) = done.err() {
-            // Counted from one.
+            // faer counts pivots from one.
             return Err(FactorError::BadPivot { index: self.unknown(index.saturating_sub(1)), size });
         }
         let mut negative = NegativePivots::default();
