@@ -3,14 +3,14 @@
 /// A content hash (BLAKE3, 256 bits).
 pub type Hash = blake3::Hash;
 
-/// Feeds numbers into a hash by their bits, each sequence with its length in front.
+/// Hasher of numbers by their bits; each sequence is preceded by its length.
 pub(crate) struct Feed {
     hasher: blake3::Hasher,
-    /// Bytes on their way to the hasher, which is fast only on long inputs.
+    /// Bytes collected for the hasher, which is fast only on long inputs.
     pending: Vec<u8>,
 }
 
-/// Bytes that the hasher gets at a time: whole subtrees of its own, which it hashes side by side.
+/// Number of bytes that the hasher gets at a time: whole subtrees of its own, which it hashes in parallel.
 const BATCH: usize = 64 * 1024;
 
 impl Feed {
@@ -47,7 +47,7 @@ impl Feed {
         self.each(values);
     }
 
-    /// Numbers without their count in front.
+    /// Adds numbers without their count in front.
     pub(crate) fn each(&mut self, values: &[f64]) {
         for values in values.chunks(BATCH / size_of::<f64>()) {
             extend_with_numbers(&mut self.pending, values);

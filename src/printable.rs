@@ -1,25 +1,25 @@
-//! Text without what a terminal obeys: names in logs and scenes, and of hosts, may hold anything.
+//! Text without characters that control a terminal: names in logs and scenes, and of hosts, may hold anything.
 
 use std::borrow::Cow;
 
-/// The text with what a terminal obeys, but line feeds and tabs, shown by pictures. XML would not take control characters
-/// either.
+/// Replaces characters that control a terminal, except line feeds and tabs, by pictures of them. XML does not allow
+/// control characters either.
 pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     shown(text, is_obeyed)
 }
 
-/// The same for text that stands in a line, such as a name: it breaks none.
+/// Replaces characters that control a terminal, and line breaks, in text that is part of a line, such as a name.
 pub(crate) fn one_line(text: &str) -> Cow<'_, str> {
     shown(text, breaks_a_line)
 }
 
-/// Whether a terminal obeys a character instead of showing it: control characters, and those that turn the direction of
-/// writing or begin a line.
+/// Whether a character controls a terminal instead of being shown: control characters, and those that change the
+/// direction of writing or begin a line.
 pub(crate) fn is_obeyed(c: char) -> bool {
     breaks_a_line(c) && !matches!(c, '\n' | '\t')
 }
 
-/// Whether a character has no place in a line of text.
+/// Whether a character breaks a line of text or controls a terminal.
 pub(crate) fn breaks_a_line(c: char) -> bool {
     const TURNS_OR_BREAKS: [std::ops::RangeInclusive<char>; 4] =
         ['\u{61c}'..='\u{61c}', '\u{200e}'..='\u{200f}', '\u{2028}'..='\u{202e}', '\u{2066}'..='\u{2069}'];

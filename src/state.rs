@@ -7,18 +7,18 @@ pub use crate::digest::Hash;
 use crate::scene::Stage;
 pub use crate::spline::Mesh;
 
-/// The state of a run between two stages: all that decides its future.
+/// The state of a run between two stages: everything that decides its future.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Geometry and spline space that the displacement belongs to.
     pub mesh: Arc<Mesh>,
     /// Displacement of every control point, mm, in the order of the mesh.
     pub displacement: Vec<[f64; 3]>,
-    /// New knots each way that evaluate-indicators asks for; emptied by refine-knots.
+    /// New knots in each direction that evaluate-indicators asks for; emptied by refine-knots.
     pub marked: [Vec<f64>; 2],
     /// Knots in each direction that evaluate-indicators finds superfluous; emptied by coarsen-knots.
     pub superfluous: [Vec<f64>; 2],
-    /// The finer mesh that refine-knots made; project-displacements puts it in the place of `mesh`.
+    /// The finer mesh that refine-knots made; project-displacements replaces `mesh` by it.
     pub refined: Option<Arc<Mesh>>,
     /// Load step: 0 before the first solve.
     pub step: u64,
@@ -28,18 +28,19 @@ pub struct State {
     pub parameter: f64,
     /// Rotation vectors of the rigid sections where one of them turns freely, radians; empty otherwise.
     pub turns: Vec<[f64; 3]>,
-    /// Turning ends: moment dΠ/dθ / 2 (of each end, whole section), N·mm. Otherwise 0.
+    /// Moment of each end of the whole section where ends turn, dΠ/dθ / 2, N·mm; otherwise 0.
     pub moment_n_mm: f64,
     /// Energy that the whole shell stores, N·mm: strain energy, and what terms of the caller's own store.
     pub strain_energy_n_mm: f64,
-    /// Negative pivots of the (symmetric part of the) tangent stiffness at the last equilibrium; 0 where it is stable.
+    /// Number of negative pivots of the (symmetric part of the) tangent stiffness at the last equilibrium; 0 where it
+    /// is stable.
     pub negative_pivots: u64,
-    /// What the drive remembers from step to step.
+    /// Memory of the drive from step to step.
     pub drive: DriveMemory,
-    /// The largest force that residuals were compared with so far, N; 0 before the first equilibrium, and in states that
+    /// Largest force that residuals were compared with so far, N; 0 before the first equilibrium, and in states that
     /// were logged before residuals were compared with it.
     pub largest_force_n: f64,
-    /// What the last refinement changed, and ripples since; `None` before the first, and where the shell jumped on it.
+    /// Change by the last refinement, and ripples since; `None` before the first one, and where the shell jumped on it.
     pub refinement: Option<Refinement>,
     /// The last estimate of the error on the present mesh, where a tolerance asks for one.
     pub estimate: Option<Estimate>,
@@ -56,38 +57,38 @@ pub struct Estimate {
     pub largest_indicator: [f64; 2],
 }
 
-/// What a refinement changed at a state.
+/// Change of the strain energy by a refinement, and what is expected of the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refinement {
-    /// Magnitudes of what integrating again and re-equilibrating changed the strain energy by, N·mm.
+    /// Sum of the magnitudes of the changes of strain energy by integrating again and by re-equilibrating, N·mm.
     pub changed_n_mm: f64,
-    /// Elements that it added, as a share of those before.
+    /// Number of elements that it added, relative to those before.
     pub growth: f64,
-    /// What the refinement before it said of the whole mesh ([`Self::of_all_n_mm`]), N·mm.
+    /// Change that the refinement before it predicted for the whole mesh ([`Self::of_all_n_mm`]), N·mm.
     pub expected_n_mm: Option<f64>,
-    /// What the last ripple of the mesh released, N·mm; 0 where there was none since the last jump.
+    /// Energy that the last ripple of the mesh released, N·mm; 0 where there was none since the last jump.
     pub ripple_n_mm: f64,
 }
 
 impl Refinement {
-    /// What refining the whole mesh would change, if all of it were as the part that was refined, N·mm.
+    /// Change of the strain energy by refining the whole mesh, if all of it were like the part that was refined, N·mm.
     pub fn of_all_n_mm(&self) -> f64 {
         self.changed_n_mm / self.growth
     }
 }
 
-/// What drives a run, load or path, remembers from step to step. A path begins with an increment of the parameter, and so
-/// with the control of load steps.
+/// Memory of the drive of a run, by load or along a path, from step to step. A path begins with an increment of the
+/// parameter, and so with the control of load steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveMemory {
-    /// What the next solve will try.
+    /// Step control, which decides what the next solve attempts.
     pub control: StepControl,
-    /// How equilibria led to the present one.
+    /// Course of equilibria that led to the current one.
     pub course: Course,
 }
 
 impl DriveMemory {
-    /// The path that is followed.
+    /// Memory of the path that is followed, if one is.
     pub fn path(&self) -> Option<&PathMemory> {
         match &self.course {
             Course::Path(path) => Some(path),
@@ -95,7 +96,7 @@ impl DriveMemory {
         }
     }
 
-    /// The equilibrium that the load was moved on from.
+    /// Equilibrium that the load was moved on from, if it is known.
     pub fn previous(&self) -> Option<&Previous> {
         match &self.course {
             Course::Load(previous) => Some(previous),
@@ -104,21 +105,21 @@ impl DriveMemory {
     }
 }
 
-/// How equilibria led to the present one, for the predictor of the next. What drove the run before stays here until the next
-/// drive has made a step.
+/// The course of equilibria that led to the current one, for the predictor of the next. The course of one drive stays
+/// here until the next drive has made a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Course {
-    /// In no way that continues: the shell is undeformed, or it jumped since.
+    /// No course that continues: the shell is undeformed, or has jumped.
     #[default]
     Unknown,
-    /// By moving the load on from the equilibrium before.
+    /// The load was moved on from the equilibrium before.
     Load(Previous),
-    /// Along a path of equilibria, by arc length.
+    /// A path of equilibria was followed by arc length.
     Path(PathMemory),
 }
 
 impl Course {
-    /// The same on another mesh, where `project` carries vectors on the control points over.
+    /// Returns the course on another mesh, to which `project` transfers vectors on the control points.
     pub fn projected(&self, project: impl Fn(&[[f64; 3]]) -> Vec<[f64; 3]>) -> Self {
         match self {
             Course::Unknown => Course::Unknown,
@@ -146,10 +147,10 @@ impl Course {
     }
 }
 
-/// An equilibrium before the present one.
+/// The equilibrium before the current one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Previous {
-    /// Displacement of every control point, mm, in the order of the present mesh.
+    /// Displacement of every control point, mm, in the order of the current mesh.
     pub displacement: Vec<[f64; 3]>,
     /// The scene's parameter there.
     pub parameter: f64,
@@ -163,13 +164,14 @@ pub struct PathMemory {
     pub heading: Vec<[f64; 3]>,
     /// Rate of the parameter with the length, per mm.
     pub parameter_rate: f64,
-    /// Length of the first step, or of the way to a branch that was switched to, mm: the unit of the scene's limits.
+    /// Length of the first step, or of the distance to a branch that was switched to, mm: the unit of the scene's
+    /// limits.
     pub first_mm: f64,
     /// Length of the next step, mm.
     pub next_mm: f64,
     /// Length of the path so far, mm.
     pub travelled_mm: f64,
-    /// A critical point ahead that is being located.
+    /// Critical point ahead that is being located.
     pub critical_ahead: Option<CriticalAhead>,
     /// Whether the last step passed a bifurcation at which the branch became less stable.
     pub at_bifurcation: bool,
@@ -178,7 +180,7 @@ pub struct PathMemory {
 /// A limit point or a bifurcation known to lie ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalAhead {
-    /// A step of this length passes it, mm.
+    /// Length of a step that passes it, mm.
     pub within_mm: f64,
     /// Rate of the parameter beyond it, per mm.
     pub rate_beyond: f64,
@@ -187,15 +189,15 @@ pub struct CriticalAhead {
 /// Memory of the step control.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepControl {
-    /// The scene's increment is divided by 2 to this power; negative where it has grown.
+    /// Power of 2 that the scene's increment is divided by; negative where it has grown.
     pub halvings: i32,
-    /// A rotation beyond the present one that is known to lie past a jump, degrees.
+    /// Value of the scene's parameter that is known to lie beyond a jump ahead.
     pub jump_beyond: Option<f64>,
-    /// Why the last solve left the state where it was; `None` where it continued.
+    /// Reason why the last solve left the state unchanged; `None` where it succeeded.
     pub rejection: Option<Rejection>,
 }
 
-/// Why an attempted load step was not taken.
+/// Reasons why an attempted load step was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejection {
     /// The solver found no equilibrium.
@@ -208,14 +210,14 @@ pub enum Rejection {
     SharpTurn,
 }
 
-/// The hash of the mesh seen last: most stages keep theirs.
+/// Cache of the hash of the last mesh: most stages keep theirs.
 #[derive(Debug, Default)]
 pub(crate) struct MeshHash {
     last: Option<(Arc<Mesh>, Hash)>,
 }
 
 impl MeshHash {
-    /// The hash of a mesh.
+    /// Hash of a mesh, computed unless it is the last one.
     pub(crate) fn of(&mut self, mesh: &Arc<Mesh>) -> Hash {
         match &self.last {
             Some((last, hash)) if Arc::ptr_eq(last, mesh) => *hash,
@@ -225,7 +227,7 @@ impl MeshHash {
 }
 
 impl State {
-    /// The state of an undeformed shell, before the first step.
+    /// Creates the state of an undeformed shell, before the first step.
     pub fn undeformed(mesh: Mesh) -> Self {
         Self {
             displacement: vec![[0.0; 3]; mesh.control_points.len()],
@@ -247,12 +249,12 @@ impl State {
         }
     }
 
-    /// Content hash over everything that decides the future; independent of how a log encodes the state.
+    /// Content hash of everything that decides the future of a run; independent of how a log encodes the state.
     pub fn hash(&self) -> Hash {
         self.hash_on(self.mesh.hash())
     }
 
-    /// The same where the hash of its mesh is known.
+    /// Content hash of the state where the hash of its mesh is known.
     pub(crate) fn hash_on(&self, mesh: Hash) -> Hash {
         let Self {
             mesh: _,

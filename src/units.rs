@@ -1,11 +1,11 @@
 //! Quantities in words, the same wherever something is shown to a person.
 
-/// A number with its sign; the minus is a minus, not a hyphen.
+/// Formats a number with its sign; the minus is a minus, not a hyphen.
 pub(crate) fn signed(value: f64, decimals: usize) -> String {
     format!("{value:+.decimals$}").replace('-', "−")
 }
 
-/// A number with up to three decimals, and none that say nothing.
+/// Formats a number with up to three decimals, without trailing zeros.
 pub(crate) fn rounded(value: f64) -> String {
     let text = format!("{value:.3}");
     match text.trim_end_matches('0').trim_end_matches('.') {
@@ -14,7 +14,7 @@ pub(crate) fn rounded(value: f64) -> String {
     }
 }
 
-/// A number in so many significant digits, in plain writing where a person reads that at a glance.
+/// Formats a number with this many significant digits, without an exponent where a person reads that at a glance.
 pub(crate) fn significant(value: f64, digits: usize) -> String {
     let decimals = digits.saturating_sub(1);
     let scientific = format!("{value:.decimals$e}");
@@ -27,7 +27,8 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     shown.replace('-', "−")
 }
 
-/// A measured number with so many decimals, or in powers of ten where those would leave fewer than three digits of it.
+/// Formats a measured number with this many decimals, or in powers of ten where those would leave fewer than three
+/// digits of it.
 pub(crate) fn reading(value: f64, decimals: usize) -> String {
     let least = 10.0_f64.powi(2 - decimals as i32);
     match value.abs() {
@@ -37,25 +38,25 @@ pub(crate) fn reading(value: f64, decimals: usize) -> String {
     .replace('-', "−")
 }
 
-/// A point in space as "(x, y, z) mm"; what is a millionth of the largest component or less is 0.
+/// Formats a point in space as "(x, y, z) mm"; a component of a millionth of the largest or less is 0.
 pub(crate) fn place(point: [f64; 3]) -> String {
     let largest = point.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let [x, y, z] = point.map(|x| significant(if x.abs() <= 1e-6 * largest { 0.0 } else { x }, 5));
     format!("({x}, {y}, {z}) mm")
 }
 
-/// A component with two digits behind the point that does not read "-0.00".
+/// Replaces a component that would read "-0.00" with two decimals by 0.
 #[cfg(feature = "cli")]
 pub(crate) fn unsigned_zero(value: f64) -> f64 {
     if value.abs() < 0.005 { 0.0 } else { value }
 }
 
-/// "1 stage", "2 stages".
+/// Formats a count with its noun: "1 stage", "2 stages".
 pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
-/// Seconds as a person would say them: "0.4 s", "2 min 05 s", "1 h 12 min".
+/// Formats seconds as a person would say them: "0.4 s", "2 min 05 s", "1 h 12 min".
 pub(crate) fn duration(seconds: f64) -> String {
     if seconds < 59.95 {
         return format!("{seconds:.1} s");

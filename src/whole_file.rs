@@ -1,8 +1,8 @@
 //! Files that are whole or not there, and never in another's place.
 //!
-//! A file grows without a name where the system has such files (`O_TMPFILE`, Linux): a process that is killed leaves
-//! nothing of it. Elsewhere it grows under a name that nobody can guess. It comes to its name in one step, by a link,
-//! which the system refuses where anything has that name already.
+//! A file is written without a name where the system has such files (`O_TMPFILE`, Linux): a process that is killed
+//! leaves nothing of it. Elsewhere it is written under a name that nobody can guess. It gets its name in one step, by a
+//! link, which the system refuses where anything has that name already.
 
 use std::fs::{File, Permissions};
 use std::io::{self, Write};
@@ -11,22 +11,22 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempPath;
 
-/// What the umask takes from is what any new file has, rather than a secret one.
+/// Permissions before the umask, those of any new file rather than of a secret one.
 const ORDINARY: u32 = 0o666;
 
-/// A file that has no name yet. Dropped, it is as if it had never been. Everything is added at its end.
+/// A file that has no name yet. If it is dropped, nothing of it remains. Everything is written at its end.
 #[derive(Debug)]
 pub(crate) struct WholeFile {
     file: File,
-    /// Where it grows, on systems that have no files without names.
+    /// Temporary path of the file, on systems that have no files without names.
     grows_at: Option<TempPath>,
 }
 
 impl WholeFile {
-    /// A new, empty file in the folder of `target`.
+    /// Creates an empty file in the folder of `target`.
     ///
     /// # Errors
-    /// Where none can be made there.
+    /// Where no file can be created there.
     pub(crate) fn beside(target: &Path) -> io::Result<Self> {
         let folder = folder_of(target);
         if let Ok(file) = without_name(folder) {
@@ -40,7 +40,7 @@ impl WholeFile {
         Ok(Self { file, grows_at: Some(path) })
     }
 
-    /// The file, to write to.
+    /// File to write to.
     pub(crate) fn file(&self) -> &File {
         &self.file
     }
@@ -48,7 +48,7 @@ impl WholeFile {
     /// Gives the file its name.
     ///
     /// # Errors
-    /// Where there is something of that name ([`io::ErrorKind::AlreadyExists`]), or it cannot be given.
+    /// Where something has that name already ([`io::ErrorKind::AlreadyExists`]), or the name cannot be given.
     pub(crate) fn give_name(self, target: &Path) -> io::Result<()> {
         let Some(path) = self.grows_at else { return link(&self.file, target) };
         match path.persist_noclobber(target) {
@@ -60,11 +60,11 @@ impl WholeFile {
         }
     }
 
-    /// Lets the file take the place of what has the name `target`, if anything has. A symbolic link of that name is
-    /// replaced, not followed.
+    /// Replaces whatever has the name `target`, if anything has, by the file. A symbolic link of that name is replaced,
+    /// not followed.
     ///
     /// # Errors
-    /// Where it cannot; what was there then stays.
+    /// Where this fails; what was there then stays.
     pub(crate) fn replace(self, target: &Path) -> io::Result<()> {
         let path = match self.grows_at {
             Some(path) => path,
@@ -75,7 +75,7 @@ impl WholeFile {
         Ok(path.persist(target)?)
     }
 
-    /// Forces all of it to disk, then gives it its name, and that to disk as well.
+    /// Syncs the file to disk, gives it its name, and syncs the name as well.
     ///
     /// # Errors
     /// Those of [`Self::give_name`], and where the disk fails.
@@ -89,7 +89,7 @@ impl WholeFile {
 /// Writes a file, whole or not at all, and over no other.
 ///
 /// # Errors
-/// Where there is something of that name ([`io::ErrorKind::AlreadyExists`]), or the file cannot be written.
+/// Where something has that name already ([`io::ErrorKind::AlreadyExists`]), or the file cannot be written.
 pub(crate) fn write_new(target: &Path, content: &[u8]) -> io::Result<()> {
     let whole = WholeFile::beside(target)?;
     whole.file().write_all(content)?;
@@ -101,13 +101,13 @@ pub(crate) fn sync_folder_of(path: &Path) -> io::Result<()> {
     File::open(folder_of(path))?.sync_all()
 }
 
-/// Bytes that this user may still add on the disk of a file that is to come.
+/// Number of bytes that this user may still write on the disk of a future file.
 pub(crate) fn room_for(path: &Path) -> Option<u64> {
     let disk = rustix::fs::statvfs(folder_of(path)).ok()?;
     Some(disk.f_bavail.saturating_mul(disk.f_frsize))
 }
 
-/// How much is missing, where that can be known: a quota or a limit on the size of files says nothing.
+/// Says how much space is missing, where that is known: a quota or a limit on the size of files does not show.
 pub(crate) fn shortage(wanted: u64, room: Option<u64>) -> String {
     match room {
         Some(room) if room < wanted => format!(" ({wanted} bytes more, where there is room for {room})"),
@@ -115,7 +115,7 @@ pub(crate) fn shortage(wanted: u64, room: Option<u64>) -> String {
     }
 }
 
-/// The path with a suffix behind the whole file name.
+/// Appends a suffix to the whole file name of a path.
 pub(crate) fn beside(path: &Path, suffix: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(suffix);
@@ -147,7 +147,7 @@ fn without_name(_: &Path) -> io::Result<File> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Gives a file without a name one that nothing has.
+/// Gives a file without a name a name that nothing has.
 #[cfg(target_os = "linux")]
 fn link(file: &File, name: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};

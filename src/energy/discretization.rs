@@ -7,18 +7,18 @@ use crate::model::{BlockPattern, FreeStrains, ModelError, Tables, Unknowns};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
-/// A scene on a mesh: everything that assembly and constraints need and that a state does not carry.
+/// A scene made discrete on a mesh: everything that assembly and constraints need beyond the state.
 #[derive(Debug)]
 pub struct Discretization {
     /// The mesh that it was built for.
     pub mesh: Arc<Mesh>,
-    /// Which control points meet in a matrix.
+    /// Pattern of the blocks that couple control points in a matrix.
     pub blocks: Arc<BlockPattern>,
-    /// Free unknowns and how control points follow from them.
+    /// Free unknowns, and how the control points follow from them.
     pub unknowns: Unknowns,
-    /// The first term.
+    /// The shell, which is the first term.
     pub shell: Shell,
-    /// Loads and energies beside the shell's own.
+    /// Terms other than the shell: loads and further energies.
     pub terms: Terms,
 }
 
@@ -31,7 +31,7 @@ impl Discretization {
         Self::with_terms(scene, mesh, &[])
     }
 
-    /// Builds the same with terms of the caller's own.
+    /// Builds tables, unknowns and loads, with terms of the caller's own.
     ///
     /// # Errors
     /// Where supports, loads or those terms do not fit the mesh.
@@ -39,7 +39,7 @@ impl Discretization {
         Self::with_unknowns(scene, mesh, Unknowns::new(scene, mesh)?, own)
     }
 
-    /// Builds the same where the unknowns of scene and mesh are known.
+    /// Builds tables and loads where the unknowns of scene and mesh are already known.
     ///
     /// # Errors
     /// Where loads or terms do not fit the mesh.
@@ -61,13 +61,13 @@ impl Discretization {
         std::iter::once(&self.shell as &dyn Term).chain(self.terms.iter())
     }
 
-    /// Energy that the model stores, N·mm.
+    /// Energy that the model stores at a displacement and a parameter, N·mm.
     pub fn energy(&self, displacement: &[[f64; 3]], parameter: f64) -> f64 {
         let at = At { mesh: &self.mesh, displacement, parameter };
         self.shell.energy(at) + self.terms.energy(at)
     }
 
-    /// What the model stores more, in N·mm, where it stays at a displacement and the parameter changes.
+    /// Change of the energy that the model stores, N·mm, as the parameter changes while the displacement stays.
     pub fn put_in(&self, displacement: &[[f64; 3]], [from, to]: [f64; 2]) -> f64 {
         let at = At { mesh: &self.mesh, displacement, parameter: from };
         self.all_terms().map(|term| term.put_in(at, to)).sum()

@@ -31,7 +31,8 @@ pub fn check_held(
 }
 
 impl FreeMotions {
-    /// Those that the terms of a scene answer by no force, and those that they hold, at the undeformed shell.
+    /// Splits the motions into those that the terms of a scene exert no force against, and those that they hold, at the
+    /// undeformed shell.
     ///
     /// # Errors
     /// Where one of the terms does not fit the mesh.

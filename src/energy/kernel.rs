@@ -27,22 +27,22 @@ use crate::shell::lanes::{FourLanes, Lanes, Portable};
 use crate::shell::lanes_x86::{Avx512, Fma, HasAvx512, HasFma};
 use crate::shell::{BatchGradient, BatchHessian, FreeStrain, PointBatch, PointKernel, StretchingBatch};
 
-/// Numbers of P(l, d) for one (a, c) at most: `3 l + d`.
+/// Largest number of values P(l, d) for one (a, c), at `3 l + d`.
 const HALF_LEN: usize = 15;
 
-/// Local arrays of one element.
+/// Arrays of one element, in its own numbering.
 pub(super) struct ElementBuffers {
-    /// `displacement[c · padded + a]`.
+    /// Displacement of the control points, `displacement[c · padded + a]`.
     pub displacement: Vec<f64>,
-    /// `residual[c · padded + a]`.
+    /// Gradient of the energy, `residual[c · padded + a]`.
     pub residual: Vec<f64>,
-    /// K(a c, b d) at `stiffness[((b · 3 + d) · 3 + c) · padded + a]`, for a ≤ b.
+    /// Stiffness K(a c, b d) at `stiffness[((b · 3 + d) · 3 + c) · padded + a]`, for a ≤ b.
     pub stiffness: Vec<f64>,
-    /// Strain that has no energy.
+    /// Strain that has no energy, where there is one.
     pub free: Option<FreeStrain>,
-    /// Strain energy.
+    /// Strain energy, N·mm.
     pub energy: f64,
-    /// P of a vector of functions at each point of a block.
+    /// P for one vector of functions, at each point of a block.
     half: Vec<f64>,
     whole: Derivatives<5, 15>,
     stretching: Derivatives<2, 6>,
@@ -76,7 +76,7 @@ impl ElementBuffers {
     }
 }
 
-/// What of an element is computed: energy, residual, or stiffness as well.
+/// What an assembly computes: energy, residual, or stiffness as well.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Want {
     /// Energy only.
@@ -119,20 +119,20 @@ fn integrate_avx512(proof: HasAvx512, points: &ElementPoints, want: Want, buffer
     integrate::<Fma, Avx512>(proof.fma(), proof, points, want, buffers);
 }
 
-/// What an element is integrated over.
+/// Quadrature points that an element is integrated over.
 struct ElementPoints<'a> {
-    /// Of the energy: all of it, or of bending.
+    /// Points of the energy: of all of it, or of bending.
     whole: Points<'a, PointBatch, 5>,
-    /// Of stretching, where it has its own.
+    /// Points of stretching, where it has its own.
     stretching: Option<Points<'a, StretchingBatch, 2>>,
-    /// Basis functions without the padding.
+    /// Number of basis functions, without the padding.
     used: usize,
     padded: usize,
 }
 
 /// Quadrature points of an element, and the first `ROWS` derivatives of its functions there.
 struct Points<'a, Batch, const ROWS: usize> {
-    /// As in [`PointTable::functions`].
+    /// Derivatives of the functions, ordered as in [`PointTable::functions`].
     functions: &'a [f64],
     batches: &'a [Batch],
 }
@@ -154,7 +154,7 @@ impl<'a> ElementPoints<'a> {
     }
 }
 
-/// `V` has a lane for each point, `W` one for each basis function.
+/// Integrates an element, with lanes `V` for points and `W` for basis functions.
 #[inline(always)]
 fn integrate<V: FourLanes, W: Lanes>(
     points_proof: V::Proof,
@@ -176,7 +176,7 @@ fn integrate<V: FourLanes, W: Lanes>(
     *energy = (energies[0] + energies[1]) + (energies[2] + energies[3]);
 }
 
-/// The sums of an element under way.
+/// Sums of an element while they are formed.
 struct Sums<'a> {
     used: usize,
     padded: usize,

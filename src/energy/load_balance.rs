@@ -15,10 +15,12 @@ use crate::spline::Mesh;
 /// the same sum widens it.
 const BALANCE: f64 = 1e-9;
 
-/// Refuses loads that push along a motion that only a support of rigid motions holds, and terms that hold one as well.
+/// Refuses loads that do work on a motion that only a support of rigid motions holds, and terms that hold such a motion
+/// as well.
 ///
 /// # Errors
-/// Where they do, at the end or at a kink of a history for loads; where one of them does not fit the mesh.
+/// Where loads do so at the end or at a kink of a history, where terms do, and where one of either does not fit the
+/// mesh.
 pub fn check_balance(
     scene: &Scene,
     mesh: &Mesh,

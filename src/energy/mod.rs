@@ -1,11 +1,11 @@
-//! What stores energy and what acts: one file a term, and their balance.
+//! Terms that store energy or act as loads, one file each, and their balance.
 //!
 //! | file | what |
 //! |---|---|
-//! | `term` | what a term is, and the sum of those beside the shell |
+//! | `term` | what a term is, and the sum of all other than the shell |
 //! | `shell`, `kernel` | the shell, and its elements |
 //! | `loads` | the actions of a scene |
-//! | `balance` | what is stored, worked and lost |
+//! | `balance` | what is stored, worked and dissipated |
 //! | `discretization` | a scene on a mesh, with all its terms |
 //! | `held` | whether supports and terms hold the shell |
 //! | `load_balance` | whether loads balance where only rigid motions are held |
@@ -29,10 +29,10 @@ pub use kernel::Want;
 pub(crate) use load_balance::check_balance;
 pub(crate) use remarks::remarks;
 pub(crate) use shell::with_locked;
-pub use shell::{ElementSums, Part, Shell, strain_energy};
+pub use shell::{ElementSums, Shell, ShellElements, strain_energy};
 pub use term::{At, Tangent, Term, TermSource, Terms};
 
-/// Build of the element kernel that this machine runs.
+/// Name of the build of the element kernel that this machine runs.
 pub fn kernel_name() -> &'static str {
     Build::detect().name()
 }

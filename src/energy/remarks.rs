@@ -1,4 +1,4 @@
-//! What the words of a scene come to where they leave it open.
+//! Remarks on what a scene leaves open, and on what its theory and elements leave out.
 
 use std::sync::Arc;
 
@@ -11,14 +11,15 @@ use crate::shell::{FreeStrain, cross, dot, norm, scaled};
 use crate::spline::{Mesh, Spans, mid_surface_point};
 use crate::units::{rounded, significant};
 
-/// Offset over radius from which on it is said.
+/// Offset over radius from which on there is a remark.
 const LARGE_OFFSET: f64 = 1e-3;
-/// Length of quadratic elements, in sqrt(R t) of the curvature along them, from which on it is said. The baseline on 4 across,
-/// 4.8 of these, has 384 N·mm at 8° in place of 285, and on 16, 1.2, it is right to 2 %.
+/// Length of quadratic elements, in sqrt(R t) of the curvature along them, from which on there is a remark. The
+/// baseline on 4 across, 4.8 of these, has 384 N·mm at 8° in place of 285, and on 16, 1.2, it is right to 2 %.
 const LOCKED: f64 = 2.0;
 
-/// A sentence for each support of rigid motions (what it holds), for each action along the normal (which side that is) or across
-/// a plane of symmetry (what its image does), for loads that are none, and for what the shell's theory or its elements leave out from the start.
+/// Writes a sentence for each support of rigid motions (what it holds), for each action along the normal (which side
+/// that is) or across a plane of symmetry (what its image does), for loads that do nothing, and for what the theory of
+/// the shell or its elements leave out.
 ///
 /// # Errors
 /// Where loads or planes of symmetry do not fit the mesh.
@@ -49,8 +50,8 @@ pub fn remarks(
     Ok(all.collect())
 }
 
-/// A shell that is thick for its radius or its side, and a curved surface off the middle of the thickness: what the theory of
-/// thin shells leaves out.
+/// Remarks on what the theory of thin shells leaves out: a shell that is thick for its radius or its side, and a curved
+/// surface off the middle of the thickness.
 fn of_thickness(scene: &Scene, mesh: &Mesh) -> Vec<String> {
     let Extent { radius_mm, side_mm, .. } = Extent::of(mesh, &scene.material);
     let (thickness_mm, offset_mm) = (scene.material.thickness_mm(), scene.material.offset_mm());
@@ -77,36 +78,37 @@ fn of_thickness(scene: &Scene, mesh: &Mesh) -> Vec<String> {
     thick.chain(off).collect()
 }
 
-/// Elements of degree 2 that are long for the curvature along them: a change of curvature stretches them.
+/// Remarks on elements of degree 2 that are long for the curvature along them: a change of curvature stretches them.
 fn of_degree_2(scene: &Scene, mesh: &Mesh) -> Option<String> {
     let thickness = scene.material.thickness_mm();
-    let lengths = |way: usize| {
-        let spans = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
+    let lengths = |direction: usize| {
+        let spans = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
         spans.into_iter().map(move |[from, to]| {
             let middle = 0.5 * (from + to);
-            let point = mid_surface_point(mesh, &[], if way == 0 { [middle, 0.5] } else { [0.5, middle] });
+            let point = mid_surface_point(mesh, &[], if direction == 0 { [middle, 0.5] } else { [0.5, middle] });
             let [a1, a2, a11, a22, _] = point.derivatives;
-            let (tangent, second) = if way == 0 { (a1, a11) } else { (a2, a22) };
+            let (tangent, second) = if direction == 0 { (a1, a11) } else { (a2, a22) };
             let normal = cross(a1, a2);
             let curvature = (dot(second, normal) / (norm(normal) * dot(tangent, tangent))).abs();
             ((to - from) * norm(tangent), (thickness / curvature).sqrt())
         })
     };
-    let quadratic = (0..2).filter(|way| mesh.degree[*way] == 2);
-    let worst = quadratic.flat_map(|way| lengths(way).map(move |(length, layer)| (way, length, layer)));
-    let (way, length, layer) = worst.max_by(|one, other| (one.1 / one.2).total_cmp(&(other.1 / other.2)))?;
+    let quadratic = (0..2).filter(|direction| mesh.degree[*direction] == 2);
+    let worst =
+        quadratic.flat_map(|direction| lengths(direction).map(move |(length, layer)| (direction, length, layer)));
+    let (direction, length, layer) = worst.max_by(|one, other| (one.1 / one.2).total_cmp(&(other.1 / other.2)))?;
     (length > LOCKED * layer).then(|| {
         format!(
             "elements of degree 2 are {} mm long in {}, where {LOCKED} sqrt(R t) is {} mm: they lock, and moments may be too large by \
              half; write a higher mesh.degree, or more elements",
             significant(length, 3),
-            ["u", "v"][way],
+            ["u", "v"][direction],
             significant(LOCKED * layer, 3)
         )
     })
 }
 
-/// Loads, given motions and free strains that are zero throughout, or on places that are held.
+/// Remarks on loads, given motions and free strains that are zero throughout, or that act where the shell is held.
 fn of_nothing(
     scene: &Scene,
     mesh: &Mesh,
@@ -123,7 +125,7 @@ fn of_nothing(
         let strained = free_strains.at(load_factor).is_some_and(|state| state.strain != FreeStrain::default());
         let forces = loads.forces(At { mesh, displacement: &still, parameter: load_factor });
         let all: f64 = forces.iter().map(|force| norm(*force)).sum();
-        let placement = unknowns.place(&vec![0.0; unknowns.count()], load_factor);
+        let placement = unknowns.configure(&vec![0.0; unknowns.count()], load_factor);
         let pushes = placement.restrict(&forces).iter().any(|force| force.abs() > ROUNDING * all);
         if moves || strained || pushes {
             return Ok(None);
@@ -131,13 +133,14 @@ fn of_nothing(
         loaded |= all > 0.0;
     }
     let why = match loaded {
-        true => "all loads are on places that supports hold, which take them up at once",
+        true => "all loads act on places that supports hold, which carry them directly",
         false => "all loads, given motions and free strains are zero",
     };
     Ok(Some(format!("nothing acts on the shell, and it will stay as it is: {why}")))
 }
 
-/// Forces across a plane of symmetry that its edge has no part in: the shell behind it is pulled the other way.
+/// Remarks on forces across a plane of symmetry away from its edge: the mirrored shell is pulled in the opposite
+/// direction.
 fn of_images(scene: &Scene, mesh: &Mesh) -> Result<Vec<String>, ModelError> {
     let mirrors = Mirror::all(scene, &scene.supports, mesh)?;
     let of = |Action { name, kind, .. }: &Action| {
@@ -149,7 +152,7 @@ fn of_images(scene: &Scene, mesh: &Mesh) -> Result<Vec<String>, ModelError> {
         let edges = mirrors.iter().filter(|mirror| mirror.edge.is_some());
         let (mirror, share) = edges.filter_map(|mirror| Some((mirror, mirror.share_across(*force)?))).next()?;
         Some(format!(
-            "action \"{name}\" has {} {unit} across the plane of symmetry of support \"{}\": its image behind that pulls the other way",
+            "action \"{name}\" has {} {unit} across the plane of symmetry of support \"{}\": its image behind that pulls in the opposite direction",
             significant(share.abs(), 4),
             mirror.support
         ))
@@ -175,7 +178,7 @@ fn of_action(scene: &Scene, mesh: &Mesh, Action { name, kind, .. }: &Action) -> 
     Some(format!("action \"{name}\" pushes {}, and keeps that direction", side(scene, mesh, sense)))
 }
 
-/// Where a load of this sign along the normal pushes the undeformed shell.
+/// Says in words where a load of this sign along the normal pushes the undeformed shell.
 fn side(scene: &Scene, mesh: &Mesh, sense: f64) -> String {
     let out = sense >= 0.0;
     let which = |one: &str, other: &str| if out { one.to_owned() } else { other.to_owned() };

@@ -15,29 +15,30 @@ use crate::shell::sub;
 
 /// The shell on a mesh: strain energy between its natural state and the deformed one.
 ///
-/// Energy, forces and tangent share most of their work, so that whoever wants several takes them at once, from
-/// [`Self::part`]; taken one by one they are the same numbers.
+/// Energy, forces and tangent share most of their work: [`Self::elements`] sums several of them at once, and gives the
+/// same numbers as the methods of [`Term`] one by one.
 #[derive(Debug)]
 pub struct Shell {
     /// Shape functions and undeformed shell at the quadrature points.
     pub tables: Tables,
-    /// Strains without energy.
+    /// Strains that have no energy, over the parameter.
     pub free_strains: FreeStrains,
-    /// The matrix that its elements are the first part of.
+    /// Pattern of the matrix that its elements are the first part of.
     pub blocks: Arc<BlockPattern>,
 }
 
 impl Shell {
-    /// Its elements, where `natural` is the state without forces.
-    pub fn part(&self, natural: Option<NaturalState>) -> Part<'_> {
-        Part { tables: &self.tables, blocks: &self.blocks, part: 0, natural }
+    /// Elements of the shell, where `natural` is the state without forces (`None`: the undeformed state).
+    #[doc(hidden)]
+    pub fn elements(&self, natural: Option<NaturalState>) -> ShellElements<'_> {
+        ShellElements { tables: &self.tables, blocks: &self.blocks, part: 0, natural }
     }
 
-    /// Gradient of the strain energy, N, where `natural` is the state without forces.
+    /// Computes the gradient of the strain energy, N, where `natural` is the state without forces.
     pub(crate) fn residual(&self, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> Vec<[f64; 3]> {
         let mut residual = vec![[0.0; 3]; displacement.len()];
-        let part = self.part(natural);
-        part.add(displacement, Want::Residual, &mut residual, &mut Blocks::default());
+        let elements = self.elements(natural);
+        elements.add(displacement, Want::Residual, &mut residual, &mut Blocks::default());
         residual
     }
 }
@@ -58,8 +59,8 @@ impl Term for Shell {
 
     fn add_tangent(&self, at: At, tangent: &mut Tangent) {
         let mut residual = vec![[0.0; 3]; at.displacement.len()];
-        let part = self.part(self.free_strains.at(at.parameter));
-        part.add(at.displacement, Want::Stiffness, &mut residual, tangent.stiffness_of(&self.blocks));
+        let elements = self.elements(self.free_strains.at(at.parameter));
+        elements.add(at.displacement, Want::Stiffness, &mut residual, tangent.stiffness_of(&self.blocks));
     }
 
     fn add_rates(&self, at: At, rates: &mut [[f64; 3]]) {
@@ -86,8 +87,9 @@ impl Term for Shell {
     }
 }
 
-/// Strain energy of the model at a displacement of the control points that `tables` act on, N·mm. `natural` is the state
-/// without forces, where that is not the undeformed one. Summed in the order of [`Part::add`].
+/// Computes the strain energy of the model at a displacement of the control points that `tables` act on, N·mm.
+/// `natural` is the state without forces, where that is not the undeformed one. Sums have the order of
+/// [`ShellElements::add`].
 pub fn strain_energy(tables: &Tables, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> f64 {
     let build = Build::detect();
     let strands = tables.connectivity.strands();
@@ -115,26 +117,27 @@ fn buffers_for(tables: &Tables, natural: Option<NaturalState>) -> ElementBuffers
     buffers
 }
 
-/// Energy of the points, and that which layers keep in each other.
+/// Energy of the points plus the energy that layers lock in each other, N·mm.
 pub(crate) fn with_locked(energy: f64, natural: Option<NaturalState>) -> f64 {
     natural.map_or(energy, |natural| energy + natural.locked_n_mm)
 }
 
-/// Elements with a part in a matrix on control points that other patches may share.
+/// Elements of a shell, and where they add to a matrix on control points that other patches may share.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
-pub struct Part<'a> {
-    /// Its elements.
+pub struct ShellElements<'a> {
+    /// Tables of the elements.
     pub tables: &'a Tables,
-    /// The matrix.
+    /// Pattern of the matrix.
     pub blocks: &'a BlockPattern,
-    /// Which part of that the elements are.
+    /// Index of the part of the pattern that these elements make.
     pub part: usize,
-    /// The state without forces, where that is not the undeformed one.
+    /// State without forces, where that is not the undeformed one.
     pub natural: Option<NaturalState>,
 }
 
-impl Part<'_> {
-    /// Adds up residual and stiffness at a displacement of the control points; the latter only where `want` says so.
+impl ShellElements<'_> {
+    /// Adds residual and stiffness at a displacement of the control points, the latter only where `want` says so.
     pub fn add(
         &self,
         displacement: &[[f64; 3]],
@@ -205,7 +208,7 @@ impl Part<'_> {
                     block[cd] += local[(b * BLOCK + cd % 3 * 3 + cd / 3) * padded + a];
                 }
             }
-            // Of the others the mirror image is stored.
+            // Blocks below the diagonal are stored as their transposes.
             for (b, slot) in (a..).zip(of_this).filter(|(b, _)| !ascending && *i > controls[*b]) {
                 let block = &mut rows.blocks(self.blocks, controls[b])[*slot as usize * BLOCK..][..BLOCK];
                 for cd in 0..BLOCK {
@@ -216,24 +219,25 @@ impl Part<'_> {
     }
 }
 
-/// Sums over elements.
+/// Sums over elements beyond those on control points.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ElementSums {
     /// Strain energy, N·mm.
     pub energy: f64,
-    /// Squares of the elements' forces on their control points, N².
+    /// Sum of the squares of the elements' forces on their control points, N².
     pub squared_forces: f64,
 }
 
-/// A run of control points with their part of the sums.
+/// A run of successive control points with their part of the sums.
 struct Run<'a> {
     points: Range<usize>,
     residual: &'a mut [[f64; 3]],
-    /// Their rows of blocks; empty where no stiffness is asked for.
+    /// Rows of blocks of these control points; empty where no stiffness is asked for.
     stiffness: &'a mut [f64],
 }
 
-/// What the elements of a strand add to: runs with growing numbers.
+/// Slices that the elements of a strand add to: runs in ascending order.
 #[derive(Default)]
 struct Rows<'a>(Vec<Run<'a>>);
 
@@ -251,7 +255,7 @@ impl<'a> Rows<'a> {
         &mut run.residual[point - run.points.start]
     }
 
-    /// Blocks of a control point's row.
+    /// Blocks in the row of a control point.
     fn blocks(&mut self, pattern: &BlockPattern, point: usize) -> &mut [f64] {
         let run = self.run(point);
         let first = pattern.start(run.points.start);
@@ -259,7 +263,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Disjoint slices for strands that share no control point.
+/// Splits the sums into disjoint slices for strands that share no control point.
 fn take_rows<'a>(
     strands: &[&Strand],
     pattern: &BlockPattern,

@@ -1,4 +1,4 @@
-//! Energies and loads, each a [`Term`]; those beside the shell, of which all others see the sum.
+//! Energies and loads, each a [`Term`], and the sum of all terms other than the shell.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -9,43 +9,44 @@ use crate::scene::Scene;
 use crate::shell::{add, dot};
 use crate::spline::Mesh;
 
-/// A configuration of the shell.
+/// The configuration of the shell that a term is evaluated at.
 #[derive(Clone, Copy, Debug)]
 pub struct At<'a> {
-    /// The mesh.
+    /// Mesh of the shell.
     pub mesh: &'a Mesh,
-    /// Displacement of its control points, mm.
+    /// Displacement of the control points, mm.
     pub displacement: &'a [[f64; 3]],
     /// The scene's parameter.
     pub parameter: f64,
 }
 
-/// Share of its size up to which the skew part of a tangent that is said to have none is taken for rounding, or for what
-/// differences leave in it.
+/// Relative size up to which the skew part of a tangent that claims to have none is taken for rounding, or for the
+/// error of finite differences.
 const SYMMETRIC: f64 = 1e-6;
 
-/// An energy, or forces without one, on one mesh.
+/// An energy, or forces without one, on a mesh.
 ///
-/// What stores energy exerts the forces −∂E/∂u, which are internal forces as the shell's own are, and what it stores is part of what
-/// states and reports call strain energy. Where the energy depends on the parameter as well, what a change of that puts in is
-/// part of the work. What does work on the shell is a load: it stores nothing, and says what it does by strokes and factors.
+/// A term that stores energy E exerts the forces −∂E/∂u. They are internal forces like the shell's own, and E is part
+/// of what states and reports call strain energy. Where E depends on the parameter as well, what a change of the
+/// parameter puts in is part of the work. A term that does work on the shell is a load: it stores nothing, and gives
+/// its work by strokes and factors.
 pub trait Term: Debug + Send + Sync {
-    /// Pairs of control points that it couples though they share no element.
+    /// Returns the pairs of control points that the term couples though they share no element.
     fn pairs(&self) -> Vec<[usize; 2]> {
         Vec::new()
     }
 
-    /// Energy that it stores in the model, N·mm.
+    /// Computes the energy that the term stores in the model, N·mm.
     fn energy(&self, _at: At) -> f64 {
         0.0
     }
 
-    /// What it stores more, in N·mm, where the parameter changes to `to` and the shell stays where it is.
+    /// Computes the change of the stored energy, N·mm, as the parameter changes to `to` while the shell does not move.
     fn put_in(&self, from: At, to: f64) -> f64 {
         self.energy(At { parameter: to, ..from }) - self.energy(from)
     }
 
-    /// Adds the forces that it exerts on the control points, N.
+    /// Adds the forces that the term exerts on the control points, N.
     fn add_forces(&self, at: At, forces: &mut [[f64; 3]]);
 
     /// Whether the forces depend on the displacement.
@@ -53,79 +54,82 @@ pub trait Term: Debug + Send + Sync {
         false
     }
 
-    /// Whether the tangent of the forces is not symmetric: never where they are those of an energy.
+    /// Whether the tangent of the forces has a skew part, which forces of an energy never have.
     fn has_skew(&self) -> bool {
         false
     }
 
-    /// Hands over the derivatives of the forces: all pairs of control points both ways, also where they are symmetric. One that
-    /// is not symmetric, and of which [`Self::has_skew`] does not say so, ends the program: half of it would be lost.
+    /// Adds the derivatives of the forces to `tangent`, for every ordered pair of control points, also where they are
+    /// symmetric. The program ends where they are not symmetric and [`Self::has_skew`] is false, since half of them
+    /// would be lost.
     fn add_tangent(&self, _at: At, _tangent: &mut Tangent) {}
 
     /// Adds the derivatives of the forces with respect to the parameter where the shell does not move, N.
     fn add_rates(&self, _at: At, _rates: &mut [[f64; 3]]) {}
 
-    /// Strokes of its actions on a straight way, N·mm: the work that each would do with its factor held at 1. Nothing where
-    /// it stores energy.
+    /// Computes the strokes of the term's actions over a straight motion, N·mm: the work that each would do with its
+    /// factor held at 1. Empty for a term that stores energy.
     fn strokes(&self, _mesh: &Mesh, _from: &[[f64; 3]], _to: &[[f64; 3]]) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Factors of its actions at a value of the parameter: as many as strokes. A term without any stores energy.
+    /// Returns the factors of the term's actions at a value of the parameter, as many as there are strokes. A term
+    /// without any stores energy.
     fn factors(&self, _parameter: f64) -> Vec<f64> {
         Vec::new()
     }
 }
 
-/// What makes a [`Term`] of one's own for every mesh of a run. Its name and hash are part of what a log is made with.
+/// Maker of a [`Term`] of the caller's own for every mesh of a run. Its name and hash are recorded in the log.
 pub trait TermSource: Debug + Send + Sync {
-    /// What it is called in messages and manifests.
+    /// Name of the term in messages and manifests.
     fn name(&self) -> &str;
 
-    /// Hash of all that decides its numbers.
+    /// Hash of everything that decides the numbers of the term.
     fn hash(&self) -> Hash;
 
-    /// On a mesh, whose quadrature points are in the tables.
+    /// Makes the term on a mesh, whose quadrature points are in `tables`.
     ///
     /// # Errors
     /// Where it does not fit the mesh.
     fn on(&self, scene: &Scene, mesh: &Mesh, tables: &Tables) -> Result<Box<dyn Term>, ModelError>;
 
-    /// What of it acts where both parameters of the surface are below `limits`: the moment of a section is found from all that
-    /// acts on one side of it.
+    /// Makes the part of the term that acts where both parameters of the surface are below `limits`: the moment of a
+    /// section follows from everything that acts on one side of it.
     ///
     /// # Errors
-    /// Where it does not know, as it is said here; then probes of such moments are refused.
+    /// Where the term cannot be divided, as by default; then probes of such moments are refused.
     fn below(&self, _: &Scene, _: &Mesh, _: &Tables, _limits: [f64; 2]) -> Result<Box<dyn Term>, ModelError> {
         Err(ModelError::NoPart { term: self.name().to_owned() })
     }
 }
 
-/// Takes derivatives of the forces of a term into a matrix: the symmetric part of −∂f/∂u, and its skew part where there is one.
+/// A matrix that takes the derivatives of the forces of a term: the symmetric part of −∂f/∂u, and its skew part where
+/// there is one.
 #[derive(Debug)]
 pub struct Tangent<'a> {
     pattern: &'a BlockPattern,
     stiffness: &'a mut Blocks,
-    /// Empty where all terms have symmetric tangents.
+    /// Skew part; empty where all terms have symmetric tangents.
     skew: &'a mut Blocks,
-    /// The term that hands over.
+    /// Name of the term whose tangent is taken.
     term: &'a str,
-    /// Where it says that it is symmetric.
+    /// Check of the symmetry, where the term claims to be symmetric.
     symmetry: Option<Symmetry>,
 }
 
 impl Tangent<'_> {
-    /// The symmetric part, N/mm, for terms that fill it in themselves: −∂f/∂u, whose pattern is this.
+    /// Returns the symmetric part of −∂f/∂u, N/mm, for terms that fill it in themselves on blocks of this pattern.
     ///
     /// # Panics
-    /// Where it has another pattern.
+    /// Where the matrix has another pattern.
     pub(super) fn stiffness_of(&mut self, pattern: &BlockPattern) -> &mut Blocks {
         assert!(std::ptr::eq(self.pattern, pattern), "a stiffness of another pattern");
         self.stiffness
     }
 
-    /// The tangent of one term, on a matrix of this pattern: the symmetric part of −∂f/∂u, and the skew part, empty where the term
-    /// has none.
+    /// Computes the tangent of one term on a matrix of this pattern: the symmetric part of −∂f/∂u and the skew part,
+    /// which is empty where the term has none.
     ///
     /// # Panics
     /// Where the term couples control points without saying so, or has a skew part without saying so.
@@ -137,7 +141,7 @@ impl Tangent<'_> {
         [stiffness, skew]
     }
 
-    /// Takes the tangent of a term, and looks whether that is as symmetric as the term says.
+    /// Takes the tangent of a term, and checks that it is as symmetric as the term claims.
     fn take(mut self, term: &dyn Term, at: At) {
         self.symmetry = (!term.has_skew()).then(Symmetry::default);
         term.add_tangent(at, &mut self);
@@ -149,7 +153,7 @@ impl Tangent<'_> {
         if let Some(Symmetry { difference, size }) = self.symmetry.filter(Symmetry::is_broken) {
             let (name, share) = (self.term, difference.abs() / size);
             panic!(
-                "the tangent of the term \"{name}\" is not symmetric, by {share:.1e} of its size, and it does not say so"
+                "the tangent of the term \"{name}\" is not symmetric, by {share:.1e} of its size, but `has_skew` is false"
             );
         }
     }
@@ -160,7 +164,7 @@ impl Tangent<'_> {
     /// Where the control points neither share an element nor are among the term's own [`Term::pairs`].
     pub fn add(&mut self, [i, j]: [usize; 2], slope: [[f64; 3]; 3]) {
         let Some(block) = self.pattern.block(i.min(j), i.max(j)) else {
-            panic!("the term \"{}\" couples control points {i} and {j}, and does not name the pair", self.term)
+            panic!("the term \"{}\" couples control points {i} and {j}, but does not list the pair", self.term)
         };
         if let Some(symmetry) = &mut self.symmetry {
             symmetry.see([i, j], &slope);
@@ -188,12 +192,12 @@ impl Tangent<'_> {
     }
 }
 
-/// x·(A y) − y·(A x) of a matrix A that is handed over block by block, for two fields x and y without any symmetry: 0 where A is
-/// symmetric.
+/// The form x·(A y) − y·(A x) of a matrix A that is added block by block, for two fields x and y without any symmetry:
+/// 0 where A is symmetric.
 #[derive(Debug, Default)]
 struct Symmetry {
     difference: f64,
-    /// Sum of all magnitudes in it.
+    /// Sum of the magnitudes of all contributions.
     size: f64,
 }
 
@@ -212,11 +216,11 @@ impl Symmetry {
     }
 }
 
-/// All terms beside the shell on a mesh.
+/// All terms on a mesh other than the shell.
 #[derive(Debug, Default)]
 pub struct Terms {
     list: Vec<Named>,
-    /// Where those of the caller's own come from.
+    /// Sources of the terms of the caller's own.
     own: Vec<Arc<dyn TermSource>>,
 }
 
@@ -227,7 +231,7 @@ struct Named {
 }
 
 impl Terms {
-    /// The actions of a scene, and terms of the caller's own.
+    /// Makes the terms of a scene's actions and those of the caller's own.
     ///
     /// # Errors
     /// Where one of them does not fit the mesh.
@@ -239,7 +243,7 @@ impl Terms {
         Ok(terms)
     }
 
-    /// The same where the tables of the mesh are not at hand: they are made for terms of the caller's own.
+    /// Makes the terms where no tables of the mesh are at hand; they are built if there are terms of the caller's own.
     ///
     /// # Errors
     /// As for [`Self::new`].
@@ -250,10 +254,10 @@ impl Terms {
         }
     }
 
-    /// What of them acts where both parameters of the surface are below `limits`.
+    /// Makes the part of the terms that acts where both parameters of the surface are below `limits`.
     ///
     /// # Errors
-    /// Where one of them does not fit the mesh, or does not know.
+    /// Where a term does not fit the mesh or cannot be divided.
     pub fn below(&self, scene: &Scene, mesh: &Mesh, tables: &Tables, limits: [f64; 2]) -> Result<Self, ModelError> {
         let mut part = Self::of_actions_below(scene, mesh, limits)?;
         for source in &self.own {
@@ -276,12 +280,12 @@ impl Terms {
         self.list.is_empty()
     }
 
-    /// Whether the tangent of any term is not symmetric.
+    /// Whether the tangent of any term has a skew part.
     pub fn have_skew(&self) -> bool {
         self.iter().any(Term::has_skew)
     }
 
-    /// Pairs of control points that share no element and are coupled.
+    /// Pairs of control points that a term couples though they share no element.
     pub fn pairs(&self) -> Vec<[usize; 2]> {
         self.iter().flat_map(Term::pairs).collect()
     }
@@ -296,14 +300,15 @@ impl Terms {
         self.iter().map(|term| term.energy(at)).sum::<f64>() + 0.0
     }
 
-    /// Forces on the control points, N.
+    /// Forces of all terms on the control points, N.
     pub fn forces(&self, at: At) -> Vec<[f64; 3]> {
         let [mut forces, internal] = self.forces_apart(at);
         forces.iter_mut().zip(internal).for_each(|(sum, force)| *sum = add(*sum, force));
         forces
     }
 
-    /// Forces on the control points, N: of loads, and of what stores energy. The latter is empty where nothing does.
+    /// Forces on the control points, N: first those of loads, then those of terms that store energy, which are empty
+    /// where no term does.
     pub fn forces_apart(&self, at: At) -> [Vec<[f64; 3]>; 2] {
         let none = || vec![[0.0; 3]; at.displacement.len()];
         let (mut of_loads, mut internal) = (none(), Vec::new());
@@ -326,7 +331,8 @@ impl Terms {
         rates
     }
 
-    /// Adds the symmetric part of the tangent to a stiffness; returns the skew part, empty where there is none.
+    /// Adds the symmetric part of the tangent to a stiffness, and returns the skew part, which is empty where there is
+    /// none.
     ///
     /// # Panics
     /// Where a term couples control points without saying so, or has a skew part without saying so.
@@ -338,18 +344,18 @@ impl Terms {
         skew
     }
 
-    /// Strokes of all actions on a straight way, N·mm.
+    /// Strokes of all actions over a straight motion, N·mm.
     pub fn strokes(&self, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
         self.iter().flat_map(|term| term.strokes(mesh, from, to)).collect()
     }
 
-    /// Work of the actions over strokes with their factors at a parameter, N·mm.
+    /// Work of the actions over strokes, with their factors at one value of the parameter, N·mm.
     pub fn work(&self, strokes: &[f64], parameter: f64) -> f64 {
         let factors = self.iter().flat_map(|term| term.factors(parameter));
         factors.zip(strokes).map(|(factor, stroke)| factor * stroke).sum()
     }
 
-    /// The same with the means of their factors at two parameters, N·mm.
+    /// Work of the actions over strokes, with the means of their factors at two values of the parameter, N·mm.
     pub fn mean_work(&self, strokes: &[f64], parameters: [f64; 2]) -> f64 {
         0.5 * parameters.map(|parameter| self.work(strokes, parameter)).iter().sum::<f64>()
     }

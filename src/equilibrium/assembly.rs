@@ -5,7 +5,8 @@ use crate::equilibrium::vector::length;
 use crate::model::{Blocks, NaturalState};
 use crate::shell::add;
 
-/// Sums over all elements and terms; buffers are kept between calls.
+/// Sums over all elements and terms, in buffers that are kept between calls.
+#[doc(hidden)]
 #[derive(Debug, Default)]
 pub struct Assembled {
     /// Energy that the model stores: strain energy, and what other terms store, N·mm.
@@ -16,13 +17,14 @@ pub struct Assembled {
     pub residual: Vec<[f64; 3]>,
     /// Forces that loads and other terms exert on the control points, N; empty where there are none.
     pub external: Vec<[f64; 3]>,
-    /// The part of these that terms exert which store energy: internal forces of the model; empty where there are none.
+    /// Part of the external forces that terms exert which store energy: internal forces of the model, N; empty where
+    /// there are none.
     pub internal: Vec<[f64; 3]>,
-    /// Norm of the part of the residual that the free strain makes, N: a load in all but name. 0 where there is none.
+    /// Norm of the part of the residual that the free strain causes, which acts like a load, N; 0 where there is none.
     pub free_strain_forces: f64,
     /// Symmetric part of the tangent of the residual less the external forces, N/mm; empty where it is not asked for.
     pub stiffness: Blocks,
-    /// Skew part; empty where there is none.
+    /// Skew part of that tangent, N/mm; empty where there is none.
     pub skew: Blocks,
 }
 
@@ -46,8 +48,8 @@ impl Assembled {
         };
     }
 
-    /// What internal forces change by where the shell stays at the displacement that it was assembled at and its natural
-    /// state becomes another one, N. They are linear in the free strain.
+    /// Computes the change of the internal forces, N, as the natural state becomes another one while the shell stays at
+    /// the displacement that it was assembled at. They are linear in the free strain.
     pub(super) fn change_of_forces(
         &self,
         discretization: &Discretization,
@@ -71,7 +73,7 @@ impl Assembled {
         }
     }
 
-    /// Energy, residual and stiffness of the shell, where this is the state without forces.
+    /// Assembles energy, residual and stiffness of the shell, where `natural` is the state without forces.
     pub(super) fn assemble_shell(
         &mut self,
         discretization: &Discretization,
@@ -83,13 +85,13 @@ impl Assembled {
         if want == Want::Stiffness {
             self.stiffness.clear();
         }
-        let part = discretization.shell.part(natural);
-        let sums = part.add(displacement, want, &mut self.residual, &mut self.stiffness);
+        let elements = discretization.shell.elements(natural);
+        let sums = elements.add(displacement, want, &mut self.residual, &mut self.stiffness);
         self.energy = with_locked(sums.energy, natural);
         self.element_forces = sums.squared_forces.sqrt();
     }
 
-    /// Forces that do not balance: the residual less the external forces, N.
+    /// Forces that are out of balance: the residual less the external forces, N.
     pub fn forces(&self) -> Vec<[f64; 3]> {
         subtract(&self.residual, &self.external)
     }
@@ -99,7 +101,7 @@ impl Assembled {
         !self.skew.is_empty()
     }
 
-    /// The skew part times a field on the control points.
+    /// Product of the skew part with a field on the control points.
     pub(super) fn multiply_skew(&self, discretization: &Discretization, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
         match self.has_skew() {
             true => self.skew.multiply(&discretization.blocks, -1.0, field),
@@ -107,13 +109,13 @@ impl Assembled {
         }
     }
 
-    /// Stiffness times a field on the control points.
+    /// Product of the stiffness with a field on the control points.
     pub fn multiply(&self, discretization: &Discretization, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
         self.stiffness.multiply(&discretization.blocks, 1.0, field)
     }
 }
 
-/// g − f; `external` may be empty.
+/// Computes g − f; `external` may be empty.
 pub(super) fn subtract(internal: &[[f64; 3]], external: &[[f64; 3]]) -> Vec<[f64; 3]> {
     if external.is_empty() {
         return internal.to_vec();

@@ -11,16 +11,18 @@ use crate::equilibrium::workspace::{Formed, Workspace};
 
 /// Relative change of an eigenvalue in one iteration at which it is known well enough.
 const SETTLED: f64 = 1e-4;
-/// Iterations at most: eigenvalues that lie close together leave the vector undecided, and the value all but settled.
+/// Largest number of iterations: where eigenvalues lie close together the vector does not settle, but the value nearly
+/// does.
 const MOST_ITERATIONS: usize = 1000;
 
 /// Both ends of the spectrum of the stiffness on the free unknowns (its symmetric part, where loads turn with the
 /// shell).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Condition {
     /// Largest magnitude of an eigenvalue, N/mm (all unknowns are lengths).
     pub largest: f64,
-    /// Smallest magnitude, N/mm.
+    /// Smallest magnitude of an eigenvalue, N/mm.
     pub smallest: f64,
 }
 
@@ -49,10 +51,10 @@ impl Condition {
     }
 }
 
-/// Largest magnitude of an eigenvalue of a symmetric operator: |A v| for a unit v, which grows from one iteration to
-/// the next, also where eigenvalues of both signs have that magnitude.
+/// Finds the largest magnitude of an eigenvalue of a symmetric operator: |A v| for a unit v, which grows from one
+/// iteration to the next, also where eigenvalues of both signs have that magnitude.
 fn magnitude(count: usize, mut apply: impl FnMut(&[f64]) -> Vec<f64>) -> f64 {
-    // A start that no symmetry is orthogonal to, the same in every run.
+    // The start is the same in every run, and has no symmetry.
     let mut vector: Vec<f64> = (0..count).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
     let mut value = product(&vector, &vector).sqrt();
     for iteration in 0..MOST_ITERATIONS {
@@ -61,7 +63,7 @@ fn magnitude(count: usize, mut apply: impl FnMut(&[f64]) -> Vec<f64>) -> f64 {
         let next = product(&vector, &vector).sqrt();
         let settled = (next - value).abs() <= SETTLED * next;
         value = next;
-        // The first value is the length of the start, no eigenvalue.
+        // The first value is the length of the start, not an eigenvalue.
         if (settled && iteration > 0) || !value.is_finite() || value == 0.0 {
             break;
         }
@@ -90,7 +92,7 @@ mod tests {
         let mut indefinite = 0;
         for (size, parameter) in [(0.0, 0.0), (0.5, 5.0)] {
             let free: Vec<f64> = (0..count).map(|i| size * ((i * 7919 % 1013) as f64 / 1013.0 - 0.5)).collect();
-            let displacement = work.discretization.unknowns.place(&free, parameter).displacement();
+            let displacement = work.discretization.unknowns.configure(&free, parameter).displacement();
             let at = Configuration { displacement: &displacement, turns: &[], parameter, largest_force: 0.0 };
             let found = Condition::at(&mut work, at).unwrap();
             let matrix = work.form_at(at).tangent.matrix();

@@ -17,7 +17,7 @@ pub struct Configuration<'s> {
 }
 
 impl<'s> Configuration<'s> {
-    /// The configuration of a state.
+    /// Borrows the configuration of a state.
     pub fn of(state: &'s State) -> Self {
         Self {
             displacement: &state.displacement,
@@ -27,7 +27,7 @@ impl<'s> Configuration<'s> {
         }
     }
 
-    /// The free unknowns of the configuration.
+    /// Computes the free unknowns of the configuration.
     pub fn free(&self, unknowns: &Unknowns) -> Vec<f64> {
         unknowns.of_displacement(self.displacement, self.turns, self.parameter)
     }
@@ -38,25 +38,26 @@ impl<'s> Configuration<'s> {
 pub struct Coordinates<'u> {
     /// The scene's parameter.
     pub parameter: f64,
-    /// Free unknowns.
+    /// Values of the free unknowns.
     pub free: Vec<f64>,
-    /// The displacement as a function of them, with its derivatives.
+    /// Displacement as a function of the free unknowns, with its derivatives.
     pub placement: Placement<'u>,
     /// Displacement of the control points, mm.
     pub displacement: Vec<[f64; 3]>,
 }
 
 impl<'u> Coordinates<'u> {
-    /// The configuration at these free unknowns.
+    /// Creates the configuration at these free unknowns.
     pub fn at(unknowns: &'u Unknowns, free: Vec<f64>, parameter: f64) -> Self {
-        let placement = unknowns.place(&free, parameter);
+        let placement = unknowns.configure(&free, parameter);
         Self { parameter, displacement: placement.displacement(), free, placement }
     }
 
-    /// The coordinates of a configuration, whose displacement is kept to the bit: the unknowns give it to rounding only.
+    /// Finds the coordinates of a configuration, whose displacement is kept to the last bit: the unknowns reproduce it
+    /// up to rounding only.
     pub fn of(unknowns: &'u Unknowns, at: Configuration) -> Self {
         let free = at.free(unknowns);
-        let placement = unknowns.place(&free, at.parameter);
+        let placement = unknowns.configure(&free, at.parameter);
         Self { parameter: at.parameter, displacement: at.displacement.to_vec(), free, placement }
     }
 }

@@ -1,4 +1,4 @@
-//! Continuation along the path of equilibria, with the parameter λ as an unknown beside the free unknowns q.
+//! Continuation along the path of equilibria, with the parameter λ as an unknown in addition to the free unknowns q.
 //!
 //! A step of length s goes from a point of the path along its unit tangent t to a point of the plane t·Δx = s: the residual
 //! R(q, λ) and the equation of the plane are solved together by Newton's method (Riks 1979; Wempner 1971; the linear
@@ -12,7 +12,7 @@
 use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::equations::{Equations, Point};
 use crate::equilibrium::iterate::{Effort, Observer};
-use crate::equilibrium::ledger::Before;
+use crate::equilibrium::ledger::SolveStart;
 use crate::equilibrium::metric::Metric;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::solved::Solved;
@@ -20,31 +20,32 @@ use crate::equilibrium::workspace::Workspace;
 use crate::scene::Scene;
 use crate::shell::{add, scaled, sub};
 
-/// Newton iterations after which a step is too long. Steps of the tape spring's path that converge take 3 to 7; what has
+/// Largest number of Newton iterations of a step. Steps of the tape spring's path that converge take 3 to 7; what has
 /// not converged by then has mostly left the neighbourhood of the path.
 const MOST_ITERATIONS: usize = 12;
-/// The same where the path is met again on a finer mesh.
+/// Largest number of Newton iterations to the path on a finer mesh.
 const MOST_CORRECTIONS: usize = 60;
-/// The plane is reached to this, relative to the length of the step.
+/// Largest distance from the plane that counts as on it, relative to the length of the step.
 const ON_PLANE: f64 = 1e-6;
 
 /// A direction of the path: rates along its length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
-    /// Of the displacements of the control points; its length is 1.
+    /// Rates of the displacements of the control points; their length is 1.
     pub motion: Vec<[f64; 3]>,
-    /// Of the parameter, per mm.
+    /// Rate of the parameter, per mm.
     pub parameter: f64,
 }
 
 /// A point of the path, reached from another.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct ContinuedPoint {
     /// The equilibrium.
     pub solved: Solved,
-    /// Its parameter.
+    /// Value of the scene's parameter there.
     pub parameter: f64,
-    /// Tangent of the path there, onwards.
+    /// Tangent of the path there, in the direction of travel.
     pub heading: Direction,
     /// Straight distance from the point before, mm.
     pub distance: f64,
@@ -54,22 +55,22 @@ pub struct ContinuedPoint {
     pub chord: f64,
 }
 
-/// Which way the path continues from a point.
+/// Direction in which the path continues from a point.
 #[derive(Clone, Copy, Debug)]
 pub enum Sense<'s> {
-    /// With a growing (or falling) parameter.
+    /// In the direction of a growing (or falling) parameter.
     Parameter { grows: bool },
-    /// At less than a right angle to this motion of the control points.
+    /// In the direction at less than a right angle to this motion of the control points.
     Along(&'s [[f64; 3]]),
 }
 
-/// What a solve is to end on.
+/// Condition that a solve along the path ends on.
 enum Constraint<'c> {
     /// A value of the parameter.
     Parameter(f64),
-    /// The point of the path that is nearest: each iteration moves at right angles to the tangent of the level curve R(q, λ) =
-    /// const. that it starts from (the Moore–Penrose inverse of Allgower & Georg, Introduction to Numerical Continuation
-    /// Methods, chapter 3). A fixed plane may miss a path that turns away on a finer mesh.
+    /// The nearest point of the path: each iteration moves at right angles to the tangent of the level curve R(q, λ) =
+    /// const. that it starts from (the Moore–Penrose inverse of Allgower & Georg, Introduction to Numerical
+    /// Continuation Methods, chapter 3). A fixed plane may miss a path that turns away on a finer mesh.
     Nearest,
     /// The plane t·(u − u₀) = s.
     Plane { normal: &'c [[f64; 3]], from: &'c [[f64; 3]], distance: f64 },
@@ -78,11 +79,11 @@ enum Constraint<'c> {
 /// Tangent of the path at a point.
 struct Tangent {
     direction: Direction,
-    /// Rates of the free unknowns.
+    /// Rates of the free unknowns along the path.
     free: Vec<f64>,
 }
 
-/// Continuation of a scene on the mesh of a workspace.
+/// Solver that follows the path of equilibria of a scene on the mesh of a workspace.
 #[derive(Debug)]
 pub struct Continuation<'a> {
     scene: &'a Scene,
@@ -97,7 +98,7 @@ impl<'a> Continuation<'a> {
         Self { scene, work, metric }
     }
 
-    /// The first step of a path: a change of the parameter, along the tangent first.
+    /// Makes the first step of a path: a change of the parameter, predicted along the tangent.
     ///
     /// # Errors
     /// Where no equilibrium is found in a few iterations, or nothing moves.
@@ -125,9 +126,10 @@ impl<'a> Continuation<'a> {
         self.solve(from, &direction, start, &plane, None, observer)
     }
 
-    /// A step to a value of the parameter at which a history has a corner. The path may turn there by any angle, back on
-    /// itself where what drove the shell stops and something else sets in: the heading at the end is that beyond the
-    /// corner, where the parameter continues as before; where nothing moves beyond, that by which the path came.
+    /// Makes a step to a value of the parameter at which a history has a corner. The path may turn there by any angle,
+    /// even back on itself, where one drive stops and another begins. The heading at the end is that beyond the corner,
+    /// in which the parameter continues as before, or the heading of the path before the corner where nothing moves
+    /// beyond it.
     ///
     /// # Errors
     /// Where no equilibrium is found in a few iterations.
@@ -148,7 +150,7 @@ impl<'a> Continuation<'a> {
         Ok(ContinuedPoint { heading, turn: 1.0, chord: 1.0, ..point })
     }
 
-    /// The point with this parameter between `from` and a point that was reached from there.
+    /// Finds the point of the path with this parameter, between `from` and a point that was reached from there.
     ///
     /// # Errors
     /// Where no equilibrium is found in a few iterations.
@@ -170,7 +172,8 @@ impl<'a> Continuation<'a> {
         self.solve(from, &tangent.direction, (free, parameter), &Constraint::Parameter(parameter), None, observer)
     }
 
-    /// The point of the path near a displacement that may be out of balance, and near its parameter, or (`held`) with it.
+    /// Finds the point of the path nearest to a displacement that may be out of balance; where `held`, the one with the
+    /// same parameter.
     ///
     /// # Errors
     /// Where none is found in a few iterations.
@@ -186,7 +189,7 @@ impl<'a> Continuation<'a> {
         self.solve(from, heading, (free, from.parameter), &constraint, Some(&heading.motion), observer)
     }
 
-    /// Unit tangent of the path at an equilibrium.
+    /// Finds the unit tangent of the path at an equilibrium.
     ///
     /// # Errors
     /// Where the stiffness has no factor, or nothing moves.
@@ -199,7 +202,7 @@ impl<'a> Continuation<'a> {
         self.metric.length(&motion(from, to))
     }
 
-    /// Tangent at an equilibrium, and its free unknowns.
+    /// Finds the tangent at an equilibrium, and the free unknowns there.
     fn tangent_at(&mut self, at: Configuration, sense: Sense) -> Result<(Tangent, Vec<f64>), SolveError> {
         let mut equations = Equations::factored_at(self.work, at)?;
         let point = equations.at_configuration(at)?;
@@ -207,7 +210,7 @@ impl<'a> Continuation<'a> {
         Ok((tangent, point.here.free))
     }
 
-    /// `onwards` tells which way the path continues; otherwise the chord from `from` does.
+    /// Solves for a point of the path, which continues in the sense of `onwards`, or else of the chord from `from`.
     fn solve(
         &mut self,
         from: Configuration,
@@ -217,9 +220,9 @@ impl<'a> Continuation<'a> {
         onwards: Option<&[[f64; 3]]>,
         observer: Observer,
     ) -> Result<ContinuedPoint, SolveError> {
-        let before = Before::at(self.work, from);
+        let before = SolveStart::at(self.work, from);
         let Self { scene, work, metric } = self;
-        // A correction has no shorter step to fall back on.
+        // A correction cannot fall back on a shorter step.
         let most = if onwards.is_some() { MOST_CORRECTIONS } else { MOST_ITERATIONS };
         let mut effort = Effort::default();
         let mut equations = Equations::of(work, from);
@@ -273,7 +276,7 @@ impl<'a> Continuation<'a> {
 }
 
 impl Constraint<'_> {
-    /// How far a point is from where the solve is to end, and what that is measured by.
+    /// Distance of a point from where the solve is to end, and the scale that it is measured by.
     fn distance(&self, point: &Point, metric: &Metric) -> (f64, f64) {
         match self {
             Constraint::Parameter(parameter) => (parameter - point.here.parameter, parameter.abs()),
@@ -284,7 +287,7 @@ impl Constraint<'_> {
         }
     }
 
-    /// Change of the parameter with which `step` + change · `rates` leads there.
+    /// Change of the parameter with which `step` + change · `rates` meets the constraint.
     fn change(&self, point: &Point, metric: &Metric, off: f64, step: &[f64], rates: &[f64]) -> f64 {
         match self {
             Constraint::Parameter(_) => off,
@@ -301,7 +304,7 @@ impl Constraint<'_> {
     }
 }
 
-/// The path's tangent at a point of equilibrium: q̇ = −K⁻¹ ∂R/∂λ λ̇, scaled to a motion of length 1.
+/// Finds the tangent of the path at an equilibrium: q̇ = −K⁻¹ ∂R/∂λ λ̇, scaled to a motion of length 1.
 fn tangent(equations: &mut Equations, point: &Point, metric: &Metric, sense: Sense) -> Result<Tangent, SolveError> {
     let rates = equations.solve(point, &negative(&point.gradient_rate));
     let motion = point.here.placement.velocity(&rates, &point.given_rates);

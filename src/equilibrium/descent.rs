@@ -1,14 +1,14 @@
 //! Newton's method as a descent on the strain energy.
 //!
-//! Backtracking on the energy (Nocedal & Wright, *Numerical Optimization*, 2nd ed., algorithm 3.1). Where the
-//! stiffness is not positive definite, the negative pivots of its L D Lᵀ factor are replaced by their magnitudes: that
-//! matrix differs from K by one of the rank of its negative part, costs no second factorization, and gives a descent
-//! direction that reverses Newton's where the curvature is negative (section 3.4 there, modified factorizations). Of two
-//! points in a row one is, to rounding, as low as any before.
+//! Backtracking on the energy (Nocedal & Wright, *Numerical Optimization*, 2nd ed., algorithm 3.1). Where the stiffness
+//! is not positive definite, the negative pivots of its L D Lᵀ factor are replaced by their magnitudes: that matrix
+//! differs from K by one of the rank of its negative part, costs no second factorization, and gives a descent direction
+//! that reverses Newton's where the curvature is negative (section 3.4 there, modified factorizations). At least every
+//! second iterate does not raise the merit, up to rounding.
 //!
-//! With loads, what descends is strain energy less the work of the loads along the way that the steps took ([`crate::energy::Terms::strokes`]),
-//! so that it needs no potential. Where loads that turn with the shell have a skew tangent, the direction solves the whole
-//! system (GMRES on the factor of the symmetric part).
+//! With loads, what descends is the strain energy less the work of the loads along the steps taken
+//! ([`crate::energy::Terms::strokes`]), so that it needs no potential. Where loads that turn with the shell have a skew
+//! tangent, the direction solves the whole system (GMRES on the factor of the symmetric part).
 //!
 //! A full Newton step that does not lower the energy is taken all the same for one more step (a watchdog, section 15.6
 //! there): in a thin shell the valley of low energy is curved, a straight step leaves it at the cost of membrane
@@ -16,10 +16,11 @@
 //! the baseline's quarter model took 64 iterations that way and 31 with one step of patience; two and four steps of
 //! patience took 33 and 37.
 //!
-//! Going on with the factor of the point where the load step began (modified Newton, Shamanskii 1967) does not pay, though
-//! a residual and a solve cost a sixth of an iteration: after the tangent predictor such a step brings the residual of the
-//! baseline from 0.24 to 0.03 of the reactions and the next one back to 0.06, since the shell has turned and what was bending
-//! is stretching. `baseline-quarter.toml` took 879 factorizations that way, and 753 without.
+//! Continuing with the factor of the point where the load step began (modified Newton, Shamanskii 1967) does not pay,
+//! though a residual and a solve cost a sixth of an iteration: after the tangent predictor such a step brings the
+//! residual of the baseline from 0.24 to 0.03 of the reactions and the next one back to 0.06, since the shell has
+//! turned and what was bending is stretching. `baseline-quarter.toml` took 879 factorizations that way, and 753
+//! without.
 //!
 //! Nor do steps bent to second order, x + d − ½ K⁻¹ Π‴[d, d] (Chebyshev's method; Transtrum & Sethna 2012, arXiv:1201.5885), with
 //! Π‴[d, d] from one residual at half the step: factorizations of the baseline 587 to 494, of R = 15 mm 772 to 642, of the slit
@@ -36,7 +37,7 @@ use crate::equilibrium::assembly::Assembled;
 use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::iterate::{Effort, Iterate};
-use crate::equilibrium::ledger::Before;
+use crate::equilibrium::ledger::SolveStart;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::solved::Ended;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
@@ -52,12 +53,12 @@ const ENERGY_ROUNDING: f64 = 1e-12;
 /// with 0.3, and 37, 25, 30 and 27 with 0.1.
 const SHORTEST_CUT: f64 = 0.3;
 const LONGEST_CUT: f64 = 0.5;
-/// Trials of a shorter step before the line search gives up.
+/// Largest number of trials of a shorter step before the line search gives up.
 const MAX_BACKTRACKS: usize = 30;
-/// Doublings of a step along negative curvature.
+/// Largest number of doublings of a step along negative curvature.
 const MAX_DOUBLINGS: usize = 6;
 
-/// A descent under way: residual and stiffness are assembled at the point in hand.
+/// A descent in progress: residual and stiffness are assembled at the current point.
 pub(super) struct Descent<'a> {
     here: Coordinates<'a>,
     discretization: &'a Discretization,
@@ -65,11 +66,11 @@ pub(super) struct Descent<'a> {
     tangent: &'a mut TangentStiffness,
     /// Strokes of the actions since the state that the solve started from, N·mm.
     strokes: Vec<f64>,
-    /// The largest force met before, N.
+    /// Largest force met before, N.
     largest_force: f64,
     gradient: Vec<f64>,
     step_length: f64,
-    /// Where a step started that has not lowered the energy yet.
+    /// Start of a step that has not lowered the energy yet.
     watched: Option<Start>,
     pub(super) effort: Effort,
 }
@@ -78,7 +79,7 @@ pub(super) struct Descent<'a> {
 struct Start {
     free: Vec<f64>,
     displacement: Vec<[f64; 3]>,
-    /// Strokes of the actions so far, and their work.
+    /// Strokes of the actions so far, N·mm.
     strokes: Vec<f64>,
     work: f64,
     direction: Vec<f64>,
@@ -92,12 +93,12 @@ impl Start {
         self.free.iter().zip(&self.direction).map(|(q, d)| q + length * d).collect()
     }
 
-    /// Strain energy less work of the loads.
+    /// Computes the strain energy less the work of the loads.
     fn merit(&self) -> f64 {
         self.iterate.energy - self.work
     }
 
-    /// Sufficient decrease for a step of this length.
+    /// Whether a step of this length decreases the merit sufficiently.
     fn is_enough(&self, length: f64, merit: f64) -> bool {
         let rounding = ENERGY_ROUNDING * (self.iterate.energy.abs() + self.work.abs());
         merit <= self.merit() + SUFFICIENT_DECREASE * length * self.slope + rounding
@@ -105,7 +106,7 @@ impl Start {
 }
 
 impl<'a> Descent<'a> {
-    /// At these unknowns, on the way from a state.
+    /// Begins a descent at some unknowns, on the way from a state.
     pub(super) fn new(workspace: &'a mut Workspace, from: Configuration, parameter: f64, free: Vec<f64>) -> Self {
         let Workspace { discretization, tangent, assembled, .. } = workspace;
         let discretization = &*discretization;
@@ -125,21 +126,21 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Starts again from other unknowns, on the way from a state; what it took so far stays counted.
+    /// Restarts the descent from other unknowns, on the way from a state; the effort so far stays counted.
     pub(super) fn start_at(&mut self, from: Configuration, free: Vec<f64>) {
         self.go_to(free);
         let Discretization { mesh, terms, .. } = self.discretization;
         self.strokes = terms.strokes(mesh, from.displacement, &self.here.displacement);
     }
 
-    /// Goes to other unknowns and assembles everything there.
+    /// Moves to other unknowns and assembles everything there.
     fn go_to(&mut self, free: Vec<f64>) {
         self.here = Coordinates::at(&self.discretization.unknowns, free, self.here.parameter);
         let Coordinates { displacement, parameter, .. } = &self.here;
         self.assembled.assemble(self.discretization, displacement, *parameter, Want::Stiffness);
     }
 
-    /// Factors the stiffness at the point in hand and says where the descent stands.
+    /// Factors the stiffness at the current point and returns its iterate.
     pub(super) fn iterate(&mut self) -> Result<Iterate, SolveError> {
         let assembled = &*self.assembled;
         let forces = assembled.forces();
@@ -158,11 +159,11 @@ impl<'a> Descent<'a> {
     }
 
     /// Energy of the model that has left the balance so far, N·mm.
-    pub(super) fn released_since(&self, before: &Before) -> f64 {
+    pub(super) fn released_since(&self, before: &SolveStart) -> f64 {
         before.released(self.discretization, self.here.parameter, &self.strokes, self.assembled.energy)
     }
 
-    /// Moves on from the point of `last`.
+    /// Takes a step from the point of `last`.
     pub(super) fn step(&mut self, last: &Iterate) -> Result<(), SolveError> {
         let indefinite = last.negative_pivots > 0;
         if indefinite {
@@ -195,7 +196,7 @@ impl<'a> Descent<'a> {
         self.judge(here, 1.0, energy)
     }
 
-    /// Newton's direction, or the modified one.
+    /// Computes Newton's direction, or the modified one.
     fn direction(&mut self, indefinite: bool) -> Vec<f64> {
         let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
         if self.assembled.has_skew() && !indefinite {
@@ -209,7 +210,8 @@ impl<'a> Descent<'a> {
         direction
     }
 
-    /// Keeps a step that lowered the energy, watches one that did not, and goes back where a watched one did not pay.
+    /// Keeps a step that lowered the energy, watches one that did not, and returns to the start of a watched step that
+    /// did not pay.
     fn judge(&mut self, here: Start, length: f64, energy: f64) -> Result<(), SolveError> {
         match self.watched.take() {
             Some(from) if !from.is_enough(1.0, energy) => self.shorten(from),
@@ -223,7 +225,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Where the descent ended, and what it cost.
+    /// Ends the descent; returns where it ended and its effort.
     pub(super) fn finish(self) -> Ended {
         let forces = self.assembled.forces();
         Ended {
@@ -235,7 +237,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Goes back to where a step started and takes the first shorter one that pays.
+    /// Returns to where a step started and takes the first shorter one that pays.
     fn shorten(&mut self, from: Start) -> Result<(), SolveError> {
         let energy = self.energy_at(&from, 1.0);
         match self.backtrack(&from, 1.0, energy) {
@@ -247,7 +249,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Along negative curvature the model says nothing of the length: double while that pays.
+    /// Doubles the step while that pays: along negative curvature the quadratic model does not give its length.
     fn along_negative_curvature(&self, here: &Start) -> Option<f64> {
         let mut best = (1.0, self.energy_at(here, 1.0));
         if !here.is_enough(best.0, best.1) {
@@ -264,7 +266,7 @@ impl<'a> Descent<'a> {
         Some(best.0)
     }
 
-    /// Shorter steps, by the minimum of the parabola through energy, slope and the failed trial.
+    /// Finds a shorter step that pays, by the minimum of the parabola through energy, slope and the failed trial.
     fn backtrack(&self, from: &Start, mut length: f64, mut energy: f64) -> Option<f64> {
         for _ in 0..MAX_BACKTRACKS {
             let curvature = energy - from.merit() - length * from.slope;
@@ -282,16 +284,16 @@ impl<'a> Descent<'a> {
         None
     }
 
-    /// Strain energy less work of the loads.
+    /// Computes the strain energy less the work of the loads.
     fn energy_at(&self, from: &Start, length: f64) -> f64 {
         let Discretization { unknowns, terms, .. } = self.discretization;
         let parameter = self.here.parameter;
-        let displacement = &unknowns.place(&from.moved(length), parameter).displacement();
+        let displacement = &unknowns.configure(&from.moved(length), parameter).displacement();
         let energy = self.discretization.energy(displacement, parameter);
         energy - terms.work(&self.strokes_to(from, displacement), parameter)
     }
 
-    /// Strokes on the way that leads straight on from where a step started.
+    /// Computes the strokes up to a displacement, straight from where a step started.
     fn strokes_to(&self, from: &Start, displacement: &[[f64; 3]]) -> Vec<f64> {
         let Discretization { mesh, terms, .. } = self.discretization;
         let last = terms.strokes(mesh, &from.displacement, displacement);

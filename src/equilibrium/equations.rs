@@ -11,23 +11,24 @@ use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::equilibrium::workspace::Workspace;
 use crate::shell::sub;
 
-/// The pieces of a workspace that the equations take.
+/// The equations along a path, in the buffers of a workspace.
 pub(super) struct Equations<'w> {
     discretization: &'w Discretization,
     tangent: &'w mut TangentStiffness,
     assembled: &'w mut Assembled,
-    /// The largest force met before, N.
+    /// Largest force met before, N.
     largest_force: f64,
-    /// Negative pivots, where residual, stiffness and factor are those of the state that is asked for next.
+    /// Number of negative pivots, where residual, stiffness and factor are already those of the state that is asked for
+    /// next.
     ready: Option<usize>,
 }
 
 /// The equations at a point; the factor of their stiffness is in the workspace.
 pub(super) struct Point<'w> {
     pub here: Coordinates<'w>,
-    /// R: forces on the free unknowns, N.
+    /// Residual R: forces on the free unknowns, N.
     pub gradient: Vec<f64>,
-    /// ∂R/∂λ.
+    /// Rate ∂R/∂λ of the residual with the parameter.
     pub gradient_rate: Vec<f64>,
     /// Rates of the given coordinates with λ, mm.
     pub given_rates: Vec<f64>,
@@ -42,8 +43,9 @@ impl<'w> Equations<'w> {
         Self { discretization, tangent, assembled, largest_force: from.largest_force, ready: None }
     }
 
-    /// Ready for [`Self::at_configuration`] at this state, with the stiffness and factor that a solve left there if there are
-    /// any. Where sections turn freely all is formed again: what the state holds decides the unknowns to rounding only.
+    /// Prepares the equations for [`Self::at_configuration`] at this state, with the stiffness and factor that a solve
+    /// left there if there are any. Where sections turn freely everything is formed again: the state decides the
+    /// unknowns up to rounding only.
     pub fn factored_at(work: &'w mut Workspace, at: Configuration) -> Result<Self, SolveError> {
         if work.discretization.unknowns.turns_are_unknown() {
             return Ok(Self::of(work, at));
@@ -53,13 +55,14 @@ impl<'w> Equations<'w> {
         Ok(Self { discretization, tangent, assembled, largest_force: at.largest_force, ready: Some(negative) })
     }
 
-    /// Assembles and factors at a configuration.
+    /// Assembles and factors the equations at a configuration.
     pub fn at_configuration(&mut self, at: Configuration) -> Result<Point<'w>, SolveError> {
-        // Not an effort of the solve that follows: it would depend on what ran before in the same process.
+        // This is not counted in the effort of the solve that follows, which would depend on what ran before in the
+        // same process.
         self.at(at.free(&self.discretization.unknowns), at.parameter, &mut Effort::default())
     }
 
-    /// Assembles and factors at a point.
+    /// Assembles and factors the equations at some free unknowns and a parameter.
     pub fn at(&mut self, free: Vec<f64>, parameter: f64, effort: &mut Effort) -> Result<Point<'w>, SolveError> {
         let discretization = self.discretization;
         let here = Coordinates::at(&discretization.unknowns, free, parameter);
@@ -116,7 +119,7 @@ impl<'w> Equations<'w> {
 }
 
 impl Point<'_> {
-    /// Forms what a solve leaves that started at a state and ends here.
+    /// Forms the result of a solve that started at a state and ends at this point.
     pub fn ended(self, equations: &Equations, from: Configuration, effort: Effort) -> Ended {
         let forces = equations.assembled.forces();
         let Discretization { mesh, terms, .. } = equations.discretization;

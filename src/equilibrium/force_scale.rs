@@ -1,6 +1,6 @@
 //! What a residual is compared with: equilibrium has an absolute sense.
 //!
-//! Forces balance where what is left of their sum is small beside the forces themselves. Which ones?
+//! Forces balance where what is left of their sum is small compared with the forces themselves. Which ones?
 //!
 //! - Reactions and loads, as long as there are any: what M, and every other reaction, is measured in. Forces of terms that store
 //!   energy are internal, as the shell's: a plate that lies on a foundation balances the load on it though it carries nothing.
@@ -20,34 +20,37 @@ use crate::energy::Discretization;
 use crate::equilibrium::assembly::{Assembled, subtract};
 use crate::equilibrium::vector::length;
 
-/// Share of the forces of the elements that counts.
+/// Factor by which the forces of the elements count.
 const OF_ELEMENTS: f64 = 1e-3;
 
-/// Share of the largest forces met before that counts.
+/// Factor by which the largest forces met before count.
 const OF_FORCES_MET: f64 = 1e-3;
 
-/// Roundings in a displacement's strain, each of its last bit. A plate of 3 × 3 cubic elements that a section carries off by
-/// 1 mm, without any strain, has a residual of two to three.
+/// Number of roundings in the strain of a displacement, each of its last bit. A plate of 3 × 3 cubic elements that a
+/// section carries off by 1 mm, without any strain, has a residual of two to three.
 const ROUNDINGS: f64 = 8.0;
 
 /// Share of known forces up to which a residual is taken for rounding. A strip of 100 mm and 1 µm has roundings above its
 /// load, and did not move at all where they were taken for balance.
 const OF_KNOWN: f64 = 1e-3;
 
-/// Reactions of so many roundings are none.
+/// Reactions below this many roundings count as none.
 const CLEAR: f64 = 30.0;
 
 /// Forces that the residual at a point is compared with, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ForceScale {
-    /// The largest of |g| of internal forces on all control points (at equilibrium, the reactions), |f| of the loads and of the
-    /// free strain, and a share of the elements' forces before they are summed.
+    /// Forces that act here, N: the largest of the norm of the internal forces on all control points (at equilibrium,
+    /// the reactions), those of the loads and of the free strain, and a share of the elements' forces before they are
+    /// summed.
     pub acting: f64,
-    /// The largest of these at the equilibria of the run so far.
+    /// Largest forces at the equilibria of the run so far, N.
     pub met: f64,
-    /// Forces of a rounding error of the displacement.
+    /// Forces that a rounding error of the displacement causes, N.
     pub rounding: f64,
-    /// A residual up to which nothing but rounding is left: [`Self::rounding`], but never more than a small share of what acts.
+    /// Residual below which only rounding is left, N: [`Self::rounding`], but never more than a small share of the
+    /// forces that act.
     pub floor: f64,
 }
 
@@ -67,7 +70,7 @@ impl ForceScale {
             true => [length(residual), length(external)],
             false => [length(&subtract(residual, internal)), length(&subtract(external, internal))],
         };
-        // Loads are known, and so are reactions that stand out of the rounding.
+        // Loads are known, and so are reactions that are clear of the rounding.
         let known = match loads > 0.0 {
             true => loads,
             false if reactions > CLEAR * rounding => reactions,
@@ -81,22 +84,22 @@ impl ForceScale {
         }
     }
 
-    /// The force that a relative residual is relative to.
+    /// Force that a relative residual refers to, N.
     pub fn force(&self) -> f64 {
         self.acting.max(OF_FORCES_MET * self.met)
     }
 
-    /// Whether a residual is nothing beside the forces, to this tolerance.
+    /// Whether a residual is negligible compared with the forces, to this tolerance.
     pub fn balances(&self, residual: f64, tolerance: f64) -> bool {
         residual <= (tolerance * self.force()).max(self.floor)
     }
 
-    /// A residual relative to the forces; 0 where there are none.
+    /// Residual relative to the forces; 0 where there are none.
     pub fn share(&self, residual: f64) -> f64 {
         if self.force() > 0.0 { residual / self.force() } else { 0.0 }
     }
 
-    /// The largest forces of the run, with those of this point.
+    /// Largest forces of the run, including those of this point, N.
     pub fn met_here(&self) -> f64 {
         self.met.max(self.acting)
     }

@@ -3,8 +3,8 @@
 
 use crate::equilibrium::vector::product;
 
-/// Solves A x = b to a residual of `tolerance` |b|, or in `most` iterations as far as it gets. `precondition` is applied
-/// from the right, in place.
+/// Solves A x = b to a residual of `tolerance` |b|, or as far as `most` iterations get. `precondition` is applied from
+/// the right, in place.
 pub(super) fn gmres(
     right_hand_side: &[f64],
     apply: impl Fn(&[f64]) -> Vec<f64>,

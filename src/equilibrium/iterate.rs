@@ -1,34 +1,37 @@
-//! What is known of a solve under way.
+//! The iterates of a solve, and its effort.
 
 use crate::equilibrium::force_scale::ForceScale;
 use crate::equilibrium::vector::largest;
 use crate::model::Unknowns;
 
-/// What is known after an iteration.
+/// State of a solve after an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Iterate {
-    /// Newton steps taken.
+    /// Number of Newton steps taken.
     pub iteration: usize,
-    /// Energy that the model stores, N·mm: strain energy, and that of other terms.
+    /// Energy that the model stores, N·mm: strain energy and that of other terms.
     pub energy: f64,
-    /// |Tᵀ (g − f)|, N.
+    /// Norm of the residual on the free unknowns, |Tᵀ (g − f)|, N.
     pub residual: f64,
-    /// What the residual is compared with.
+    /// Forces that the residual is compared with.
     pub forces: ForceScale,
-    /// Negative pivots of the last factored stiffness.
+    /// Number of negative pivots of the last factored stiffness.
     pub negative_pivots: usize,
     /// Step length along the last direction; 1 is a full Newton step.
     pub step_length: f64,
-    /// Twice the largest magnitude of a negative pivot: what turning it positive adds, N/mm; 0 where there is none.
+    /// Twice the largest magnitude of a negative pivot, N/mm, which is what making it positive adds; 0 where there is
+    /// none.
     pub shift: f64,
     /// Control point with the largest residual.
     pub worst_point: usize,
-    /// Of a descent: energy of the model that has left the balance since its start, if reactions stay what they were, N·mm.
+    /// Energy that has left the balance of the model since the start of a descent, if reactions stay what they were,
+    /// N·mm.
     pub released: f64,
 }
 
 impl Iterate {
-    /// At a point with this gradient on the free unknowns, whose stiffness is not factored yet.
+    /// Creates the iterate of a point with this gradient on the free unknowns, whose stiffness is not factored yet.
     pub(super) fn at(unknowns: &Unknowns, energy: f64, forces: ForceScale, gradient: &[f64], effort: Effort) -> Self {
         Self {
             iteration: effort.iterations,
@@ -48,7 +51,7 @@ impl Iterate {
         self.energy.is_finite() && self.residual.is_finite()
     }
 
-    /// |residual| divided by the forces that it is compared with.
+    /// Norm of the residual divided by the forces that it is compared with.
     pub fn relative_residual(&self) -> f64 {
         self.forces.share(self.residual)
     }
@@ -59,14 +62,15 @@ impl Iterate {
     }
 }
 
-/// Iterations and factorizations spent.
+/// Iterations and factorizations that a solve spent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Effort {
-    /// Newton iterations.
+    /// Number of Newton iterations.
     pub iterations: usize,
-    /// Numeric factorizations.
+    /// Number of numeric factorizations.
     pub factorizations: usize,
 }
 
-/// Watches iterates; `true` stops the solve.
+/// Callback that sees every iterate; returning `true` stops the solve.
 pub type Observer<'o> = &'o mut dyn FnMut(&Iterate) -> bool;

@@ -6,8 +6,8 @@ use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::Workspace;
 use crate::model::Placement;
 
-/// The start of a solve.
-pub(super) struct Before {
+/// The start of a solve: parameter, reactions, energy and displacement.
+pub(super) struct SolveStart {
     /// Value of the scene's parameter.
     parameter: f64,
     /// Forces conjugate to the given coordinates, N; 0 where the start is out of balance.
@@ -18,7 +18,7 @@ pub(super) struct Before {
     displacement: Vec<[f64; 3]>,
 }
 
-impl Before {
+impl SolveStart {
     /// Records the start of a solve at an equilibrium.
     pub fn at(work: &mut Workspace, from: Configuration) -> Self {
         let forces = work.forces(from);
@@ -26,7 +26,8 @@ impl Before {
         Self::with(&placement, &forces, from, work.assembled.energy)
     }
 
-    /// At an equilibrium whose forces (internal less loads, N, on all control points) and energy are known.
+    /// Records the start of a solve at an equilibrium whose forces (internal less loads, N, on all control points) and
+    /// energy are known.
     pub fn with(placement: &Placement, forces: &[[f64; 3]], from: Configuration, energy: f64) -> Self {
         let Configuration { displacement, parameter, .. } = from;
         Self { parameter, reactions: placement.reactions(forces), energy, displacement: displacement.to_vec() }
@@ -39,8 +40,8 @@ impl Before {
         Self { parameter: from.parameter, reactions, energy, displacement: from.displacement.to_vec() }
     }
 
-    /// Work on the model up to a value of the parameter, N·mm: of the given motions by the means of reactions before and after,
-    /// of the loads by the means of their factors and their strokes on the way.
+    /// Computes the work on the model up to a value of the parameter, N·mm: that of given motions from the means of
+    /// reactions before and after, that of loads from the means of their factors and their strokes.
     pub fn work(&self, discretization: &Discretization, parameter: f64, reactions: &[f64], strokes: &[f64]) -> f64 {
         let Discretization { unknowns, terms, .. } = discretization;
         let (given, target) = (unknowns.given_at(self.parameter), unknowns.given_at(parameter));
@@ -49,14 +50,16 @@ impl Before {
         of_motions + terms.mean_work(strokes, [self.parameter, parameter])
     }
 
-    /// Energy of the model that has left the balance on the way, if reactions stay what they were, N·mm.
+    /// Computes the energy that has left the balance of the model since the start, if reactions stay what they were,
+    /// N·mm.
     pub fn released(&self, discretization: &Discretization, parameter: f64, strokes: &[f64], energy: f64) -> f64 {
         let put_in = self.put_in_at(discretization, parameter, &self.displacement);
         self.energy + self.work(discretization, parameter, &self.reactions, strokes) + put_in - energy
     }
 
-    /// Energy that the model stores more because its natural state, or what its terms store, changes with the parameter, N·mm: had
-    /// it stayed at the start, and at another displacement. 0 where nothing else changes it.
+    /// Computes the energy that the parameter puts into the model by changing its natural state or what its terms
+    /// store, N·mm: at the displacement of the start, and at another one. Both are 0 where the parameter changes
+    /// neither.
     pub fn put_in(&self, discretization: &Discretization, parameter: f64, to: &[[f64; 3]]) -> [f64; 2] {
         [&self.displacement[..], to].map(|displacement| self.put_in_at(discretization, parameter, displacement))
     }

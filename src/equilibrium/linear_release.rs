@@ -9,8 +9,10 @@ use crate::shell::norm;
 /// One step of Newton's method from a state out of balance: with the residual r on the free unknowns and the stiffness K, the
 /// unknowns change by −K⁻¹r.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinearRelease {
-    /// ½ rᵀK⁻¹r of the model, N·mm; negative where K is not positive definite and r mostly in its negative part.
+    /// Energy that the model releases, ½ rᵀK⁻¹r, N·mm; negative where K is not positive definite and r lies mostly in
+    /// its negative part.
     pub energy: f64,
     /// Internal forces less loads on the control points where the step begins, N.
     pub forces: Vec<[f64; 3]>,
@@ -39,7 +41,7 @@ impl LinearRelease {
 }
 
 impl Workspace {
-    /// Computes the release of a state.
+    /// Estimates the energy that a state out of balance releases.
     ///
     /// # Errors
     /// Where the stiffness has no factor.

@@ -18,7 +18,7 @@ pub(super) struct Metric {
 }
 
 impl Metric {
-    /// Computes the masses of a mesh.
+    /// Computes the weights of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         Self { weights: mesh.basis_integrals() }
     }

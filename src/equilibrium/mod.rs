@@ -10,7 +10,7 @@
 //! | `vector`, `metric`, `gmres` | sums over vectors; lengths of motions; iterative solution |
 //! | `configuration` | where a solve starts from, and a point with its unknowns and placement |
 //! | `workspace` | tables, matrix and factor for one mesh |
-//! | `iterate` | what is known of a solve under way |
+//! | `iterate` | iterates and effort of a solve |
 //! | `force_scale` | what a residual is compared with |
 //! | `ledger` | the energies of a solve, from its start |
 //! | `descent` | Newton's method as a descent on the energy |
@@ -18,8 +18,8 @@
 //! | `equations`, `continuation` | equilibrium along a path |
 //! | `stability`, `condition` | the lowest eigenvalue and its mode; the spread of all |
 //! | `linear_release` | energy that a state out of balance releases |
-//! | `solved`, `solve_error` | what a solve leaves, and why there is none |
-//! | `timing` | the pieces of an iteration one by one |
+//! | `solved`, `solve_error` | the result of a solve, and why there is none |
+//! | `timing` | the parts of an iteration one by one |
 
 mod assembly;
 mod condition;

@@ -1,17 +1,16 @@
 //! Equilibrium at a value of the scene's parameter: a minimum of the strain energy, less the work of loads, over the free
 //! unknowns.
 //!
-//! Predictor: the tangent one, K Δq = Δf − ∂g/∂m Δm − Δg for loads f, given motions m and what free strains change internal
-//! forces by, after which three Newton iterations a step reach 1e-7 of the
-//! reactions; moving the ends alone needs 8 to 11. Where an equilibrium before is known, the path is bent on as a parabola
-//! through it: the solves of `baseline-quarter.toml` take half the iterations that they take with tangents alone.
-//! Corrector: [`Descent`].
+//! Predictor: the tangent one, K Δq = Δf − ∂g/∂m Δm − Δg for loads f, given motions m and what free strains change
+//! internal forces by, after which three Newton iterations a step reach 1e-7 of the reactions; moving the ends alone
+//! needs 8 to 11. Where an equilibrium before is known, the path is extrapolated as a parabola through it: the solves
+//! of `baseline-quarter.toml` take half the iterations that they take with tangents alone. Corrector: [`Descent`].
 
 use crate::equilibrium::assembly::subtract;
 use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::descent::Descent;
 use crate::equilibrium::iterate::Observer;
-use crate::equilibrium::ledger::Before;
+use crate::equilibrium::ledger::SolveStart;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::solved::Solved;
 use crate::equilibrium::stability::SoftMode;
@@ -21,14 +20,14 @@ use crate::scene::Scene;
 use crate::shell::add;
 use crate::state::Previous;
 
-/// The parabola of the predictor is drawn on from a base of at least this share of the step: what rounding and the
-/// tolerance leave in the equilibria grows with its inverse square.
+/// Smallest base of the predictor's parabola, relative to the step: the errors that rounding and the tolerance leave in
+/// the equilibria grow with its inverse square.
 const SHORTEST_BASE: f64 = 0.1;
 
-/// Energies of two sides of a bifurcation that differ by less than this, relatively, are equal.
+/// Relative difference of energies below which both sides of a bifurcation count as equal.
 const CLEARLY: f64 = 1e-10;
 
-/// Equilibrium of a scene on the mesh of a workspace.
+/// Solver for equilibria of a scene on the mesh of a workspace.
 #[derive(Debug)]
 pub struct Equilibrium<'a> {
     scene: &'a Scene,
@@ -42,7 +41,7 @@ impl<'a> Equilibrium<'a> {
         Self { scene, work, previous: None }
     }
 
-    /// Knows of an equilibrium before the one that [`Self::advance`] starts from, on the same path.
+    /// Uses an equilibrium before the one that [`Self::advance`] starts from, on the same path, for the predictor.
     pub fn after(self, previous: Option<&'a Previous>) -> Self {
         Self { previous, ..self }
     }
@@ -56,18 +55,18 @@ impl<'a> Equilibrium<'a> {
         self.minimize(start, bent, from, to, &before, observer)
     }
 
-    /// Equilibrium at the same parameter from a displacement that may be out of balance.
+    /// Solves for the equilibrium at the same parameter from a displacement that may be out of balance.
     ///
     /// # Errors
     /// As for [`Self::advance`].
     pub fn relax(&mut self, from: Configuration, observer: Observer) -> Result<Solved, SolveError> {
         let start = from.free(&self.work.discretization.unknowns);
-        let before = Before::unbalanced(self.work, from);
+        let before = SolveStart::unbalanced(self.work, from);
         self.minimize(start, None, from, from.parameter, &before, observer)
     }
 
-    /// Down from an unstable equilibrium at the same parameter: off along its soft mode by a largest motion of `amplitude`
-    /// mm, to the side that has less energy, and then as in [`Self::relax`].
+    /// Descends from an unstable equilibrium to another one at the same parameter: moves off along its soft mode by a
+    /// largest motion of `amplitude` mm, to the side that has less energy, and continues as [`Self::relax`] does.
     ///
     /// # Errors
     /// As for [`Self::advance`].
@@ -81,22 +80,22 @@ impl<'a> Equilibrium<'a> {
         let free = from.free(&self.work.discretization.unknowns);
         let side = |share: f64| -> Vec<f64> { free.iter().zip(&mode.free).map(|(q, m)| q + share * m).collect() };
         let (one, other) = (side(amplitude), side(-amplitude));
-        // Of two sides that are alike, one and the same on every machine: rounding does not decide.
+        // Of two equal sides the same one is taken on every machine: rounding does not decide.
         let start = if self.lies_clearly_lower(&other, &one, from.parameter) { other } else { one };
-        let before = Before::at(self.work, from);
+        let before = SolveStart::at(self.work, from);
         self.minimize(start, None, from, from.parameter, &before, observer)
     }
 
-    /// Unknowns at `to`: along the tangent of the path where it is stable, or the old ones, whichever has less energy; and
-    /// those along the parabola where they have even less.
-    fn predict(&mut self, from: Configuration, to: f64) -> (Vec<f64>, Option<Vec<f64>>, Before) {
+    /// Predicts the unknowns at `to`: along the tangent of the path where it is stable, or the old ones, whichever have
+    /// less energy; and those along the parabola where they have even less.
+    fn predict(&mut self, from: Configuration, to: f64) -> (Vec<f64>, Option<Vec<f64>>, SolveStart) {
         // Where the stiffness has no factor (exactly at a limit point), the old unknowns are as good a start.
         let negative = self.work.factorize_at(from).unwrap_or(usize::MAX);
         let Workspace { discretization, tangent: TangentStiffness { solver, .. }, assembled, .. } = &mut *self.work;
         let unknowns = &discretization.unknowns;
         let Coordinates { free: old, placement, .. } = Coordinates::of(unknowns, from);
         let forces = assembled.forces();
-        let before = Before::with(&placement, &forces, from, assembled.energy);
+        let before = SolveStart::with(&placement, &forces, from, assembled.energy);
         if negative > 0 {
             return (old, None, before);
         }
@@ -121,8 +120,8 @@ impl<'a> Equilibrium<'a> {
         (start, bent, before)
     }
 
-    /// The parabola through the equilibrium before, q₋ at parameter s₋, and the one in hand, q with the tangent step Δq to
-    /// s + h: q + Δq + (q₋ − q + Δq a) / a² with a = (s − s₋)/h.
+    /// Extrapolates along the parabola through the equilibrium before, q₋ at parameter s₋, and the current one, q with
+    /// the tangent step Δq to s + h: q + Δq + (q₋ − q + Δq a) / a² with a = (s − s₋)/h.
     fn bend(&self, old: &[f64], step: &[f64], from: f64, to: f64) -> Option<Vec<f64>> {
         let previous = self.previous?;
         let ratio = (from - previous.parameter) / (to - from);
@@ -141,16 +140,17 @@ impl<'a> Equilibrium<'a> {
         difference <= 0.0
     }
 
-    /// Whether it is less by more than rounding.
+    /// Whether strain energy less work of the loads is less at `one` than at `other` by more than rounding.
     fn lies_clearly_lower(&self, one: &[f64], other: &[f64], parameter: f64) -> bool {
         let (difference, energy) = self.rise(one, other, parameter);
         difference < -CLEARLY * energy.abs()
     }
 
-    /// Strain energy less work of the loads at `one` less that at `other`, and the strain energy there.
+    /// Computes the strain energy less work of the loads at `one` minus that at `other`, and the strain energy at
+    /// `other`.
     fn rise(&self, one: &[f64], other: &[f64], parameter: f64) -> (f64, f64) {
         let discretization = &self.work.discretization;
-        let [one, other] = [one, other].map(|free| discretization.unknowns.place(free, parameter).displacement());
+        let [one, other] = [one, other].map(|free| discretization.unknowns.configure(free, parameter).displacement());
         let strokes = discretization.terms.strokes(&discretization.mesh, &other, &one);
         let done = discretization.terms.work(&strokes, parameter);
         let energy = self.work.energy(&other, parameter);
@@ -164,7 +164,7 @@ impl<'a> Equilibrium<'a> {
         bent: Option<Vec<f64>>,
         from: Configuration,
         parameter: f64,
-        before: &Before,
+        before: &SolveStart,
         observer: Observer,
     ) -> Result<Solved, SolveError> {
         let (tolerance, max_iterations) = (self.scene.solver.tolerance, self.scene.solver.max_iterations);

@@ -9,30 +9,30 @@ use crate::energy::Discretization;
 use crate::equilibrium::sparse::{Couplings, SparseSolver};
 use crate::model::{BLOCK, Blocks, Placement};
 
-/// Numbers of the matrix that a thread fills at a time.
+/// Number of entries of the matrix that a thread fills at a time.
 const SHARE: usize = 1 << 14;
 
-/// Where the numbers of the matrix come from.
+/// Map from the blocks on control points to the entries of the matrix.
 #[derive(Debug)]
 pub struct Pattern {
-    /// For each number of the matrix the number of the blocks that it is; [`NOWHERE`] where it is none.
+    /// Index of the number in the blocks that is copied to each entry of the matrix; [`NOWHERE`] where there is none.
     sources: Vec<u32>,
     projected: Vec<ProjectedBlock>,
 }
 
-/// Beyond all blocks and every matrix.
+/// Index of no number: beyond all blocks and every matrix.
 const NOWHERE: u32 = u32::MAX;
 
-/// Block of which a control point is constrained.
+/// Block of control points of which at least one is constrained.
 #[derive(Debug)]
 struct ProjectedBlock {
     block: usize,
     points: [usize; 2],
-    /// Entry of the matrix for each pair of entries, row-major, `NOWHERE` where the mirror image stands for it.
+    /// Entry of the matrix for each pair of entries, row-major; `NOWHERE` where the transposed entry is stored instead.
     targets: Vec<u32>,
 }
 
-/// Which free unknowns meet in the matrix: those of control points that have a block.
+/// Finds the free unknowns that meet in the matrix: those of control points that have a block.
 pub fn couplings(discretization: &Discretization) -> Couplings {
     let unknowns = &discretization.unknowns;
     let of_point = |point| unknowns.entries_of(point).iter().map(|entry| entry.coordinate).collect();
@@ -44,16 +44,16 @@ pub fn couplings(discretization: &Discretization) -> Couplings {
 }
 
 impl Pattern {
-    /// For a matrix that a solver holds for these [`couplings`].
+    /// Creates the map for a matrix that a solver holds for these [`couplings`].
     pub fn new(discretization: &Discretization, solver: &SparseSolver) -> Self {
         let mut pattern = Self { sources: vec![NOWHERE; solver.value_count()], projected: Vec::new() };
         for (block, points) in discretization.blocks.pairs().enumerate() {
-            pattern.place(discretization, solver, block * BLOCK, points);
+            pattern.map_block(discretization, solver, block * BLOCK, points);
         }
         pattern
     }
 
-    fn place(&mut self, discretization: &Discretization, solver: &SparseSolver, block: usize, points: [usize; 2]) {
+    fn map_block(&mut self, discretization: &Discretization, solver: &SparseSolver, block: usize, points: [usize; 2]) {
         let unknowns = &discretization.unknowns;
         let [i, j] = points;
         let stored = |a: usize, b: usize| i != j || a >= b;
@@ -74,7 +74,7 @@ impl Pattern {
         self.projected.push(ProjectedBlock { block, points, targets });
     }
 
-    /// Fills the values of the matrix.
+    /// Fills in the values of the matrix.
     pub fn fill(&self, discretization: &Discretization, placement: &Placement, blocks: &Blocks, values: &mut [f64]) {
         let shares = values.par_chunks_mut(SHARE).zip(self.sources.par_chunks(SHARE));
         shares.for_each(|(values, sources)| {
@@ -99,7 +99,7 @@ impl Pattern {
                             value += left[c] * block[3 * c + d] * right[d];
                         }
                     }
-                    // An unknown that two points share meets itself in their block and in its mirror image.
+                    // An unknown that two points share meets itself in their block and in the transposed block.
                     let twice = i != j && a.coordinate == b.coordinate;
                     values[target as usize] += if twice { 2.0 * value } else { value };
                 }
@@ -109,8 +109,8 @@ impl Pattern {
 }
 
 fn target(solver: &SparseSolver, a: usize, b: usize) -> u32 {
-    // A solver has fewer than 2³² places.
-    solver.place(a, b) as u32
+    // A solver holds fewer than 2³² values.
+    solver.offset_of(a, b) as u32
 }
 
 #[cfg(test)]
@@ -145,7 +145,7 @@ mod tests {
             let vector =
                 |seed: usize| (0..count).map(|i| ((i * 7919 + seed) % 1013) as f64 / 1013.0 - 0.5).collect::<Vec<_>>();
             let state: Vec<f64> = vector(5).iter().map(|x| 0.02 * x).collect();
-            let placement = discretization.unknowns.place(&state, 17.0);
+            let placement = discretization.unknowns.configure(&state, 17.0);
             let mut assembled = Assembled::new(&discretization);
             assembled.assemble(&discretization, &placement.displacement(), 0.0, Want::Stiffness);
 
@@ -180,7 +180,7 @@ mod tests {
             SparseSolver::new(&couplings(&discretization)).unwrap().flops()
         };
         let (along, across) = (flops([40, 4]), flops([4, 40]));
-        // Numbered along the shorter way a band would be six times as wide, with 36 times the work.
+        // Numbered along the shorter direction a band would be six times as wide, with 36 times the work.
         assert!(across < 1.5 * along && along < 3.0 * across, "{along:e} {across:e}");
     }
 }

@@ -4,15 +4,16 @@ use crate::equilibrium::iterate::{Effort, Iterate};
 use crate::equilibrium::sparse::FactorError;
 use crate::model::ModelError;
 
-/// Why no equilibrium was found.
+/// Reasons why a solve found no equilibrium.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SolveError {
     /// The iterations ran out.
     #[error("no equilibrium after {} iterations: residual {:.3e} of the forces", last.iteration, last.relative_residual())]
     TooManyIterations {
         /// The last iterate.
         last: Iterate,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// No step along the descent direction lowers the energy.
@@ -20,7 +21,7 @@ pub enum SolveError {
     LineSearchFailed {
         /// The last iterate.
         last: Iterate,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// Energy or residual is not a number.
@@ -28,25 +29,25 @@ pub enum SolveError {
     NotANumber {
         /// The last iterate.
         last: Iterate,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// The stiffness has no factor.
     #[error("the stiffness cannot be factored: {cause}")]
     Factor {
-        /// What the solver found.
+        /// Error of the sparse solver.
         cause: FactorError,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// Nothing moves as the parameter changes: there is no path to follow.
     #[error(
-        "nothing moves as the parameter changes at {parameter}: give the loads or motions a history that goes on there"
+        "nothing moves as the parameter changes at {parameter}: give the loads or motions a history that continues there"
     )]
     NothingMoves {
-        /// The parameter.
+        /// Value of the scene's parameter.
         parameter: f64,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
     /// The observer asked to stop.
@@ -54,13 +55,13 @@ pub enum SolveError {
     Stopped {
         /// The last iterate.
         last: Iterate,
-        /// What it took.
+        /// Iterations and factorizations spent.
         effort: Effort,
     },
 }
 
 impl SolveError {
-    /// An iterate, where its energy and residual are numbers.
+    /// Returns an iterate where its energy and residual are numbers, and the error otherwise.
     pub(super) fn unless_finite(last: Iterate, effort: Effort) -> Result<Iterate, Self> {
         if last.is_finite() { Ok(last) } else { Err(Self::NotANumber { last, effort }) }
     }
@@ -77,7 +78,7 @@ impl SolveError {
         }
     }
 
-    /// The last iterate, where there is one.
+    /// Last iterate of the failed solve, where there is one.
     pub fn last(&self) -> Option<&Iterate> {
         match self {
             Self::TooManyIterations { last, .. }
@@ -89,8 +90,9 @@ impl SolveError {
     }
 }
 
-/// Why a scene has no buffers on a mesh.
+/// Reasons why no workspace could be built for a scene on a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WorkspaceError {
     /// Supports or loads do not fit the mesh.
     #[error(transparent)]

@@ -1,45 +1,46 @@
-//! What a solve leaves.
+//! The result of a solve.
 
 use crate::energy::{At, Balance, Discretization};
 use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::iterate::{Effort, Iterate};
-use crate::equilibrium::ledger::Before;
+use crate::equilibrium::ledger::SolveStart;
 use crate::equilibrium::vector::{length, product};
 use crate::equilibrium::workspace::{Factored, Workspace};
 use crate::scene::Scene;
 
-/// A point of equilibrium.
+/// An equilibrium that a solve found.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Solved {
     /// Displacement of the control points, mm.
     pub displacement: Vec<[f64; 3]>,
     /// Rotation vectors of the rigid sections where one of them turns freely, radians.
     pub turns: Vec<[f64; 3]>,
-    /// Energies since the start of the solve.
+    /// Balance of energies since the start of the solve.
     pub balance: Balance,
-    /// Turning ends: moment at each end of the whole shell, dΠ/dθ / 2, N·mm. Otherwise 0.
+    /// Moment at each end of the whole shell where ends turn, dΠ/dθ / 2, N·mm; otherwise 0.
     pub moment: f64,
-    /// Negative pivots of the stiffness there; 0 where the equilibrium is stable.
+    /// Number of negative pivots of the stiffness there; 0 where the equilibrium is stable.
     pub negative_pivots: usize,
-    /// |residual| over the forces that it is compared with.
+    /// Norm of the residual divided by the forces that it is compared with.
     pub residual: f64,
-    /// The largest force met so far, N; see [`super::ForceScale::met`].
+    /// Largest force met so far, N; see [`super::ForceScale::met`].
     pub largest_force: f64,
-    /// What it took.
+    /// Iterations and factorizations spent.
     pub effort: Effort,
 }
 
-/// Where a solve ended.
+/// The configuration that a solve ended at.
 pub(super) struct Ended {
     /// Displacement of the control points, mm.
     pub displacement: Vec<[f64; 3]>,
     /// Rotation vectors of the sections, radians; see [`crate::model::Placement::turns`].
     pub turns: Vec<[f64; 3]>,
-    /// Strokes of the actions on the way, N·mm.
+    /// Strokes of the actions over the solve, N·mm.
     pub strokes: Vec<f64>,
     /// Forces conjugate to the given coordinates, N.
     pub reactions: Vec<f64>,
-    /// What it took.
+    /// Iterations and factorizations spent.
     pub effort: Effort,
 }
 
@@ -62,12 +63,12 @@ impl Workspace {
         }
     }
 
-    /// What a solve has found; remembers that stiffness and factor stand there.
+    /// Forms the result of a solve, and remembers that stiffness and factor are those of its end.
     pub(super) fn solved(
         &mut self,
         scene: &Scene,
         parameter: f64,
-        before: &Before,
+        before: &SolveStart,
         ended: Ended,
         last: &Iterate,
     ) -> Solved {
@@ -80,7 +81,7 @@ impl Workspace {
         let moment = self.moment_of(scene, &ended.reactions);
         let Discretization { mesh, terms, .. } = &self.discretization;
         let beside = terms.energies(At { mesh, displacement: &ended.displacement, parameter });
-        // What the shell stores is known without integrating again.
+        // The energy of the shell follows without integrating again.
         let of_shell = last.energy - beside.iter().sum::<f64>();
         let balance = Balance {
             stored: parts * last.energy,

@@ -17,32 +17,33 @@ use crate::equilibrium::workspace::{Formed, Workspace};
 use crate::model::{Blocks, Placement};
 use crate::shell::dot;
 
-/// Inverse iterations at most. Near a critical point the lowest eigenvalue stands far from the next, and a handful
-/// suffice; of eigenvalues that are nearly equal any mixture of modes will do.
+/// Largest number of inverse iterations. Near a critical point the lowest eigenvalue lies far from the next, and a
+/// handful suffice; of eigenvalues that are nearly equal any mixture of modes will do.
 const MAX_ITERATIONS: usize = 200;
-/// The eigenvalue has settled when it changes by less than this, relatively to its distance from the shift.
+/// Change of the eigenvalue, relative to its distance from the shift, below which it has settled.
 const SETTLED: f64 = 1e-10;
-/// The same where only its magnitude is asked for.
+/// Relative change below which an eigenvalue has settled where only its magnitude is asked for.
 const ROUGH: f64 = 0.1;
-/// The shift is at most this many times the lowest eigenvalue, where that is negative.
+/// Largest ratio of the shift to the lowest eigenvalue, where that is negative.
 const FARTHEST: f64 = 4.0;
-/// Trials of shifts at most: from the smallest magnitude of a number to the largest.
+/// Largest number of trials of shifts: from the smallest magnitude of a number to the largest.
 const MAX_SHIFTS: usize = 600;
 
 /// The lowest eigenvalue of the stiffness on the free unknowns, with its mode.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SoftMode {
     /// Eigenvalue, N/mm: twice the energy of a small motion along the mode with a root mean square of 1 mm.
     pub eigenvalue: f64,
     /// Displacement of the control points, scaled to a largest length of 1.
     pub shape: Vec<[f64; 3]>,
-    /// The free unknowns of that motion.
+    /// Rates of the free unknowns in the mode.
     pub(super) free: Vec<f64>,
     /// Control point that moves most.
     pub largest_at: usize,
-    /// Inverse iterations that it took.
+    /// Number of inverse iterations that it took.
     pub iterations: usize,
-    /// Factorizations that it took.
+    /// Number of factorizations that it took.
     pub factorizations: usize,
 }
 
@@ -55,7 +56,7 @@ pub fn soft_mode(work: &mut Workspace, at: Configuration) -> Result<SoftMode, So
     let Coordinates { free, placement, .. } = configuration;
     let mass = mass(discretization, tangent, &placement);
     let mut slicing = Slicing { mass, stiffness: tangent.matrix(), tangent, tried: 0 };
-    // A start that no symmetry is orthogonal to, the same in every run.
+    // The start is the same in every run, and has no symmetry.
     let start: Vec<f64> = (0..free.len()).map(|i| 1.0 + (i as f64 * 0.618_033_988_75).fract()).collect();
     slicing.shift_below(&start)?;
     let (vector, eigenvalue, iterations) = slicing.iterate(start, SETTLED);
@@ -69,26 +70,27 @@ pub fn soft_mode(work: &mut Workspace, at: Configuration) -> Result<SoftMode, So
     Ok(SoftMode { eigenvalue, shape, free, largest_at, iterations, factorizations })
 }
 
-/// A shell that has buckled, or is about to, with the load at which it did to first order.
+/// First-order estimate of the load at which a shell buckled that is now unstable.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinearBuckling {
-    /// Negative pivots of the stiffness at the state.
+    /// Number of negative pivots of the stiffness at the state.
     pub negative: usize,
     /// The scene's parameter at which the softest mode loses its stiffness, were that linear in the parameter from the
     /// undeformed shell on: exact where the shell deforms in proportion to the load before it buckles.
     pub parameter: f64,
 }
 
-/// Difference of the strain energy from that of a small displacement of the same shape, scaled up, up to which the shell has
-/// deformed in proportion. Beside limit points stiffness falls with the root of the distance, and the estimate is 5 to 11 % low
-/// for a hinged roof that is right to 1 %.
+/// Difference of the strain energy from that of a small displacement of the same shape, scaled up, up to which the
+/// shell has deformed in proportion. Near limit points stiffness falls with the root of the distance, and the estimate
+/// is 5 to 11 % low for a hinged roof that is right to 1 %.
 const IN_PROPORTION: f64 = 0.1;
-/// A small displacement, relative to what there is.
+/// Factor that makes a displacement small.
 const SMALL: f64 = 1e-3;
 
 impl LinearBuckling {
-    /// Of a state; `None` where it is stable, where the shell has not deformed in proportion to the load, or where the mode has
-    /// no stiffness in the undeformed shell either.
+    /// Estimates the buckling load at a state; `None` where it is stable, where the shell has not deformed in
+    /// proportion to the load, or where the mode has no stiffness in the undeformed shell either.
     ///
     /// # Errors
     /// Where the stiffness has no factor.
@@ -114,7 +116,7 @@ impl Workspace {
         (self.energy(&small, 0.0) / (SMALL * SMALL) - energy).abs() <= IN_PROPORTION * energy
     }
 
-    /// vᵀKv of a direction in the free unknowns.
+    /// Computes vᵀKv of a direction v in the free unknowns.
     fn stiffness_along(&mut self, direction: &[f64], at: Configuration) -> f64 {
         let Formed { tangent, .. } = self.form_at(at);
         let stiffness = tangent.matrix();
@@ -122,7 +124,7 @@ impl Workspace {
     }
 }
 
-/// Tᵀ m T in the structure of the stiffness.
+/// Computes Tᵀ m T in the structure of the stiffness.
 fn mass(discretization: &Discretization, tangent: &TangentStiffness, placement: &Placement) -> Vec<f64> {
     let mut diagonal = Blocks::zeros(&discretization.blocks);
     for (point, weight) in Metric::new(&discretization.mesh).weights.iter().enumerate() {
@@ -132,7 +134,7 @@ fn mass(discretization: &Discretization, tangent: &TangentStiffness, placement: 
     tangent.project(discretization, placement, &diagonal)
 }
 
-/// K − σ M for changing σ.
+/// The matrix K − σ M for changing shifts σ.
 struct Slicing<'w> {
     tangent: &'w mut TangentStiffness,
     stiffness: Vec<f64>,
@@ -156,14 +158,15 @@ impl Slicing<'_> {
         if self.count_below(0.0)? == 0 {
             return Ok(());
         }
-        // A scale to begin with. The vector itself will not do to continue from: it has little of the lowest mode.
+        // This gives a scale to begin with. The vector itself is no start to continue from: it has little of the lowest
+        // mode.
         let (_, nearest, _) = self.iterate(start.to_vec(), ROUGH);
         let (mut above, mut below) = (0.0, -2.0 * nearest.abs());
         while self.count_below(below)? > 0 && self.tried < MAX_SHIFTS {
             (above, below) = (below, 4.0 * below);
         }
         while below < FARTHEST * above && self.tried < MAX_SHIFTS {
-            // Nothing is known above yet where the first shift was far enough: between it and 0 there is no geometric mean.
+            // Where the first shift was far enough no shift above is known yet: it has no geometric mean with 0.
             let middle = if above == 0.0 { below / FARTHEST } else { -(below * above).sqrt() };
             match self.count_below(middle)? {
                 0 => below = middle,
@@ -173,12 +176,12 @@ impl Slicing<'_> {
         self.count_below(below).map(|_| ())
     }
 
-    /// vᵀ A v.
+    /// Computes vᵀ A v.
     fn form(&self, vector: &[f64], values: &[f64]) -> f64 {
         product(vector, &self.tangent.solver.multiply(values, vector))
     }
 
-    /// Inverse iteration with the factor at hand: mode, eigenvalue and iterations.
+    /// Iterates with the current factor; returns mode, eigenvalue and the number of iterations.
     fn iterate(&mut self, mut vector: Vec<f64>, settled: f64) -> (Vec<f64>, f64, usize) {
         let mut last = f64::INFINITY;
         for iteration in 1..=MAX_ITERATIONS {

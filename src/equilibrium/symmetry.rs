@@ -1,4 +1,4 @@
-//! Symmetry of the stiffness, as the kernels make it.
+//! How symmetric the stiffness is that the kernels make.
 //!
 //! The assembled matrix keeps one half and is symmetric whatever the kernels do. So the bilinear form is summed here
 //! from the full 15 × 15 Hessians of the quadrature points, for two fields x and y on the control points:
@@ -14,10 +14,11 @@ use crate::shell::{Hessian, PointReference, dot};
 
 /// Errors of the stiffness of the shell at a state, relative to |x| |K y|.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SymmetryError {
-    /// Of the Hessians: |x·(K y) − y·(K x)|.
+    /// Asymmetry of the Hessians: |x·(K y) − y·(K x)|.
     pub hessians: f64,
-    /// Of the assembled half against them: |x·(K y) − x·(K_half y)|.
+    /// Difference of the assembled half from the Hessians: |x·(K y) − x·(K_half y)|.
     pub assembled: f64,
 }
 
@@ -64,7 +65,7 @@ fn measure(
     SymmetryError { hessians: (forward - backward).abs() / size, assembled: (forward - stored).abs() / size }
 }
 
-/// x·(K y) and y·(K x) of the points of a table, for the fields displacement, x, y.
+/// Computes x·(K y) and y·(K x) of the points of a table, for the fields displacement, x, y.
 fn forms<Batch, const ROWS: usize>(
     discretization: &Discretization,
     table: &PointTable<Batch, ROWS>,
@@ -96,12 +97,12 @@ fn forms<Batch, const ROWS: usize>(
     forms
 }
 
-/// A field without any symmetry, the same in every run.
+/// Makes a field without any symmetry, the same in every run.
 fn field(count: usize, ratio: f64) -> Vec<[f64; 3]> {
     (0..count).map(|i| [0, 1, 2].map(|c| ((3 * i + c + 1) as f64 * ratio).fract() - 0.5)).collect()
 }
 
-/// Σ x_p H_pq y_q, every entry of H as it stands.
+/// Computes Σ x_p H_pq y_q from every entry of H, without assuming symmetry.
 fn form(x: &Derivatives, hessian: &Hessian, y: &Derivatives) -> f64 {
     (0..15).map(|p| x[p / 3][p % 3] * (0..15).map(|q| hessian[p][q] * y[q / 3][q % 3]).sum::<f64>()).sum()
 }

@@ -9,22 +9,23 @@ use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::sparse::{FactorError, NegativePivots, SparseSolver};
 use crate::model::{Blocks, Placement};
 
-/// Residual of a solution where the tangent has a skew part, relative; Newton's convergence asks for no more.
+/// Relative residual of a solution where the tangent has a skew part; Newton's convergence needs no less.
 const SKEW_TOLERANCE: f64 = 1e-9;
-/// Iterations at most there: the skew part comes from free edges alone, so that its rank, in effect, is small.
+/// Largest number of iterations of such a solution: the skew part comes from free edges alone, so that its rank, in
+/// effect, is small.
 const SKEW_ITERATIONS: usize = 100;
 
-/// Where its entries come from, and the solver that holds them.
+/// The matrix on the free unknowns: the map that fills it, and the solver that holds it.
 #[derive(Debug)]
 pub(super) struct TangentStiffness {
     pattern: Pattern,
     pub(super) solver: SparseSolver,
-    /// The symmetric part of the matrix, which its factor takes the place of; empty where there is no skew one.
+    /// Copy of the symmetric part of the matrix, which its factor overwrites; empty where there is no skew part.
     symmetric: Vec<f64>,
 }
 
 impl TangentStiffness {
-    /// For a mesh.
+    /// Creates the structure and the solver for a mesh.
     ///
     /// # Errors
     /// Where the factor does not fit in memory.
@@ -33,21 +34,21 @@ impl TangentStiffness {
         Ok(Self { pattern: Pattern::new(discretization, &solver), solver, symmetric: Vec::new() })
     }
 
-    /// The matrix at a point, Tᵀ K T and what the curvature of the supports adds: its symmetric part where loads turn with
-    /// the shell, and a copy of that is kept. What factor there was is lost.
+    /// Forms the matrix at a point, Tᵀ K T and what the curvature of the supports adds. Where loads turn with the shell
+    /// it is the symmetric part, of which a copy is kept. The factor before is lost.
     pub(super) fn form(&mut self, discretization: &Discretization, placement: &Placement, assembled: &Assembled) {
         self.pattern.fill(discretization, placement, &assembled.stiffness, self.solver.matrix_mut());
         self.solver.add(&placement.curvature(&assembled.forces()));
         self.symmetric = if assembled.has_skew() { self.solver.matrix_mut().to_vec() } else { Vec::new() };
     }
 
-    /// Factors the matrix that was formed or filled in; not counted in the effort of a solve.
+    /// Factors the matrix that was formed or filled in; this is not counted in the effort of a solve.
     pub(super) fn factorize_formed(&mut self) -> Result<NegativePivots, SolveError> {
         let factored = self.solver.factorize();
         factored.map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })
     }
 
-    /// A copy of the matrix that was formed: its factor takes the place of it.
+    /// Copies the matrix that was formed, which its factor will overwrite.
     pub(super) fn matrix(&mut self) -> Vec<f64> {
         self.solver.matrix_mut().to_vec()
     }
@@ -66,7 +67,8 @@ impl TangentStiffness {
         self.solver.factorize()
     }
 
-    /// Solves the whole system at a point where the tangent has a skew part: the factor of the symmetric one is at hand.
+    /// Solves the whole system at a point where the tangent has a skew part, preconditioned by the factor of the
+    /// symmetric part.
     pub(super) fn solve_whole(
         &self,
         discretization: &Discretization,
@@ -84,7 +86,7 @@ impl TangentStiffness {
         gmres(right_hand_side, whole, |x| self.solver.solve(x), SKEW_TOLERANCE, SKEW_ITERATIONS)
     }
 
-    /// Tᵀ A T for blocks A, as the numbers of a matrix.
+    /// Computes Tᵀ A T for blocks A, as the values of a matrix.
     pub(super) fn project(&self, discretization: &Discretization, placement: &Placement, blocks: &Blocks) -> Vec<f64> {
         let mut values = vec![0.0; self.solver.value_count()];
         self.pattern.fill(discretization, placement, blocks, &mut values);
@@ -193,7 +195,7 @@ mod tests {
             let discretization = work.discretization();
             let still = vec![[0.0; 3]; discretization.mesh.control_points.len()];
             let count = discretization.unknowns.count();
-            let placement = discretization.unknowns.place(&vec![0.0; count], 0.0);
+            let placement = discretization.unknowns.configure(&vec![0.0; count], 0.0);
             let mut assembled = Assembled::new(discretization);
             assembled.assemble(discretization, &still, 0.0, Want::Stiffness);
             let load: Vec<f64> = (0..count).map(|i| (i * 7919 % 1013) as f64 / 1013.0 - 0.5).collect();
@@ -213,7 +215,7 @@ mod tests {
         let [[x, z, e], _, tied @ ..] = &solutions[..] else { unreachable!() };
         let share = STIFFNESS * product(e, x) / (1.0 + STIFFNESS * product(e, z));
         let scale = x.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        assert!((share * product(e, z)).abs() > 1e-3 * scale, "the tie tells");
+        assert!((share * product(e, z)).abs() > 1e-3 * scale, "the tie matters");
         for [found, ..] in tied {
             for (i, found) in found.iter().enumerate() {
                 assert!((found - (x[i] - share * z[i])).abs() < 1e-9 * scale, "{i}: {found}");

@@ -1,4 +1,4 @@
-//! The pieces of a Newton iteration one by one, for timing.
+//! The parts of a Newton iteration one by one, for timing.
 
 use crate::energy::Want;
 use crate::equilibrium::configuration::Configuration;
@@ -6,10 +6,11 @@ use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::workspace::Workspace;
 use crate::model::PointTable;
 
-/// Operations and bytes of the pieces of an iteration.
+/// Operations and bytes of the parts of a Newton iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct KernelCost {
-    /// Floating-point operations of Σ Fᵀ H F, upper half.
+    /// Floating-point operations of Σ Fᵀ H F, of which the upper half is formed.
     pub assembly_flops: f64,
     /// Bytes of the tables that an assembly reads: functions and undeformed points.
     pub table_bytes: f64,
@@ -17,11 +18,11 @@ pub struct KernelCost {
     pub factor_flops: f64,
     /// Bytes of the factor.
     pub factor_bytes: f64,
-    /// Threads that can share factor and solution.
+    /// Largest number of threads that can share factor and solution.
     pub factor_threads: usize,
 }
 
-/// The pieces at one state; each call does the same work.
+/// The parts of a Newton iteration at one state; each call of one does the same work.
 #[derive(Debug)]
 pub struct KernelRun<'a> {
     work: &'a mut Workspace,
@@ -31,10 +32,10 @@ pub struct KernelRun<'a> {
 }
 
 impl<'a> KernelRun<'a> {
-    /// Prepares the pieces at a state whose stiffness has a factor.
+    /// Prepares the parts at a state whose stiffness has a factor.
     ///
     /// # Errors
-    /// Where it has none.
+    /// Where the stiffness has no factor.
     pub fn new(work: &'a mut Workspace, at: Configuration<'a>) -> Result<Self, SolveError> {
         let free = at.free(&work.discretization.unknowns);
         let right_hand_side = (0..free.len()).map(|i| 1.0 + (i % 7) as f64).collect();
@@ -43,7 +44,7 @@ impl<'a> KernelRun<'a> {
         Ok(run)
     }
 
-    /// Counts the operations and bytes of the pieces.
+    /// Counts the operations and bytes of the parts.
     pub fn cost(&self) -> KernelCost {
         let tables = &self.work.discretization.shell.tables;
         let [p1, p2] = self.work.discretization.mesh.degree;
@@ -84,17 +85,17 @@ impl<'a> KernelRun<'a> {
         );
     }
 
-    /// The matrix on the unknowns, from what was assembled last.
+    /// Forms the matrix on the unknowns from what was assembled last.
     pub fn form(&mut self) {
         let Workspace { discretization, tangent, assembled, .. } = &mut *self.work;
-        let placement = discretization.unknowns.place(&self.free, self.at.parameter);
+        let placement = discretization.unknowns.configure(&self.free, self.at.parameter);
         tangent.form(discretization, &placement, assembled);
     }
 
     /// Factorizes the formed matrix in place.
     ///
     /// # Errors
-    /// Where it has none.
+    /// Where the stiffness has no factor.
     pub fn factor(&mut self) -> Result<(), SolveError> {
         self.work.tangent.factorize_formed().map(|_| ())
     }

@@ -2,7 +2,7 @@
 
 use crate::shell::dot;
 
-/// Σ a b.
+/// Inner product Σ a b of two vectors.
 pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

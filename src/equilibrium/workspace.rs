@@ -11,17 +11,18 @@ use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
-/// Buffers for one mesh. Holds nothing that decides a result: a new one gives the same bits.
+/// Tables, matrix and factor for one mesh, kept between solves. It holds nothing that decides a result: a new one gives
+/// the same bits.
 #[derive(Debug)]
 pub struct Workspace {
     pub(super) discretization: Discretization,
     pub(super) tangent: TangentStiffness,
     pub(super) assembled: Assembled,
-    /// Where the stiffness in `assembled` and its factor were formed, and its negative pivots.
+    /// Configuration at which the stiffness in `assembled` and its factor were formed, with the negative pivots.
     pub(super) factored_at: Option<Factored>,
 }
 
-/// A workspace with the matrix of a configuration, not factored.
+/// The matrix of a configuration in a workspace, not factored.
 pub(super) struct Formed<'w> {
     pub discretization: &'w Discretization,
     pub tangent: &'w mut TangentStiffness,
@@ -45,7 +46,7 @@ impl Workspace {
         Self::with_terms(scene, mesh, &[])
     }
 
-    /// Builds the same with terms of the caller's own.
+    /// Builds tables, structure and symbolic factor, with terms of the caller's own.
     ///
     /// # Errors
     /// Where supports, loads or those terms do not fit the mesh, or the factor does not fit in memory.
@@ -53,7 +54,7 @@ impl Workspace {
         Self::of(Discretization::with_terms(scene, mesh, own)?).map_err(WorkspaceError::from)
     }
 
-    /// Structure and symbolic factor for a scene on a mesh.
+    /// Builds structure and symbolic factor for a scene that is already discrete on a mesh.
     ///
     /// # Errors
     /// Where the factor does not fit in memory.
@@ -63,7 +64,7 @@ impl Workspace {
         Ok(Self { discretization, tangent, assembled, factored_at: None })
     }
 
-    /// The scene on the mesh: its tables, unknowns and terms.
+    /// The scene made discrete on the mesh: its tables, unknowns and terms.
     pub fn discretization(&self) -> &Discretization {
         &self.discretization
     }
@@ -83,11 +84,12 @@ impl Workspace {
         self.assembled.forces()
     }
 
-    /// Stiffness and factor at a displacement, unless the last solve left them there; returns the negative pivots. Not
-    /// counted in the effort of a solve, which would then depend on what ran before in the same process.
+    /// Forms and factors the stiffness at a configuration, unless the last solve left it there; returns the number of
+    /// negative pivots. This is not counted in the effort of a solve, which would then depend on what ran before in the
+    /// same process.
     pub(super) fn factorize_at(&mut self, at: Configuration) -> Result<usize, SolveError> {
-        // Where sections turn freely the state decides the unknowns to rounding only: those that a solve ended with would
-        // give other bits than those of the same state read from a log.
+        // Where sections turn freely the state decides the unknowns up to rounding only: those that a solve ended with
+        // would give other bits than those of the same state read from a log.
         let exact = !self.discretization.unknowns.turns_are_unknown();
         if let Some(known) = self.factored_at.as_ref().filter(|known| exact && known.is_at(&at)) {
             return Ok(known.negative);
@@ -97,7 +99,7 @@ impl Workspace {
         Ok(negative)
     }
 
-    /// The matrix on the free unknowns at a state, not factored.
+    /// Forms the matrix on the free unknowns at a state, without factoring it.
     pub(super) fn form_at(&mut self, at: Configuration) -> Formed<'_> {
         self.factored_at = None;
         let Self { discretization, tangent, assembled, .. } = self;

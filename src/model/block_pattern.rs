@@ -1,28 +1,28 @@
-//! Which 3 × 3 blocks a matrix on the control points has: those of pairs that share an element, and others on request.
+//! The 3 × 3 blocks of a matrix on the control points: those of pairs that share an element, and others on request.
 
 use crate::model::Connectivity;
 
-/// Blocks (i, j) with j ≥ i, row by row, in each row with growing j; the others are their mirror images.
+/// Pattern of the blocks (i, j) with j ≥ i, row by row, in each row with growing j; the others are their transposes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockPattern {
     /// Blocks of row i: `starts[i]..starts[i + 1]`.
     starts: Vec<usize>,
     columns: Vec<usize>,
-    /// For each part.
+    /// Slots of each part.
     slots: Vec<Slots>,
 }
 
-/// The places within their rows of the blocks of the functions a ≤ b of elements.
+/// Positions within their rows of the blocks of the functions a ≤ b of elements.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Slots {
-    /// Those of element e: `places[starts[e]..starts[e + 1]]`.
+    /// Positions of element e: `places[starts[e]..starts[e + 1]]`.
     starts: Vec<usize>,
     places: Vec<u16>,
 }
 
 impl BlockPattern {
-    /// Of all pairs of control points that share an element of one of the parts, and of `pairs` beyond these. The parts have
-    /// the same control points.
+    /// Creates the pattern of all pairs of control points that share an element of one of the parts, and of `pairs` in
+    /// addition. The parts have the same control points.
     ///
     /// # Panics
     /// Where the parts have different numbers of control points, or a control point meets more than 65,535 others.
@@ -63,12 +63,12 @@ impl BlockPattern {
         self.columns.len()
     }
 
-    /// Where the blocks of a row begin; the first is that of the control point with itself.
+    /// Index of the first block of a row, which is that of the control point with itself.
     pub fn start(&self, row: usize) -> usize {
         self.starts[row]
     }
 
-    /// Control points j ≥ i that a control point i meets.
+    /// Control points j ≥ i that share a block with a control point i.
     pub fn row(&self, row: usize) -> &[usize] {
         &self.columns[self.starts[row]..self.starts[row + 1]]
     }
@@ -78,12 +78,12 @@ impl BlockPattern {
         (0..self.points()).flat_map(|i| self.row(i).iter().map(move |j| [i, *j]))
     }
 
-    /// The block of control points i ≤ j, where they meet.
+    /// Index of the block of control points i ≤ j; `None` where they share none.
     pub fn block(&self, i: usize, j: usize) -> Option<usize> {
         self.row(i).binary_search(&j).ok().map(|slot| self.starts[i] + slot)
     }
 
-    /// Places within their rows of the blocks of an element's functions a ≤ b: (0, 0), (0, 1), ..., (1, 1), ...
+    /// Positions within their rows of the blocks of an element's functions a ≤ b: (0, 0), (0, 1), ..., (1, 1), ...
     pub fn slots(&self, part: usize, element: usize) -> &[u16] {
         let Slots { starts, places } = &self.slots[part];
         &places[starts[element]..starts[element + 1]]
@@ -106,7 +106,7 @@ impl Rows {
         }
         let mut more: Vec<Vec<usize>> = vec![Vec::new(); points];
         pairs.iter().for_each(|[one, other]| more[*one.min(other)].push(*one.max(other)));
-        // Which row a control point was last met in.
+        // The row that a control point was last found in.
         let mut met_in = vec![usize::MAX; points];
         let (mut starts, mut columns) = (vec![0], Vec::new());
         for row in 0..points {

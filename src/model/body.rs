@@ -17,18 +17,18 @@ pub struct Body {
 /// Rigid motions of a body that its supports leave free.
 #[derive(Clone, Debug)]
 pub struct FreeMotions {
-    /// The body.
+    /// Body that moves.
     pub body: Body,
-    /// One in each column, orthonormal, as shares of the body's six.
+    /// Free motions, one in each column, orthonormal, as shares of the body's six.
     pub basis: DMatrix<f64>,
 }
 
-/// What a support holds that holds rigid motions and nothing else.
+/// Rigid motions that a support of rigid motions alone holds.
 #[derive(Clone, Debug)]
 pub struct HeldMotions {
     /// Index of the support.
     pub support: usize,
-    /// What the others leave free.
+    /// Motions that the other supports leave free.
     pub free: FreeMotions,
 }
 
@@ -40,20 +40,20 @@ impl Body {
         Self { middle, size: points.iter().map(|x| norm(sub(*x, middle))).fold(0.0, f64::max) }
     }
 
-    /// Displacement of a point by each of the six motions.
+    /// Displacements of a point by each of the six motions.
     pub fn fields(&self, point: [f64; 3]) -> [[f64; 3]; 6] {
         let arm = scaled(1.0 / self.size, sub(point, self.middle));
         let unit = |k: usize| [0, 1, 2].map(|c| f64::from(u8::from(c == k)));
         [unit(0), unit(1), unit(2), cross(unit(0), arm), cross(unit(1), arm), cross(unit(2), arm)]
     }
 
-    /// One of the motions that the columns of a basis span: a translation if there is one, or else a turn.
+    /// Describes one of the motions that the columns of a basis span: a translation if there is one, or else a turn.
     pub fn words(&self, basis: &DMatrix<f64>) -> String {
         words(basis, self.middle, self.size)
     }
 }
 
-/// One free motion: a translation if there is one, or else a turn.
+/// Describes one free motion: a translation if there is one, or else a turn.
 fn words(basis: &DMatrix<f64>, middle: [f64; 3], size: f64) -> String {
     let turns = Matrix3xX::from_fn(basis.ncols(), |row, column| basis[(row + 3, column)]);
     let gram = turns.transpose() * &turns;

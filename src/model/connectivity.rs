@@ -1,4 +1,4 @@
-//! Which control points each element acts on, and in which order the elements are summed.
+//! The control points of each element, and the order in which elements are summed.
 //!
 //! Nothing here knows how a mesh is made: elements may have different numbers of control points, and several patches may
 //! share them. One thread sums up the elements of a strand one after another; strands of one colour share no control point
@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::spline::{Grid, Mesh};
 
-/// Elements with their control points.
+/// Elements with their control points, and the order of sums over them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Connectivity {
     points: usize,
@@ -23,18 +23,19 @@ pub struct Connectivity {
 /// Elements that one thread sums up one after another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strand {
-    /// The elements.
+    /// Elements of the strand.
     pub elements: Range<usize>,
-    /// The control points that they act on, ascending, in as few runs as there are.
+    /// Control points of these elements, ascending, in as few runs as there are.
     pub runs: Vec<Range<usize>>,
 }
 
 impl Connectivity {
-    /// Of elements with these control points, in strands of so many elements. Strand k takes the first colour that is free for
-    /// it, beginning with k modulo `cycle`.
+    /// Creates the connectivity of elements with these control points, in strands of these lengths. Strand k takes the
+    /// first colour that is free for it, beginning with k modulo `cycle`.
     ///
     /// # Panics
-    /// Where the strands have not all of the elements, or an element has a control point twice: its blocks would be lost.
+    /// Where the strands do not have all of the elements, or an element has a control point twice, whose blocks would
+    /// be lost.
     pub fn new(points: usize, elements: &[Vec<usize>], strand_lengths: &[usize], cycle: usize) -> Self {
         assert_eq!(strand_lengths.iter().sum::<usize>(), elements.len(), "every element is in one strand");
         let is_plain = |element: &Vec<usize>| {
@@ -57,8 +58,9 @@ impl Connectivity {
         Self { points, starts: of_elements, controls, strands, colours }
     }
 
-    /// Of a tensor-product mesh on a grid of elements whose first control points each way are `first`: a strand for each column
-    /// of elements across the first direction. Such columns share no control point where they stand p₁ + 1 apart.
+    /// Creates the connectivity of a tensor-product mesh, on a grid of elements whose first control index in each
+    /// direction is `first`: a strand for each column of elements across the first direction. Columns that are p₁ + 1
+    /// apart share no control point.
     pub fn of_tensor_product(mesh: &Mesh, first: &[Vec<usize>; 2]) -> Self {
         let elements = Grid::new(first.each_ref().map(Vec::len));
         let controls: Vec<Vec<usize>> = (0..elements.len())
@@ -71,7 +73,8 @@ impl Connectivity {
         Self::new(mesh.control_points.len(), &controls, &vec![length; columns], mesh.degree[0] + 1)
     }
 
-    /// The same elements on other control points: `numbers` are the new ones of the old, among `points` in all.
+    /// Returns the same elements on other control points: `numbers` are the new numbers of the old ones, among `points`
+    /// in all.
     ///
     /// # Panics
     /// Where a number is missing.
@@ -97,18 +100,18 @@ impl Connectivity {
         &self.controls[self.starts[element]..self.starts[element + 1]]
     }
 
-    /// The strands, in the order of sums.
+    /// Strands, in the order of sums.
     pub fn strands(&self) -> &[Strand] {
         &self.strands
     }
 
-    /// The strands of each colour, by their numbers.
+    /// Indices of the strands of each colour.
     pub fn colours(&self) -> &[Vec<usize>] {
         &self.colours
     }
 }
 
-/// Sums of all counts before each, and of all.
+/// Sums of all counts before each one, and of all of them.
 pub(super) fn starts(counts: impl Iterator<Item = usize>) -> Vec<usize> {
     let sums = counts.scan(0, |sum, count| {
         *sum += count;
@@ -117,7 +120,7 @@ pub(super) fn starts(counts: impl Iterator<Item = usize>) -> Vec<usize> {
     std::iter::once(0).chain(sums).collect()
 }
 
-/// Runs of what is in a list.
+/// Splits a list of numbers into runs of successive ones.
 fn runs(mut list: Vec<usize>) -> Vec<Range<usize>> {
     list.sort_unstable();
     list.dedup();
@@ -131,7 +134,7 @@ fn colours(points: usize, strands: &[Strand], cycle: usize) -> Vec<Vec<usize>> {
         let touched = || strand.runs.iter().cloned().flatten();
         let is_free = |colour: &usize| touched().all(|point| !taken[point].contains(colour));
         let in_turn = (0..cycle).map(|k| (index + k) % cycle).chain(cycle..);
-        // Of endless colours one is free.
+        // There are endless colours, so that one is free.
         let Some(colour) = in_turn.into_iter().find(is_free) else { unreachable!("colours have no end") };
         touched().for_each(|point| taken[point].push(colour));
         colours.resize_with(colours.len().max(colour + 1), Vec::new);

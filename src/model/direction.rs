@@ -1,4 +1,4 @@
-//! Directions that the undeformed surface gives at a point.
+//! Directions that the undeformed surface defines at a point.
 
 use crate::scene::{Edge, Geometry, ParametricDirection, SurfaceDirection};
 use crate::shell::{cross, dot, norm, scaled, sub};
@@ -8,13 +8,14 @@ use crate::shell::{cross, dot, norm, scaled, sub};
 pub struct Site {
     /// Position, mm.
     pub position: [f64; 3],
-    /// A₁, A₂.
+    /// Tangents A₁, A₂.
     pub tangents: [[f64; 3]; 2],
-    /// The edge that it is taken as a point of.
+    /// Edge that the point is taken to lie on, if any.
     pub edge: Option<Edge>,
 }
 
-/// Unit vector at a point; zero where there is none: on the axis, away from an edge, where the surface collapses.
+/// Unit vector of a direction at a point; zero where there is none: on the axis, away from an edge, and where the
+/// surface collapses.
 pub fn direction_at(geometry: &Geometry, site: &Site, direction: SurfaceDirection) -> [f64; 3] {
     let [a1, a2] = site.tangents;
     let vector = match direction {
@@ -26,7 +27,7 @@ pub fn direction_at(geometry: &Geometry, site: &Site, direction: SurfaceDirectio
     if length > 0.0 { scaled(1.0 / length, vector) } else { [0.0; 3] }
 }
 
-/// The tangent across an edge, out of the shell, less its part along the edge.
+/// Tangent across an edge, out of the shell, less its component along the edge.
 fn outward(tangents: [[f64; 3]; 2], edge: Edge) -> [f64; 3] {
     let (direction, at_end) = edge.side();
     let [across, along] = match direction {

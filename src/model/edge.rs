@@ -6,26 +6,26 @@ use crate::scene::Edge;
 use crate::shell::{cross, dot, norm, scaled, sub};
 use crate::spline::{Mesh, SurfacePoint, mid_surface_point};
 
-/// Control points of an edge and beside it, in the order of the growing parameter along it.
+/// Control points of an edge and of the row next to it, in the order of the growing parameter along it.
 #[derive(Clone, Debug)]
 pub struct EdgeRows {
     /// Control points of the edge.
     pub outer: Vec<usize>,
-    /// Control points of the row beside it.
+    /// Control points of the row next to the edge.
     pub inner: Vec<usize>,
-    /// For each, the unit normal of the shell at the point of the edge that is nearest to the inner control point as
-    /// seen along the surface's own lines.
+    /// Unit normal of the shell for each of them, at the point of the edge that is nearest to the inner control point
+    /// as seen along the surface's own lines.
     pub normals: Vec<[f64; 3]>,
     /// Centroid of the undeformed edge, mm.
     pub centroid: [f64; 3],
 }
 
-/// Newton steps to the nearest point; quadratic from a start within the span.
+/// Largest number of Newton steps to the nearest point; they converge quadratically from a start within the span.
 const NEWTON_STEPS: usize = 30;
-/// Gauss points a span for the centroid.
+/// Number of Gauss points of a span for the centroid.
 const CENTROID_POINTS: usize = 8;
 
-/// Rows of an edge.
+/// Finds the rows of control points of an edge, with their normals.
 ///
 /// # Errors
 /// Where the surface has no normal on the edge.
@@ -35,13 +35,13 @@ pub fn edge_rows(mesh: &Mesh, edge: Edge) -> Result<EdgeRows, ModelError> {
     Ok(EdgeRows { normals: normals.collect::<Result<_, _>>()?, centroid: centroid(mesh, edge), outer, inner })
 }
 
-/// Control points of an edge, and of the row beside it.
+/// Control points of an edge, and of the row next to it.
 pub fn rows_of(mesh: &Mesh, edge: Edge) -> [Vec<usize>; 2] {
-    let (way, at_end) = side(edge);
-    let count = mesh.control_counts()[way];
+    let (direction, at_end) = side(edge);
+    let count = mesh.control_counts()[direction];
     [0, 1].map(|k| {
         let along = if at_end { count - 1 - k } else { k };
-        mesh.grid().line(way, along).collect()
+        mesh.grid().line(direction, along).collect()
     })
 }
 
@@ -51,17 +51,17 @@ pub fn side(edge: Edge) -> (usize, bool) {
     (direction.index(), at_end)
 }
 
-/// The point of an edge at a parameter along it.
+/// Evaluates the point of an edge at a parameter along it.
 pub fn on_edge(mesh: &Mesh, edge: Edge, parameter: f64) -> SurfacePoint {
-    let (way, at_end) = side(edge);
+    let (direction, at_end) = side(edge);
     let end = if at_end { 1.0 } else { 0.0 };
-    mid_surface_point(mesh, &[], if way == 0 { [end, parameter] } else { [parameter, end] })
+    mid_surface_point(mesh, &[], if direction == 0 { [end, parameter] } else { [parameter, end] })
 }
 
-/// Normal at the point of the edge where the inner control point lies square to the edge.
+/// Finds the normal at the point of the edge from which the inner control point lies at right angles to the edge.
 fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f64; 3], ModelError> {
-    let (way, _) = side(edge);
-    let running = 1 - way;
+    let (direction, _) = side(edge);
+    let running = 1 - direction;
     let target = mesh.point(control);
     let degree = mesh.degree[running];
     let mut parameter = mesh.knots[running][j + 1..j + 1 + degree].iter().sum::<f64>() / degree as f64;
@@ -86,8 +86,8 @@ fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f
 }
 
 fn centroid(mesh: &Mesh, edge: Edge) -> [f64; 3] {
-    let (way, _) = side(edge);
-    let running = 1 - way;
+    let (direction, _) = side(edge);
+    let running = 1 - direction;
     let (mut length, mut moment) = (0.0, [0.0; 3]);
     for [parameter, weight] in span_points(mesh, running, CENTROID_POINTS) {
         let point = on_edge(mesh, edge, parameter);

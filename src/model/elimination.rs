@@ -5,18 +5,18 @@ use std::collections::BTreeMap;
 /// Coefficients below this, relative to 1, are rounding: the constraint that they belong to is redundant.
 const REDUNDANT: f64 = 1e-11;
 
-/// Σ factor · component.
+/// Linear expression in components, Σ factor · component.
 pub type Expression = Vec<(usize, f64)>;
 
-/// A constraint that asks of given components what they are not.
+/// A constraint that given components do not meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contradiction {
-    /// Its index.
+    /// Index of the constraint.
     pub constraint: usize,
 }
 
-/// Gaussian elimination. Components from `first_given` on are given and are never eliminated. Linear in the number of
-/// constraints, since each shares components with few others.
+/// Eliminates constraints by Gaussian elimination. Components from `first_given` on are given and are never eliminated.
+/// Linear in the number of constraints, since each shares components with few others.
 ///
 /// # Errors
 /// Where constraints leave a condition on given components alone.
@@ -35,7 +35,7 @@ pub fn eliminate(constraints: &[Expression], first_given: usize) -> Result<BTree
         eliminated.insert(pivot, rest);
         order.push(pivot);
     }
-    // A component may have been eliminated after it was used: put its expression in, last first.
+    // A component may have been eliminated after it was used: its expression is substituted, last first.
     for pivot in order.into_iter().rev() {
         let complete = expand(&eliminated[&pivot], &eliminated).into_iter().collect();
         eliminated.insert(pivot, complete);
@@ -43,7 +43,7 @@ pub fn eliminate(constraints: &[Expression], first_given: usize) -> Result<BTree
     Ok(eliminated)
 }
 
-/// Replaces eliminated components until none is left; drops what cancels.
+/// Replaces eliminated components until none is left, and drops terms that cancel.
 fn expand(expression: &Expression, eliminated: &BTreeMap<usize, Expression>) -> BTreeMap<usize, f64> {
     let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
     let mut pending = expression.clone();
@@ -57,9 +57,9 @@ fn expand(expression: &Expression, eliminated: &BTreeMap<usize, Expression>) -> 
     sum
 }
 
-/// Multipliers λ of constraints that carry forces on the components between them: Σ λ_k b_k = forces, up to what is left on
-/// components that nothing holds. Components beyond the forces are given. A constraint that follows from those before it
-/// carries nothing: λ = 0.
+/// Finds the multipliers λ of constraints that together carry forces on the components: Σ λ_k b_k = forces, up to what
+/// is left on components that nothing holds. Components beyond the forces are given. A constraint that follows from
+/// those before it carries nothing: λ = 0.
 ///
 /// Elimination writes b_k = p_k e_k + Σ_j f_kj e_j, where e_k has a 1 at its pivot and nothing at those of the rows before
 /// it, so that the shares μ of the rows in the forces are read off at the pivots, first to last; then
@@ -70,7 +70,7 @@ pub fn multipliers(constraints: &[&Expression], forces: &[f64]) -> Vec<f64> {
     for (constraint, expression) in constraints.iter().enumerate() {
         let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
         let mut used: Expression = Vec::new();
-        // A row may bring in pivots of rows behind it, none of those before it: each is put in once.
+        // A row may bring in pivots of later rows, but of none before it: each is substituted once.
         let mut pending: BTreeMap<usize, f64> = BTreeMap::new();
         let mut terms: Expression = (*expression).clone();
         loop {
@@ -113,13 +113,13 @@ struct Reduced {
     constraint: usize,
     pivot: usize,
     factor: f64,
-    /// e_k but for the 1 at its pivot.
+    /// Entries of e_k other than the 1 at its pivot.
     rest: Expression,
-    /// Shares of the rows before.
+    /// Factors of the rows before.
     used: Expression,
 }
 
-/// The component below `first_given` with the largest factor; the first of equals.
+/// Finds the component below `first_given` with the largest factor; the first of equal ones.
 fn largest(row: &BTreeMap<usize, f64>, first_given: usize) -> Option<(usize, f64)> {
     row.range(..first_given).fold(None, |best: Option<(usize, f64)>, (component, factor)| match best {
         Some((_, other)) if other.abs() >= factor.abs() => best,

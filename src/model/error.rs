@@ -1,29 +1,30 @@
-//! Why a scene cannot be made discrete.
+//! The errors of scenes that cannot be made discrete.
 
 use crate::model::limits::{MOST_CONTROL_POINTS, SMOOTH};
 use crate::units::significant;
 
-/// A scene that cannot be made discrete.
+/// Reasons why a scene cannot be made discrete.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModelError {
-    /// Two rows of control points at each end are taken by its support.
+    /// The supports at both ends of a direction take more rows of control points than the mesh has.
     #[error(
         "{elements} element(s) of degree {degree} along {along} have {rows} rows of control points, but the supports \
          at both ends take 2 each: write at least {least} elements along {along} of the model (mesh.elements)"
     )]
     TooFewRows {
-        /// The direction.
+        /// Direction, u or v.
         along: &'static str,
-        /// Elements along it of the model.
+        /// Number of elements of the model in that direction.
         elements: usize,
-        /// Degree along it.
+        /// Degree in that direction.
         degree: usize,
-        /// Rows of control points.
+        /// Number of rows of control points.
         rows: usize,
-        /// Elements that suffice.
+        /// Smallest number of elements that suffices.
         least: usize,
     },
-    /// A symmetric support that is neither on an edge nor on a line.
+    /// A symmetric support lies neither on an edge nor on a line.
     #[error(
         "support \"{support}\" is a plane of symmetry, which only an edge or a line can lie in: write one of them in `on`"
     )]
@@ -31,7 +32,7 @@ pub enum ModelError {
         /// Name of the support.
         support: String,
     },
-    /// A force per length that is on a point.
+    /// A force per length acts on a point.
     #[error(
         "action \"{action}\" is a force per length, and a point has no length: write an edge or a line in `on`, or use kind = \"force\""
     )]
@@ -39,28 +40,28 @@ pub enum ModelError {
         /// Name of the action.
         action: String,
     },
-    /// A force by the projected area on a surface that overhangs.
+    /// A force by the projected area acts on a surface that overhangs.
     #[error(
         "action \"{action}\" is a force by the projected area, and it meets one side of the surface at {one} and the other at {other}: \
-         where one part lies above another only one of them catches it; use per = \"area\", or model the part that does"
+         where one part lies above another only one of them carries it; use per = \"area\", or model the part that does"
     )]
     Overhang {
         /// Name of the action.
         action: String,
-        /// Where it meets one side most squarely.
+        /// Point where it meets one side most squarely.
         one: String,
-        /// Where it meets the other.
+        /// Point where it meets the other side.
         other: String,
     },
-    /// An edge that cannot lie in a plane of symmetry.
+    /// An edge or line cannot lie in a plane of symmetry.
     #[error("support \"{support}\" is no plane of symmetry: {reason}")]
     NotASymmetryPlane {
         /// Name of the support.
         support: String,
-        /// Why.
+        /// Reason, in words.
         reason: String,
     },
-    /// A symmetric line inside a shell whose two sides differ.
+    /// A symmetric line lies inside a shell whose two sides differ.
     #[error(
         "the shell is not its own mirror image in the plane of support \"{support}\", a line inside: {what}; a symmetric line holds \
          only what both sides do by themselves, so make them alike, or model the half, whose edge lies there"
@@ -68,7 +69,7 @@ pub enum ModelError {
     NotItsOwnImage {
         /// Name of the support.
         support: String,
-        /// What differs.
+        /// What differs, in words.
         what: String,
     },
     /// The material is not its own mirror image.
@@ -80,24 +81,24 @@ pub enum ModelError {
     MaterialNotMirrored {
         /// Name of the support.
         support: String,
-        /// Where.
+        /// Position at which it occurs, as text with its unit.
         at: String,
-        /// The terms that do not vanish.
+        /// Terms of the stiffness that do not vanish.
         terms: String,
-        /// Share of the stiffness that is taken for rounding.
+        /// Share of the stiffness up to which they are taken for rounding.
         tolerance: f64,
     },
-    /// A load on a plane of symmetry that is not its own mirror image.
+    /// A load on a plane of symmetry is not its own mirror image.
     #[error(
-        "action \"{action}\" acts on the plane of symmetry of support \"{support}\" {how}: its mirror image acts the other \
-         way; take that part away, or model the whole shell"
+        "action \"{action}\" acts on the plane of symmetry of support \"{support}\" {how}: its mirror image acts in the \
+         opposite direction; remove that part, or model the whole shell"
     )]
     LoadNotMirrored {
         /// Name of the action.
         action: String,
         /// Name of the support.
         support: String,
-        /// What is wrong with it.
+        /// How it acts, in words.
         how: String,
     },
     /// A rigid section meets a plane of symmetry that it may leave.
@@ -112,7 +113,7 @@ pub enum ModelError {
         section: String,
         /// Name of the support.
         support: String,
-        /// Motions of the section, as they stand in a scene.
+        /// Motions of the section, as keys of a scene.
         motions: Vec<&'static str>,
     },
     /// Two supports hold a control point of a section that moves.
@@ -126,13 +127,13 @@ pub enum ModelError {
         /// Name of the section.
         other: String,
     },
-    /// A plane of symmetry or a joint shares control points with a section that moves, from beside it.
+    /// A plane of symmetry or a joint shares control points with a neighbouring section that moves.
     #[error(
         "{tie} and the rigid section \"{section}\", which moves, lie in one element: put more elements between them \
          (mesh.elements)"
     )]
     TiedToSection {
-        /// What ties the control points.
+        /// Tie between the control points, in words.
         tie: String,
         /// Name of the section.
         section: String,
@@ -142,7 +143,7 @@ pub enum ModelError {
     Contradiction {
         /// Name of the support.
         support: String,
-        /// Name of the other, if it is known.
+        /// Name of the other support, if it is known.
         other: Option<String>,
     },
     /// The surface has a kink at an interior line or a seam.
@@ -153,7 +154,7 @@ pub enum ModelError {
         significant(SMOOTH.to_degrees(), 2)
     )]
     Kink {
-        /// Where.
+        /// Position at which it occurs, as text with its unit.
         at: String,
         /// Angle between the lines of control points on both sides, degrees.
         angle_deg: f64,
@@ -165,13 +166,13 @@ pub enum ModelError {
          multiplicity of that knot (remove it, or write it once less), or make the ratio the same all along"
     )]
     UnevenJoint {
-        /// u or v.
+        /// Direction, u or v.
         direction: &'static str,
-        /// The knot, of a range from 0 to 1.
+        /// Value of the knot, in a range from 0 to 1.
         knot: String,
-        /// Where.
+        /// Position at which it occurs, as text with its unit.
         at: String,
-        /// Weights or speeds.
+        /// What differs: weights or speeds.
         what: &'static str,
     },
     /// The surface has no normal at a point.
@@ -180,43 +181,43 @@ pub enum ModelError {
          pole leave a small hole"
     )]
     Collapsed {
-        /// Where.
+        /// Position at which it occurs, as text with its unit.
         at: String,
     },
-    /// The normal turns over between two points that lie next to each other.
+    /// The normal turns over between two neighbouring points.
     #[error(
         "the surface folds over itself between {from} and {to}: its normal turns by {}°; control points are listed with v \
          running fastest, and lines of them must not turn back or cross",
         significant(*angle_deg, 3)
     )]
     FoldsOver {
-        /// Where.
+        /// First point, as text with its unit.
         from: String,
-        /// The point beside it.
+        /// Second point, next to the first.
         to: String,
         /// Angle between the normals, degrees.
         angle_deg: f64,
     },
-    /// The control points make a sound surface where they are taken in the other order.
+    /// The control points make a sound surface if they are taken in the other order.
     #[error(
         "{fault}. Taken in the other order these control points make a sound surface: they are listed with u running fastest, \
          and v has to; exchange the two loops that write them"
     )]
     ListedUFastest {
-        /// What is wrong with the surface as it stands.
+        /// Error of the surface in the order given.
         fault: Box<ModelError>,
     },
-    /// Opposite edges coincide, and the scene does not say what happens there.
+    /// Opposite edges coincide, and the scene does not say how they are joined.
     #[error(
         "the edges {edges} coincide (the largest distance is {gap_mm} mm, and up to {tolerance_mm} mm is taken for none): \
          write `seam = \"smooth\"` in [geometry] for a closed shell, or `seam = \"free\"` for one that is slit there"
     )]
     EdgesMeet {
-        /// The two.
+        /// Names of the two edges.
         edges: &'static str,
-        /// Largest distance, mm.
+        /// Largest distance between them, mm.
         gap_mm: String,
-        /// Tolerance, mm.
+        /// Distance up to which they count as coinciding, mm.
         tolerance_mm: String,
     },
     /// Opposite edges coincide in opposite directions.
@@ -225,10 +226,10 @@ pub enum ModelError {
          `seam = \"free\"` in [geometry] for a shell that is slit there"
     )]
     EdgesMeetReversed {
-        /// The two.
+        /// Names of the two edges.
         edges: &'static str,
     },
-    /// A seam is asked for, and no edges coincide.
+    /// A seam is asked for, but no edges coincide.
     #[error(
         "`seam` is given in [geometry], and no opposite edges coincide: u-start and u-end are up to {} mm apart, v-start and \
          v-end up to {} mm (up to {tolerance_mm} mm is taken for none); leave it out, or close the control net",
@@ -236,25 +237,25 @@ pub enum ModelError {
         gaps_mm[1]
     )]
     NoSeam {
-        /// Largest distances in u and in v, mm.
+        /// Largest distances between the edges across u and v, mm.
         gaps_mm: [String; 2],
-        /// Tolerance, mm.
+        /// Distance up to which they count as coinciding, mm.
         tolerance_mm: String,
     },
-    /// Fewer elements than the surface has spans.
+    /// There are fewer elements than the surface has knot spans.
     #[error(
         "{asked} element(s) in {direction} are fewer than the {least} spans between the knots of the surface there: write at \
          least {least} for the model (mesh.elements)"
     )]
     TooFewElements {
-        /// u or v.
+        /// Direction, u or v.
         direction: &'static str,
-        /// Elements asked for.
+        /// Number of elements asked for.
         asked: usize,
-        /// Spans.
+        /// Number of spans.
         least: usize,
     },
-    /// A body that its own curvature leaves no inside.
+    /// The thickness reaches the smallest radius of curvature of the surface.
     #[error(
         "the thickness, {} mm, reaches the smallest radius of curvature of the surface, {} mm at {at}: a body so thick is no shell; \
          are lengths given in another unit than mm, or is thickness_mm meant smaller?",
@@ -262,14 +263,14 @@ pub enum ModelError {
         significant(*radius_mm, 4)
     )]
     ThickerThanRadius {
-        /// Thickness, mm.
+        /// Thickness of the shell, mm.
         thickness_mm: f64,
         /// Smallest radius of curvature, mm.
         radius_mm: f64,
-        /// Where.
+        /// Position at which it occurs, as text with its unit.
         at: String,
     },
-    /// A body as thick as it is wide.
+    /// The thickness reaches the shorter side of the surface.
     #[error(
         "the thickness, {} mm, reaches the shorter side of the surface, {} mm: a body so thick is no shell; are lengths given in \
          another unit than mm, or is thickness_mm meant smaller?",
@@ -277,12 +278,12 @@ pub enum ModelError {
         significant(*side_mm, 4)
     )]
     ThickerThanSide {
-        /// Thickness, mm.
+        /// Thickness of the shell, mm.
         thickness_mm: f64,
-        /// Shorter side, mm.
+        /// Shorter side of the surface, mm.
         side_mm: f64,
     },
-    /// A curved surface drawn too far from the middle of the thickness.
+    /// A curved surface lies too far off the middle of the thickness.
     #[error(
         "the surface lies offset_mm = {offset_mm} off the middle of the thickness, and its smallest radius of curvature is {} mm at \
          {at}: what this theory leaves out makes results wrong by up to {} % (a tube under pressure); draw the middle surface with \
@@ -292,18 +293,18 @@ pub enum ModelError {
         significant(*most_mm, 2)
     )]
     OffsetTooLarge {
-        /// Offset, mm.
+        /// Offset of the surface, mm.
         offset_mm: f64,
         /// Smallest radius of curvature, mm.
         radius_mm: f64,
-        /// Where.
+        /// Position at which it occurs, as text with its unit.
         at: String,
-        /// Error of a tube under pressure, of its value.
+        /// Relative error of a tube under pressure.
         error: f64,
-        /// Largest offset that is taken, mm.
+        /// Largest offset that is accepted, mm.
         most_mm: f64,
     },
-    /// A mesh of lower degree than the surface has.
+    /// The mesh has a lower degree than the surface.
     #[error(
         "the surface has degree {geometry}, and the mesh degree {mesh} cannot hold it: raise mesh.degree to {geometry}"
     )]
@@ -316,18 +317,18 @@ pub enum ModelError {
     /// The supports leave a rigid motion free.
     #[error("the supports do not hold the shell: {motion}; add a support, or hold more components")]
     FreeMotion {
-        /// The motion, in words.
+        /// Motion that is free, in words.
         motion: String,
     },
-    /// A support that holds rigid motions where none is free.
+    /// A support holds rigid motions, but none is free.
     #[error(
-        "support \"{support}\" holds rigid motions alone, and the other supports leave none free: take it out, or hold less in them"
+        "support \"{support}\" holds rigid motions alone, and the other supports leave none free: remove it, or hold less in them"
     )]
     NoFreeMotion {
         /// Name of the support.
         support: String,
     },
-    /// Moving sections carry most of the points by which a support holds rigid motions.
+    /// Moving sections carry too many of the points by which a support holds rigid motions.
     #[error(
         "support \"{support}\" holds rigid motions by points of the surface that no moving section carries, and {count} of them remain{}: \
          put more elements between the sections (mesh.elements)",
@@ -336,77 +337,77 @@ pub enum ModelError {
     TooFewPoints {
         /// Name of the support.
         support: String,
-        /// Points that remain.
+        /// Number of points that remain.
         count: usize,
     },
-    /// Loads push along a motion that only such a support holds.
+    /// Loads do work on a motion that only a support of rigid motions holds.
     #[error(
-        "the loads are not in balance, and support \"{support}\" holds rigid motions alone: {motion}, where they push by {share:.1e} of all \
-         that acts at load factor {load_factor}; balance them (numbers of few digits leave that much), or hold the shell where its force goes"
+        "the loads are not in balance, and support \"{support}\" holds rigid motions alone: {motion}, along which {share:.1e} of all \
+         forces are out of balance at load factor {load_factor}; balance them (numbers of few digits leave that much), or hold the shell where its force goes"
     )]
     Unbalanced {
         /// Name of the support.
         support: String,
-        /// The motion that they push along, in words.
+        /// Motion that they do work on, in words.
         motion: String,
-        /// Their work on it, of the sum of all forces at their arms.
+        /// Work on that motion, relative to the sum of all forces at their arms.
         share: f64,
-        /// Where.
+        /// Load factor at which they do so.
         load_factor: f64,
     },
-    /// A support that holds rigid motions alone, and terms of the caller's own that hold some of them as well.
+    /// A support holds rigid motions alone, and terms of the caller's own hold some of them as well.
     #[error(
-        "support \"{support}\" holds rigid motions alone, and terms of the program's own hold the shell as well: {motion} but against \
-         their forces, of which the support would take a share; take it out, and hold what they leave free by another kind of support"
+        "support \"{support}\" holds rigid motions alone, and terms of the program's own hold the shell as well: {motion} only against \
+         their forces, a share of which the support would carry; remove it, and hold what they leave free by another kind of support"
     )]
     HeldByTerms {
         /// Name of the support.
         support: String,
-        /// A motion that both hold, in words.
+        /// Motion that both hold, in words.
         motion: String,
     },
-    /// A probe of a support that is not in the scene.
+    /// A probe asks for a support that is not in the scene.
     #[error("a probe asks for the reaction of support \"{support}\", and the scene has none of that name")]
     NoSuchSupport {
         /// Name of the support.
         support: String,
     },
-    /// A section moment across something else than a line.
+    /// A section moment is asked for elsewhere than on a line.
     #[error("probe \"{probe}\" asks for a section moment, and a section is a line: write for example `on = \"u=0.5\"`")]
     NotASection {
         /// Name of the probe.
         probe: String,
     },
-    /// A section moment of a model with a term that does not know its part on one side.
+    /// A section moment is asked for, and a term cannot give the part of it on one side.
     #[error(
         "a section moment is found from all that acts on one side of the line, and the term \"{term}\" of the program's own does not \
-         say what of it acts there: take the probe out, or say it (`TermSource::below`)"
+         give the part of it that acts there: remove the probe, or implement `TermSource::below`"
     )]
     NoPart {
         /// Name of the term.
         term: String,
     },
-    /// The supports leave nothing free.
+    /// The supports hold every control point.
     #[error(
         "the supports hold every control point of {} × {} elements: nothing is left to solve for; write more in mesh.elements, or hold less",
         elements[0],
         elements[1]
     )]
     NothingFree {
-        /// Elements each way of the model.
+        /// Number of elements of the model in each direction.
         elements: [usize; 2],
     },
-    /// More than memory holds.
+    /// The mesh has more control points than the program takes on.
     #[error(
-        "{} × {} elements have {count} control points, and the most that this program takes on is {MOST_CONTROL_POINTS}: write fewer in \
+        "{} × {} elements have {count} control points, and this program takes at most {MOST_CONTROL_POINTS}: write fewer in \
          mesh.elements, and let the mesh refine itself where it has to",
         elements[0],
         elements[1]
     )]
     TooManyControlPoints {
-        /// Elements each way of the model.
+        /// Number of elements of the model in each direction.
         elements: [usize; 2],
-        /// Control points.
+        /// Number of control points.
         count: usize,
     },
 }

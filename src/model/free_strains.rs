@@ -1,34 +1,34 @@
-//! What changes of temperature and of natural curvature make of the shell's free strain, over the scene's parameter.
+//! The free strain of the shell over the scene's parameter, from changes of temperature and of natural curvature.
 
 use crate::model::gauss::span_points;
 use crate::scene::{Action, ActionKind, History, Scene};
 use crate::shell::{FreeStrain, cross, norm, thermal_strain};
 use crate::spline::{Mesh, mid_surface_point};
 
-/// Free strain of the shell over the parameter.
+/// Free strain of the shell as a function of the scene's parameter.
 #[derive(Debug, Default)]
 pub struct FreeStrains {
-    /// By one kelvin.
+    /// Natural state of the shell heated by one kelvin.
     per_kelvin: NaturalState,
     sources: Vec<Source>,
 }
 
-/// The state without forces at a value of the parameter.
+/// State without forces at a value of the parameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NaturalState {
-    /// The same everywhere on the shell.
+    /// Free strain, the same everywhere on the shell.
     pub strain: FreeStrain,
-    /// Energy that layers keep in each other there, over the whole model, N·mm.
+    /// Energy that layers lock in each other in that state, over the whole model, N·mm.
     pub locked_n_mm: f64,
 }
 
-/// An action, at factor 1.
+/// An action on the free strain, at factor 1.
 #[derive(Debug)]
 struct Source {
     history: History,
-    /// K.
+    /// Change of temperature, K.
     change_k: f64,
-    /// κ₁₁, κ₂₂, 2κ₁₂, 1/mm.
+    /// Natural curvatures κ₁₁, κ₂₂, 2κ₁₂, 1/mm.
     bending: [f64; 3],
 }
 
@@ -47,7 +47,7 @@ impl FreeStrains {
     /// Computes the free strains of a scene's actions on a mesh.
     pub fn new(scene: &Scene, mesh: &Mesh) -> Self {
         let sources: Vec<Source> = scene.actions.iter().filter_map(Source::of).collect();
-        // A scene is checked for expansions where the temperature changes.
+        // Reading the scene has checked that the material has expansions where the temperature changes.
         let thermal = thermal_strain(&scene.material).filter(|_| !sources.is_empty());
         let per_kelvin = thermal.map_or_else(NaturalState::default, |(strain, locked_n_per_mm)| NaturalState {
             strain,
@@ -56,12 +56,13 @@ impl FreeStrains {
         Self { per_kelvin, sources }
     }
 
-    /// At a value of the parameter; `None` where the scene has no such actions.
+    /// Natural state at a value of the parameter; `None` where the scene has no such actions.
     pub fn at(&self, parameter: f64) -> Option<NaturalState> {
         self.sum(|history| history.at(parameter))
     }
 
-    /// At a value of the parameter, and by its rate beyond: what differs from [`Self::at`] by the rate of the strain.
+    /// Natural state at a value of the parameter plus its rate, which differs from [`Self::at`] by the rate of the
+    /// strain.
     pub fn beyond(&self, parameter: f64) -> Option<NaturalState> {
         self.sum(|history| history.at(parameter) + history.rate(parameter))
     }
@@ -81,14 +82,14 @@ impl FreeStrains {
             membrane: membrane.map(|strain| change_k * strain),
             bending: [0, 1, 2].map(|i| change_k * bending[i] + curvature[i]),
         };
-        // A natural curvature fits together by itself: its strain z κ is that of a shell that bends.
+        // A natural curvature locks no energy: its strain z κ is that of a shell that bends.
         Some(NaturalState { strain, locked_n_mm: change_k * change_k * locked_n_mm })
     }
 }
 
 /// Area of the undeformed surface, mm².
 fn reference_area(mesh: &Mesh) -> f64 {
-    let [along, across] = [0, 1].map(|way| span_points(mesh, way, mesh.degree[way] + 1));
+    let [along, across] = [0, 1].map(|direction| span_points(mesh, direction, mesh.degree[direction] + 1));
     let points = along.iter().flat_map(|one| across.iter().map(move |two| (one, two)));
     points
         .map(|([u, along], [v, across])| {

@@ -1,4 +1,4 @@
-//! How each kind of support holds a mesh: the constraints that it makes.
+//! The constraints that each kind of support makes.
 
 use crate::model::ModelError;
 use crate::model::edge::{EdgeRows, edge_rows};
@@ -17,7 +17,7 @@ impl Supports {
     /// Finds the constraints of a scene's supports on a mesh.
     ///
     /// # Errors
-    /// Where one does not fit the surface, or two contradict each other.
+    /// Where a support does not fit the surface, or two contradict each other.
     pub fn new(scene: &Scene, mesh: &Mesh) -> Result<Self, ModelError> {
         let count = mesh.control_points.len();
         let mut supports = Self {
@@ -32,7 +32,7 @@ impl Supports {
         let all = supports_of(scene);
         let ties = Ties::new(scene, mesh, &all)?;
         let points: Vec<[f64; 3]> = mesh.points().collect();
-        // Sections first: what else holds their control points must know their frames.
+        // Sections come first: other supports of their control points must know their frames.
         for (index, support) in all.iter().enumerate() {
             supports.footprints.push(Footprint {
                 name: support.name.clone(),
@@ -64,7 +64,7 @@ impl Supports {
             }
         }
         supports.tie(&ties, mesh);
-        // What the others leave free is known last.
+        // What the other supports leave free is known only at the end.
         for (index, _) in all.iter().enumerate().filter(|(_, support)| support.hold == Hold::RigidMotions) {
             supports.hold_rigid_motions(index, scene, mesh, &points)?;
         }
@@ -72,7 +72,7 @@ impl Supports {
         Ok(supports)
     }
 
-    /// A clamped edge, or a rigid section with motions of its own.
+    /// Holds a clamped edge, or a rigid section with motions of its own.
     fn hold_rigidly(
         &mut self,
         index: usize,
@@ -106,10 +106,10 @@ impl Supports {
             });
             for point in &held {
                 if let Some(other) = self.section_of[*point].replace(section) {
-                    let first = self.footprints.iter().find(|trace| trace.section == Some(other));
+                    let first = self.footprints.iter().find(|footprint| footprint.section == Some(other));
                     return Err(ModelError::SectionShared {
                         support: support.name.clone(),
-                        other: first.map_or_else(String::new, |trace| trace.name.clone()),
+                        other: first.map_or_else(String::new, |footprint| footprint.name.clone()),
                     });
                 }
             }
@@ -128,7 +128,7 @@ impl Supports {
         Ok(())
     }
 
-    /// A plane of symmetry: no displacement across it, and slopes that continue evenly behind it.
+    /// Holds an edge in a plane of symmetry: no displacement across it, and slopes that continue evenly behind it.
     fn mirror(&mut self, index: usize, rows: &EdgeRows, mirror: &Mirror) -> Result<(), ModelError> {
         let normal = mirror.normal;
         self.check_sections_keep(&rows.outer, mirror)?;
@@ -147,11 +147,10 @@ impl Supports {
         Ok(())
     }
 
-    /// No displacement across the plane of a line, and slopes that are even on both sides of it.
+    /// Holds a line inside in a plane of symmetry: no displacement across it, and slopes that are even on both sides.
     fn mirror_line(&mut self, index: usize, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
-        let line = Line::new(mesh, mirror.way, mirror.parameter).map_err(|reason| ModelError::NotASymmetryPlane {
-            support: mirror.support.clone(),
-            reason: reason.to_string(),
+        let line = Line::new(mesh, mirror.direction, mirror.parameter).map_err(|reason| {
+            ModelError::NotASymmetryPlane { support: mirror.support.clone(), reason: reason.to_string() }
         })?;
         let points: Vec<usize> = line.places.iter().chain(&line.slopes).flatten().map(|(point, _)| *point).collect();
         self.check_sections_keep(&points, mirror)?;
@@ -167,12 +166,12 @@ impl Supports {
         let curve = line.points(mesh);
         let share = 1.0 / curve.len() as f64;
         let middle = curve.iter().fold([0.0; 3], |sum, x| add(sum, scaled(share, *x)));
-        let trace = &mut self.footprints[index];
-        (trace.points, trace.pole, trace.is_inner_mirror) = (points, middle, true);
+        let footprint = &mut self.footprints[index];
+        (footprint.points, footprint.pole, footprint.is_inner_mirror) = (points, middle, true);
         Ok(())
     }
 
-    /// Given components of a displacement, for each of some weighted sums of control points.
+    /// Prescribes components of a displacement, for each of some weighted sums over control points.
     fn displace(
         &mut self,
         index: usize,
@@ -193,7 +192,7 @@ impl Supports {
             });
             for place in places {
                 let mut expression: Expression = place.iter().map(|(point, factor)| (3 * point + c, *factor)).collect();
-                // Weights of a place sum to 1, so that all control points of an edge move by the value.
+                // The weights of a place sum to 1, so that all control points of an edge move by the value.
                 expression.extend(given.map(|component| (component, -1.0)));
                 self.push(Some(index), expression);
             }
@@ -209,14 +208,14 @@ impl Supports {
     }
 
     fn overlap(&self, index: usize, section: usize) -> ModelError {
-        let other = self.footprints.iter().find(|trace| trace.section == Some(section));
+        let other = self.footprints.iter().find(|footprint| footprint.section == Some(section));
         ModelError::SectionShared {
             support: self.footprints[index].name.clone(),
-            other: other.map_or_else(String::new, |trace| trace.name.clone()),
+            other: other.map_or_else(String::new, |footprint| footprint.name.clone()),
         }
     }
 
-    /// C¹ joints of segments, and seams.
+    /// Adds the constraints of C¹ joints of segments, and of seams.
     fn tie(&mut self, ties: &Ties, mesh: &Mesh) {
         let grid = mesh.grid();
         let counts = grid.counts;
@@ -248,7 +247,7 @@ impl Supports {
     }
 }
 
-/// The component of a control point along a direction.
+/// Expression for the component of a control point along a direction.
 fn along(point: usize, direction: [f64; 3]) -> Expression {
     (0..3).map(|c| (3 * point + c, direction[c])).filter(|(_, factor)| *factor != 0.0).collect()
 }

@@ -1,11 +1,11 @@
-//! What a rule of quadrature does to membrane forces that are constant: how far from balance it leaves them.
+//! The imbalance that a rule of quadrature leaves in constant membrane forces.
 //!
-//! A constant membrane force n on the undeformed surface pulls at the control points with f_a = ∫ N_a,α n^{αβ} A_β dA. Inside
-//! a smooth surface they are what the pressure has to carry. A rule that integrates them inexactly adds forces that nothing
-//! carries but bending, and a curved thin shell bends without stretching at the slightest push. The error of p − 1 points is
-//! the same in every element, so that it cancels inside; it stands where the rule or the size of the elements changes. A
-//! quarter of a tube under pressure, R/t = 1000, on eight cubic elements with p − 1 points inside and p beside the edges, moves
-//! by 4.880e-4 mm at the crown and by 0.515e-4 at the edge, for 2.857e-4 at both.
+//! A constant membrane force n on the undeformed surface pulls at the control points with f_a = ∫ N_a,α n^{αβ} A_β dA.
+//! Inside a smooth surface they are what the pressure has to carry. A rule that integrates them inexactly adds forces
+//! that nothing carries but bending, and a curved thin shell bends without stretching at the slightest push. The error
+//! of p − 1 points is the same in every element, so that it cancels inside; it remains where the rule or the size of
+//! the elements changes. A quarter of a tube under pressure, R/t = 1000, on eight cubic elements with p − 1 points
+//! inside and p next to the edges, moves by 4.880e-4 mm at the crown and by 0.515e-4 at the edge, for 2.857e-4 at both.
 //!
 //! The forces δf of the error are self-equilibrated, in a section along one direction they are a bending moment. With δm(s) =
 //! Σ_{a before s} (x_a − x(s)) × δf_a for n = 1, the section moves by about δm l²/D, where the membrane moves by l/A (A and D
@@ -19,33 +19,34 @@
 use crate::shell::{add, cross, dot, gauss_legendre, norm, scaled, sub};
 use crate::spline::{Mesh, Spans, basis_derivatives, basis_derivatives_len, cartesian, find_span};
 
-/// Points beyond the degree at which the forces are exact.
+/// Number of points beyond the degree at which the forces are exact.
 const EXACT_MORE: usize = 6;
-/// Sections that are looked at, as shares of the other direction's range.
+/// Sections that are examined, as shares of the other direction's range.
 const SECTIONS: [f64; 3] = [0.02, 0.5, 0.98];
 
-/// Imbalance of `counts` Gauss points on the elements of one direction; dimensionless. `stretching_over_bending` is A/D, 1/mm².
+/// Computes the imbalance of `counts` Gauss points on the elements of one direction; dimensionless.
+/// `stretching_over_bending` is A/D, 1/mm².
 pub(super) fn imbalance(mesh: &Mesh, direction: usize, counts: &[usize], stretching_over_bending: f64) -> f64 {
     let sections = SECTIONS.iter().map(|share| Section::new(mesh, direction, *share));
     sections.map(|section| section.imbalance(counts, stretching_over_bending)).fold(0.0, largest)
 }
 
-/// Membrane forces: three constant ones. The first index is that of the force, the second that of the function.
+/// Forces on control points by three constant membrane forces: `[membrane force][function]`.
 type Pulls = [Vec<[f64; 3]>; 3];
 
-/// A line of the surface on which one parameter is constant, with what the surface does beside it.
+/// A line of the surface on which one parameter is constant, with the derivative of the surface across it.
 struct Section<'a> {
     degree: usize,
     knots: &'a [f64],
     spans: Spans,
     /// Homogeneous control points of the line.
     line: Vec<[f64; 4]>,
-    /// Their derivatives by the parameter that is constant on it.
+    /// Derivatives of these control points by the parameter that is constant on the line.
     beside: Vec<[f64; 4]>,
 }
 
 impl<'a> Section<'a> {
-    /// The line along `direction` at a share of the other direction's range.
+    /// Creates the section along `direction` at a share of the other direction's range.
     fn new(mesh: &'a Mesh, direction: usize, share: f64) -> Self {
         let other = 1 - direction;
         let (knots, degree) = (&mesh.knots[other], mesh.degree[other]);
@@ -90,8 +91,8 @@ impl<'a> Section<'a> {
         moments * size * stretching_over_bending
     }
 
-    /// Forces on the control points of the section for membrane forces 1: those of N_a,α along it, per length across, and
-    /// those of N_a across it.
+    /// Computes the forces on the control points of the section for unit membrane forces: those of N_a,α along it, per
+    /// length across, and those of N_a across it.
     fn pulls(&self, counts: &[usize]) -> (Pulls, Pulls) {
         let none = || vec![[0.0; 3]; self.line.len()];
         let mut along: Pulls = [none(), none(), none()];
@@ -146,8 +147,8 @@ impl<'a> Section<'a> {
     }
 }
 
-/// √A n^{αβ} A_β over |A₂| for α along the section (the first tangent), and √A n^{αβ} A_β for α across it, for membrane forces
-/// 1 along, across and in shear in orthonormal axes.
+/// Computes √A n^{αβ} A_β over |A₂| for α along the section (the first tangent), and √A n^{αβ} A_β for α across it, for
+/// membrane forces 1 along, across and in shear in orthonormal axes.
 fn tractions([a1, a2]: [[f64; 3]; 2]) -> [[[f64; 3]; 2]; 3] {
     let normal = cross(a1, a2);
     let area = norm(normal);
@@ -165,7 +166,7 @@ fn tractions([a1, a2]: [[f64; 3]; 2]) -> [[[f64; 3]; 2]; 3] {
     forces.map(|force| [scaled(1.0 / length2, traction(0, force)), traction(1, force)])
 }
 
-/// Largest |Σ_{a before s} (x_a − x_s) × f_a|.
+/// Largest moment |Σ_{a before s} (x_a − x_s) × f_a|.
 fn largest_moment(positions: &[[f64; 3]], forces: &[[f64; 3]]) -> f64 {
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
     let mut most = 0.0;
@@ -177,7 +178,7 @@ fn largest_moment(positions: &[[f64; 3]], forces: &[[f64; 3]]) -> f64 {
     most
 }
 
-/// The larger of two numbers; not a number where either is none, which nothing may take for balance.
+/// The larger of two numbers, or NaN where either is NaN, which must not pass for balance.
 fn largest(one: f64, other: f64) -> f64 {
     if one.is_nan() || one > other { one } else { other }
 }

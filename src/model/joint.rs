@@ -14,19 +14,19 @@ use crate::spline::Mesh;
 /// Three neighbouring lines of control points of which the middle one follows from the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
-    /// Index of the middle line.
+    /// Index of the middle line, which follows from the others.
     pub index: usize,
     /// Index of the line before it.
     pub before: usize,
     /// Index of the line after it.
     pub after: usize,
-    /// Share of the line before, times the sum of both.
+    /// Weight of the line before; only its ratio to the other weight counts.
     pub before_weight: f64,
-    /// Share of the line after, times the sum of both.
+    /// Weight of the line after; only its ratio to the other weight counts.
     pub after_weight: f64,
 }
 
-/// Joints in a direction: interior knots of full multiplicity.
+/// Finds the joints in a direction, which lie at interior knots of full multiplicity.
 ///
 /// # Errors
 /// Where the geometry is not smooth there.
@@ -46,7 +46,7 @@ pub fn joints(mesh: &Mesh, direction: usize) -> Result<Vec<Joint>, ModelError> {
         .collect()
 }
 
-/// The seam where the last line of control points meets the first.
+/// Finds the seam where the last line of control points meets the first.
 ///
 /// # Errors
 /// Where the geometry is not smooth there. The edges must coincide.
@@ -59,72 +59,72 @@ pub fn seam(mesh: &Mesh, direction: usize) -> Result<Joint, ModelError> {
     smooth(mesh, direction, joint, spans)
 }
 
-/// The same surface with the middle line of every joint, and of the seam where it is `closed`, moved on to the straight line
-/// between its neighbours, and the last line of a closed direction on to the first: what is smooth within the tolerance is
-/// smooth to rounding, so that a shell that turns as a whole is not strained.
+/// Moves the middle line of every joint, and of the seam where the surface is `closed`, on to the straight line between
+/// its neighbours, and the last line of a closed direction on to the first. What is smooth within the tolerance becomes
+/// smooth up to rounding, so that a shell that turns as a whole is not strained.
 ///
 /// # Errors
 /// Where the surface is not smooth.
 pub fn smoothed(mut mesh: Mesh, closed: [bool; 2]) -> Result<Mesh, ModelError> {
-    for way in 0..2 {
-        let last = mesh.control_counts()[way] - 1;
-        if closed[way] {
-            copy_line(&mut mesh, way, 0, last);
+    for direction in 0..2 {
+        let last = mesh.control_counts()[direction] - 1;
+        if closed[direction] {
+            copy_line(&mut mesh, direction, 0, last);
         }
-        for joint in joints(&mesh, way)? {
-            straighten(&mut mesh, way, joint);
+        for joint in joints(&mesh, direction)? {
+            straighten(&mut mesh, direction, joint);
         }
-        if closed[way] {
-            let joint = seam(&mesh, way)?;
-            straighten(&mut mesh, way, joint);
-            copy_line(&mut mesh, way, 0, last);
+        if closed[direction] {
+            let joint = seam(&mesh, direction)?;
+            straighten(&mut mesh, direction, joint);
+            copy_line(&mut mesh, direction, 0, last);
         }
     }
     Ok(mesh)
 }
 
-fn straighten(mesh: &mut Mesh, way: usize, joint: Joint) {
+fn straighten(mesh: &mut Mesh, direction: usize, joint: Joint) {
     let Joint { index, before, after, before_weight, after_weight } = joint;
     let shares = [before_weight, after_weight].map(|weight| weight / (before_weight + after_weight));
-    for across in 0..mesh.control_counts()[1 - way] {
-        let [one, other] = [before, after].map(|along| place_of(mesh, way, along, across));
-        move_to(mesh, way, [index, across], add(scaled(shares[0], one), scaled(shares[1], other)));
+    for across in 0..mesh.control_counts()[1 - direction] {
+        let [one, other] = [before, after].map(|along| place_of(mesh, direction, along, across));
+        move_to(mesh, direction, [index, across], add(scaled(shares[0], one), scaled(shares[1], other)));
     }
 }
 
-fn copy_line(mesh: &mut Mesh, way: usize, from: usize, to: usize) {
-    for across in 0..mesh.control_counts()[1 - way] {
-        let place = place_of(mesh, way, from, across);
-        move_to(mesh, way, [to, across], place);
+fn copy_line(mesh: &mut Mesh, direction: usize, from: usize, to: usize) {
+    for across in 0..mesh.control_counts()[1 - direction] {
+        let place = place_of(mesh, direction, from, across);
+        move_to(mesh, direction, [to, across], place);
     }
 }
 
-fn move_to(mesh: &mut Mesh, way: usize, [along, across]: [usize; 2], [x, y, z]: [f64; 3]) {
-    let index = mesh.grid().index_along(way, along, across);
+fn move_to(mesh: &mut Mesh, direction: usize, [along, across]: [usize; 2], [x, y, z]: [f64; 3]) {
+    let index = mesh.grid().index_along(direction, along, across);
     let weight = mesh.control_points[index][3];
     mesh.control_points[index] = [x * weight, y * weight, z * weight, weight];
 }
 
-fn weight_of(mesh: &Mesh, way: usize, along: usize, across: usize) -> f64 {
-    mesh.control_points[mesh.grid().index_along(way, along, across)][3]
+fn weight_of(mesh: &Mesh, direction: usize, along: usize, across: usize) -> f64 {
+    mesh.control_points[mesh.grid().index_along(direction, along, across)][3]
 }
 
-fn place_of(mesh: &Mesh, way: usize, along: usize, across: usize) -> [f64; 3] {
-    mesh.point(mesh.grid().index_along(way, along, across))
+fn place_of(mesh: &Mesh, direction: usize, along: usize, across: usize) -> [f64; 3] {
+    mesh.point(mesh.grid().index_along(direction, along, across))
 }
 
-/// Weights of a joint, compared with the geometry on every line across it.
-fn smooth(mesh: &Mesh, way: usize, joint: Joint, spans: [f64; 2]) -> Result<Joint, ModelError> {
-    let across = 0..mesh.control_counts()[1 - way];
+/// Finds the weights of a joint, and checks them on every line across it.
+fn smooth(mesh: &Mesh, direction: usize, joint: Joint, spans: [f64; 2]) -> Result<Joint, ModelError> {
+    let across = 0..mesh.control_counts()[1 - direction];
     let legs: Vec<[[f64; 3]; 2]> = across
         .clone()
         .map(|across| {
             let [before, middle, after] =
-                [joint.before, joint.index, joint.after].map(|along| place_of(mesh, way, along, across));
+                [joint.before, joint.index, joint.after].map(|along| place_of(mesh, direction, along, across));
             [sub(middle, before), sub(after, middle)]
         })
         .collect();
-    let at = |across: usize| crate::units::place(place_of(mesh, way, joint.index, across));
+    let at = |across: usize| crate::units::place(place_of(mesh, direction, joint.index, across));
     for (across, [before, after]) in legs.iter().enumerate() {
         let angle = norm(cross(*before, *after)).atan2(dot(*before, *after));
         if angle > SMOOTH {
@@ -132,13 +132,14 @@ fn smooth(mesh: &Mesh, way: usize, joint: Joint, spans: [f64; 2]) -> Result<Join
         }
     }
     let uneven = |along: usize| {
-        let ratio = |across: usize| weight_of(mesh, way, along, across) / weight_of(mesh, way, joint.index, across);
+        let ratio =
+            |across: usize| weight_of(mesh, direction, along, across) / weight_of(mesh, direction, joint.index, across);
         across.clone().find(|across| (ratio(*across) / ratio(0) - 1.0).abs() > SMOOTH)
     };
-    let knot = || crate::units::significant(knot_of(mesh, way, joint.index), 6);
-    let direction = ["u", "v"][way];
+    let knot = || crate::units::significant(knot_of(mesh, direction, joint.index), 6);
+    let name = ["u", "v"][direction];
     if let Some(across) = uneven(joint.before).or_else(|| uneven(joint.after)) {
-        return Err(ModelError::UnevenJoint { direction, knot: knot(), at: at(across), what: "weights" });
+        return Err(ModelError::UnevenJoint { direction: name, knot: knot(), at: at(across), what: "weights" });
     }
     // How far off equal derivatives are, as a share of the step from the line before to the line after.
     let misfit = |[before_weight, after_weight]: [f64; 2]| {
@@ -148,18 +149,18 @@ fn smooth(mesh: &Mesh, way: usize, joint: Joint, spans: [f64; 2]) -> Result<Join
         });
         off.fold((0, 0.0), |worst, one| if one.1 > worst.1 { one } else { worst })
     };
-    let by_parameter = [joint.before, joint.after].map(|along| weight_of(mesh, way, along, 0));
+    let by_parameter = [joint.before, joint.after].map(|along| weight_of(mesh, direction, along, 0));
     let by_parameter = [by_parameter[0] / spans[0], by_parameter[1] / spans[1]];
     let by_length = [0, 1].map(|side| 1.0 / legs.iter().map(|leg| norm(leg[side])).sum::<f64>());
     let shares = [by_parameter, by_length].into_iter().find(|shares| misfit(*shares).1 <= SMOOTH);
     let [before_weight, after_weight] = shares.ok_or_else(|| {
         let (across, _) = misfit(by_length);
-        ModelError::UnevenJoint { direction, knot: knot(), at: at(across), what: "speeds" }
+        ModelError::UnevenJoint { direction: name, knot: knot(), at: at(across), what: "speeds" }
     })?;
     Ok(Joint { before_weight, after_weight, ..joint })
 }
 
-/// The knot at which the function of a line is 1: of a seam, the first.
-fn knot_of(mesh: &Mesh, way: usize, line: usize) -> f64 {
-    mesh.knots[way][line + 1]
+/// Knot at which the function of a line is 1; for a seam, the first knot.
+fn knot_of(mesh: &Mesh, direction: usize, line: usize) -> f64 {
+    mesh.knots[direction][line + 1]
 }

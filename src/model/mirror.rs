@@ -1,9 +1,9 @@
-//! Planes of symmetry: the plane that an edge, or a line inside, lies in.
+//! Planes of symmetry, each with the edge or the line inside that lies in it.
 
 use crate::model::ModelError;
 use crate::model::edge::{rows_of, side};
 use crate::model::limits::{ANGLE, SAME_PARAMETER};
-use crate::model::place::parameters_of;
+use crate::model::parametrize::parameters_of;
 use crate::model::symmetric_line::Line;
 use crate::model::symmetry_plane::{NoPlane, square_to, symmetry_plane};
 use crate::scene::{Edge, Hold, Place, Scene, Support};
@@ -13,78 +13,79 @@ use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 /// An edge, or a line inside, in a plane of symmetry.
 #[derive(Clone, Debug)]
 pub struct Mirror {
-    /// Name of its support.
+    /// Name of the support.
     pub support: String,
-    /// The edge; `None` for a line inside.
+    /// Edge in the plane; `None` for a line inside.
     pub edge: Option<Edge>,
-    /// The direction (0 or 1) whose parameter is the same all along it.
-    pub way: usize,
-    /// That parameter.
+    /// Direction (0 or 1) whose parameter is constant on the edge or line.
+    pub direction: usize,
+    /// Value of that parameter.
     pub parameter: f64,
     /// Unit normal of the plane.
     pub normal: [f64; 3],
 }
 
 impl Mirror {
-    /// The planes of symmetry among some supports. Those that meet at right angles within the tolerance do so to rounding, and
-    /// so do those along an axis: constraints that differ by less than the coordinates' rounding must not both hold.
+    /// Finds the planes of symmetry among some supports. Those that meet at right angles within the tolerance do so to
+    /// rounding, and so do those along an axis: constraints that differ by less than the coordinates' rounding must not
+    /// both hold.
     ///
     /// # Errors
     /// Where an edge does not lie in a plane that the surface crosses at right angles.
     pub fn all(scene: &Scene, supports: &[Support], mesh: &Mesh) -> Result<Vec<Self>, ModelError> {
         let mut mirrors: Vec<Self> = Vec::new();
         for support in supports.iter().filter(|support| support.hold == Hold::Symmetric) {
-            let (edge, way, parameter) = match support.on {
+            let (edge, direction, parameter) = match support.on {
                 Place::Edge(edge) => {
-                    let (way, at_end) = side(edge);
-                    (Some(edge), way, if at_end { 1.0 } else { 0.0 })
+                    let (direction, at_end) = side(edge);
+                    (Some(edge), direction, if at_end { 1.0 } else { 0.0 })
                 }
                 Place::Line(direction, fraction) => {
-                    let way = direction.index();
-                    (None, way, parameters_of(&scene.geometry, [fraction; 2])[way])
+                    let direction = direction.index();
+                    (None, direction, parameters_of(&scene.geometry, [fraction; 2])[direction])
                 }
                 Place::Point(_) | Place::Whole => return Err(ModelError::NotAnEdge { support: support.name.clone() }),
             };
-            let plane = plane_of(mesh, edge, way, parameter).map_err(|reason| ModelError::NotASymmetryPlane {
+            let plane = plane_of(mesh, edge, direction, parameter).map_err(|reason| ModelError::NotASymmetryPlane {
                 support: support.name.clone(),
                 reason: reason.to_string(),
             })?;
             let normal = mirrors.iter().fold(plane, |normal, other| square_to(normal, other.normal));
-            mirrors.push(Self { support: support.name.clone(), edge, way, parameter, normal });
+            mirrors.push(Self { support: support.name.clone(), edge, direction, parameter, normal });
         }
         Ok(mirrors)
     }
 
-    /// The point of the surface at a parameter along it.
+    /// Evaluates the point of the surface at a parameter along the edge or line.
     pub(super) fn point(&self, mesh: &Mesh, parameter: f64) -> SurfacePoint {
-        let at = if self.way == 0 { [self.parameter, parameter] } else { [parameter, self.parameter] };
+        let at = if self.direction == 0 { [self.parameter, parameter] } else { [parameter, self.parameter] };
         mid_surface_point(mesh, &[], at)
     }
 
-    /// Its points at the ends and in the middle of each span.
+    /// Samples the edge or line at the ends and in the middle of each span.
     pub(super) fn samples(&self, mesh: &Mesh) -> Vec<SurfacePoint> {
-        let running = 1 - self.way;
+        let running = 1 - self.direction;
         let spans = Spans::of(&mesh.knots[running], mesh.degree[running]).bounds;
         let parameters = spans.into_iter().flat_map(|[from, to]| [from, 0.5 * (from + to), to]);
         parameters.map(|parameter| self.point(mesh, parameter)).collect()
     }
 
-    /// The share of a vector across the plane, where that is more than rounding.
+    /// Component of a vector across the plane, where that is more than rounding.
     pub(crate) fn share_across(&self, vector: [f64; 3]) -> Option<f64> {
         let share = dot(vector, self.normal);
         (share.abs() > 2.0 * ANGLE * norm(vector)).then_some(share)
     }
 
-    /// Whether a parameter across it is its own.
+    /// Whether a parameter in the constant direction is that of the edge or line.
     pub(super) fn is_at(&self, parameter: f64) -> bool {
         (parameter - self.parameter).abs() <= SAME_PARAMETER
     }
 }
 
-/// Unit normal of the plane of symmetry that an edge, or a line inside, can lie in.
-fn plane_of(mesh: &Mesh, edge: Option<Edge>, way: usize, parameter: f64) -> Result<[f64; 3], NoPlane> {
+/// Finds the unit normal of the plane of symmetry that an edge, or a line inside, can lie in.
+fn plane_of(mesh: &Mesh, edge: Option<Edge>, direction: usize, parameter: f64) -> Result<[f64; 3], NoPlane> {
     let Some(edge) = edge else {
-        let line = Line::new(mesh, way, parameter)?;
+        let line = Line::new(mesh, direction, parameter)?;
         return symmetry_plane(&line.points(mesh), &line.steps(mesh));
     };
     let [points, beside] = rows_of(mesh, edge).map(|row| {

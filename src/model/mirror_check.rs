@@ -9,7 +9,7 @@ use crate::model::edge::side;
 use crate::model::limits::ANGLE;
 use crate::model::mirror::Mirror;
 use crate::model::mirror_image::check_own_image;
-use crate::model::place::parameters_of;
+use crate::model::parametrize::parameters_of;
 use crate::model::scene_supports::supports_of;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{ActionKind, ForceVector, Material, Place, Scene, SurfaceDirection};
@@ -20,7 +20,7 @@ use crate::units::{place, significant};
 /// Refuses material and loads that are not their own mirror images at the planes of symmetry that a scene asks for.
 ///
 /// # Errors
-/// Where one is not, or an edge lies in no plane of symmetry.
+/// Where material or loads are not, or an edge lies in no plane of symmetry.
 pub fn check_mirror_images(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
     for mirror in Mirror::all(scene, &supports_of(scene), mesh)? {
         check_material(&scene.material, mesh, &mirror)?;
@@ -39,7 +39,7 @@ fn check_material(material: &Material, mesh: &Mesh, mirror: &Mirror) -> Result<(
     }
     for point in mirror.samples(mesh) {
         let tangents = [point.derivatives[0], point.derivatives[1]];
-        let terms = shear_coupling(material, tangents, unit(point.derivatives[1 - mirror.way]));
+        let terms = shear_coupling(material, tangents, unit(point.derivatives[1 - mirror.direction]));
         if !terms.is_empty() {
             return Err(ModelError::MaterialNotMirrored {
                 support: mirror.support.clone(),
@@ -64,7 +64,7 @@ fn check_natural_states(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(
             _ => continue,
         };
         for point in &points {
-            let (e1, along) = (unit(point.derivatives[0]), unit(point.derivatives[1 - mirror.way]));
+            let (e1, along) = (unit(point.derivatives[0]), unit(point.derivatives[1 - mirror.direction]));
             let normal = unit(cross(point.derivatives[0], point.derivatives[1]));
             let (cos, sin) = (dot(along, e1), dot(along, cross(normal, e1)));
             let shear = |[s11, s22, s12]: [f64; 3]| 2.0 * cos * sin * (s22 - s11) + (cos * cos - sin * sin) * s12;
@@ -81,8 +81,8 @@ fn check_natural_states(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(
     Ok(())
 }
 
-/// The stiffnesses between shear and stretch in axes along a tangent of the surface and across it, where they are more than
-/// rounding, in words.
+/// Describes the stiffnesses between shear and stretch, in axes along a tangent of the surface and across it, that are
+/// more than rounding.
 fn shear_coupling(material: &Material, [a1, a2]: [[f64; 3]; 2], tangent: [f64; 3]) -> Vec<String> {
     let across = cross(unit(cross(a1, a2)), tangent);
     // Covariant strains (11, 22, 2·12) from those in the axes: ε_αβ = ε_ij (A_α·e_i)(A_β·e_j).
@@ -119,16 +119,16 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
     let is_on = |on: &Place| match on {
         Place::Edge(edge) => Some(*edge) == mirror.edge,
         Place::Line(direction, fraction) => {
-            let way = direction.index();
-            way == mirror.way && mirror.is_at(parameters_of(&scene.geometry, [*fraction; 2])[way])
+            let direction = direction.index();
+            direction == mirror.direction && mirror.is_at(parameters_of(&scene.geometry, [*fraction; 2])[direction])
         }
-        Place::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.way]),
+        Place::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.direction]),
         Place::Whole => false,
     };
-    // A line the other way meets the plane in a point.
+    // A line in the other direction meets the plane in a point.
     let meets = |on: &Place| match on {
-        Place::Edge(edge) => side(*edge).0 != mirror.way,
-        Place::Line(direction, _) => direction.index() != mirror.way,
+        Place::Edge(edge) => side(*edge).0 != mirror.direction,
+        Place::Line(direction, _) => direction.index() != mirror.direction,
         Place::Point(_) | Place::Whole => false,
     };
     for action in &scene.actions {

@@ -1,16 +1,17 @@
 //! Whether a whole shell is its own mirror image in the plane of a line inside.
 //!
-//! A symmetric line inside holds what a symmetric shell does by itself. On any other it would be a hold that nothing makes:
-//! surface, supports and actions must be mapped onto themselves. The parameter across the line goes over into 1 − ξ; tangents
-//! along it are mirrored and those across mirrored and turned round, so that the normal of the image is the image of the normal:
-//! loads along directions of the surface keep their size. Forces and translations are mirrored, moments and turns mirrored and
-//! turned round. What acts on the whole surface is looked at on the line ([`super::mirror_check`]).
+//! A symmetric line inside holds what a symmetric shell does by itself. On any other shell it would add a support that
+//! does not exist: surface, supports and actions must be mapped onto themselves. The parameter across the line goes
+//! over into 1 − ξ; tangents along it are mirrored and those across mirrored and turned round, so that the normal of
+//! the image is the image of the normal: loads along directions of the surface keep their size. Forces and translations
+//! are mirrored, moments and turns mirrored and turned round. Actions on the whole surface are checked on the line
+//! ([`super::mirror_check`]).
 
 use crate::model::ModelError;
 use crate::model::edge::{on_edge, side};
 use crate::model::limits::{ANGLE, POSITION, ROUNDING, SAME_PARAMETER};
 use crate::model::mirror::Mirror;
-use crate::model::place::{parameters_of, sample_parameters};
+use crate::model::parametrize::{parameters_of, sample_parameters};
 use crate::model::scene_supports::supports_of;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{
@@ -23,27 +24,27 @@ use crate::units::{place, significant};
 /// A vector whose components are given or free.
 type Given = [Option<f64>; 3];
 
-/// A mirror that the shell stands on both sides of.
+/// A mirror plane with the shell on both sides.
 struct Plane {
     normal: [f64; 3],
-    /// A point of it, mm.
+    /// Point of the plane, mm.
     origin: [f64; 3],
-    /// Distances below are rounding of coordinates, mm.
+    /// Distance below which a difference is rounding of coordinates, mm.
     rounding_mm: f64,
 }
 
-/// A support or an action, as far as a mirror changes it.
+/// A support or an action, reduced to what a mirror changes.
 #[derive(Clone)]
-struct Part {
-    /// In words.
+struct SupportOrAction {
+    /// Name, in words.
     name: String,
-    /// What no mirror changes.
+    /// Everything that no mirror changes, as text.
     kind: String,
-    /// Points of the place: one, or start, middle and end of a line; none for the whole surface.
+    /// Points of its place: one, or start, middle and end of a line; none for the whole surface.
     points: Vec<[f64; 3]>,
-    /// Forces, translations, arms.
+    /// Vectors that are mirrored: forces, translations, arms.
     vectors: Vec<Given>,
-    /// Moments and turns.
+    /// Vectors that are mirrored and turned round: moments and turns.
     turns: Vec<Given>,
     history: History,
 }
@@ -51,14 +52,14 @@ struct Part {
 /// Refuses a shell that is not its own mirror image in the plane of a line inside.
 ///
 /// # Errors
-/// Where the line is not in its middle, or a surface point, a support or an action has no image.
+/// Where the line is not in the middle of the shell, or a surface point, a support or an action has no image.
 pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
     let refused = |what: String| Err(ModelError::NotItsOwnImage { support: mirror.support.clone(), what });
     if (mirror.parameter - 0.5).abs() > SAME_PARAMETER {
         return refused("the line does not lie in its middle, at 0.5".into());
     }
     let origin = mirror.point(mesh, 0.0).position;
-    let samples = samples(mesh, mirror.way);
+    let samples = samples(mesh, mirror.direction);
     let size = samples.iter().map(|[point, _]| norm(sub(*point, origin))).fold(0.0, f64::max);
     let plane = Plane { normal: mirror.normal, origin, rounding_mm: POSITION * size };
     let off = samples.iter().map(|[point, opposite]| (norm(sub(plane.point(*point), *opposite)), *point));
@@ -71,40 +72,40 @@ pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Re
         ));
     }
     let supports = supports_of(scene);
-    let supports = supports.iter().map(|support| Part::of_support(scene, mesh, support, origin));
-    let actions = scene.actions.iter().filter_map(|action| Part::of_action(scene, mesh, action));
-    let parts: Vec<Part> = supports.chain(actions).collect();
-    let count = |part: &Part| parts.iter().filter(|other| plane.is_same(part, other)).count();
-    let unmatched = |part: &&Part| plane.image(part).is_none_or(|image| count(&image) != count(part));
+    let supports = supports.iter().map(|support| SupportOrAction::of_support(scene, mesh, support, origin));
+    let actions = scene.actions.iter().filter_map(|action| SupportOrAction::of_action(scene, mesh, action));
+    let parts: Vec<SupportOrAction> = supports.chain(actions).collect();
+    let count = |part: &SupportOrAction| parts.iter().filter(|other| plane.is_same(part, other)).count();
+    let unmatched = |part: &&SupportOrAction| plane.image(part).is_none_or(|image| count(&image) != count(part));
     match parts.iter().find(unmatched) {
         Some(part) => refused(format!("{} has no mirror image on the other side", part.name)),
         None => Ok(()),
     }
 }
 
-/// Points of the surface, two in every span each way, each with the one that stands opposite.
-fn samples(mesh: &Mesh, way: usize) -> Vec<[[f64; 3]; 2]> {
-    let [us, vs] = [0, 1].map(|way| sample_parameters(mesh, way));
+/// Points of the surface, two in every span in each direction, each with the opposite one.
+fn samples(mesh: &Mesh, direction: usize) -> Vec<[[f64; 3]; 2]> {
+    let [us, vs] = [0, 1].map(|direction| sample_parameters(mesh, direction));
     let pair = |at: [f64; 2]| {
         let mut opposite = at;
-        opposite[way] = 1.0 - at[way];
+        opposite[direction] = 1.0 - at[direction];
         [at, opposite].map(|at| mid_surface_point(mesh, &[], at).position)
     };
     us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])).map(pair).collect()
 }
 
-/// Points of a place that tell it from others.
+/// Points that distinguish a place from others.
 fn points_of(scene: &Scene, mesh: &Mesh, on: Place) -> Vec<[f64; 3]> {
-    let along = |way: usize, fraction: f64| {
-        [0.0, 0.5, 1.0].map(|along| if way == 0 { [fraction, along] } else { [along, fraction] }).to_vec()
+    let along = |direction: usize, fraction: f64| {
+        [0.0, 0.5, 1.0].map(|along| if direction == 0 { [fraction, along] } else { [along, fraction] }).to_vec()
     };
     let fractions = match on {
         Place::Point(at) => vec![at],
         Place::Line(ParametricDirection::U, fraction) => along(0, fraction),
         Place::Line(ParametricDirection::V, fraction) => along(1, fraction),
         Place::Edge(edge) => {
-            let (way, at_end) = side(edge);
-            along(way, if at_end { 1.0 } else { 0.0 })
+            let (direction, at_end) = side(edge);
+            along(direction, if at_end { 1.0 } else { 0.0 })
         }
         Place::Whole => vec![],
     };
@@ -112,7 +113,7 @@ fn points_of(scene: &Scene, mesh: &Mesh, on: Place) -> Vec<[f64; 3]> {
     fractions.into_iter().map(position).collect()
 }
 
-impl Part {
+impl SupportOrAction {
     fn of_support(scene: &Scene, mesh: &Mesh, support: &Support, origin: [f64; 3]) -> Self {
         let (kind, vectors, turns) = match &support.hold {
             Hold::Symmetric => ("symmetric", vec![], vec![]),
@@ -139,7 +140,7 @@ impl Part {
         }
     }
 
-    /// `None` for what acts on the whole surface.
+    /// Creates the description of an action; `None` for one on the whole surface.
     fn of_action(scene: &Scene, mesh: &Mesh, action: &Action) -> Option<Self> {
         let forced = |kind: &str, force: ForceVector| match force {
             ForceVector::Components(force) => (kind.to_owned(), vec![force.map(Some)], vec![]),
@@ -149,8 +150,8 @@ impl Part {
             ActionKind::Force { on, force_n } => (Place::Point(on), forced("force", force_n)),
             ActionKind::LineForce { on, force_n_per_mm } => (on, forced("line force", force_n_per_mm)),
             ActionKind::EdgeMoment { on, moment_n } => {
-                let (way, _) = side(on);
-                let along = unit(on_edge(mesh, on, 0.5).derivatives[1 - way]);
+                let (direction, _) = side(on);
+                let along = unit(on_edge(mesh, on, 0.5).derivatives[1 - direction]);
                 (Place::Edge(on), ("edge moment".into(), vec![], vec![scaled(moment_n, along).map(Some)]))
             }
             ActionKind::AreaForce { .. }
@@ -180,7 +181,7 @@ impl Plane {
         sub(point, scaled(2.0 * dot(arm, self.normal), self.normal))
     }
 
-    /// `None` where the image of a given component has a share along one that is free.
+    /// Mirrors a vector; `None` where the image of a given component has a share along one that is free.
     fn given(&self, vector: &Given) -> Option<Given> {
         let mixes = |i: usize, j: usize| i != j && (self.normal[i] * self.normal[j]).abs() > ROUNDING;
         let parted = |i: usize| (0..3).any(|j| mixes(i, j) && vector[i].is_some() != vector[j].is_some());
@@ -188,9 +189,9 @@ impl Plane {
         (!(0..3).any(parted)).then(|| [0, 1, 2].map(|c| vector[c].map(|_| image[c])))
     }
 
-    fn image(&self, part: &Part) -> Option<Part> {
+    fn image(&self, part: &SupportOrAction) -> Option<SupportOrAction> {
         let turned = |turn: &Given| Some(self.given(turn)?.map(|component| component.map(|value| -value)));
-        Some(Part {
+        Some(SupportOrAction {
             points: part.points.iter().map(|point| self.point(*point)).collect(),
             vectors: part.vectors.iter().map(|vector| self.given(vector)).collect::<Option<_>>()?,
             turns: part.turns.iter().map(turned).collect::<Option<_>>()?,
@@ -198,8 +199,8 @@ impl Plane {
         })
     }
 
-    /// Whether two parts do the same in the same place. A mirror turns lines that cross it round.
-    fn is_same(&self, one: &Part, other: &Part) -> bool {
+    /// Whether two of them do the same in the same place. A mirror reverses lines that cross it.
+    fn is_same(&self, one: &SupportOrAction, other: &SupportOrAction) -> bool {
         let near = |(a, b): (&[f64; 3], &[f64; 3])| norm(sub(*a, *b)) <= 2.0 * self.rounding_mm;
         let alike = |(a, b): (&Given, &Given)| {
             let [x, y] = [a, b].map(|vector| vector.map(Option::unwrap_or_default));

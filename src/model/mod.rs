@@ -1,21 +1,21 @@
-//! A scene made discrete: the patch that it starts from, and for a mesh its tables, supports and free unknowns.
+//! A scene made discrete: the mesh that it starts from, and the tables, supports and free unknowns of a mesh.
 //!
 //! | file | what |
 //! |---|---|
-//! | `limits` | how near is near enough, how much too much |
+//! | `limits` | tolerances and limits |
 //! | `error` | why a scene cannot be made discrete |
 //! | `shape` | the surface of a scene in its fewest elements |
-//! | `joint` | knot lines across which it is smooth |
-//! | `soundness`, `thinness`, `overhang` | whether a shell can have it |
-//! | `subdivision`, `patch` | the mesh that a run starts from |
-//! | `place`, `edge`, `direction` | parameters of fractions; rows and normals of edges; directions at a point |
-//! | `expressions` | places as sums of control points |
+//! | `joint` | knot lines across which the surface is smooth |
+//! | `soundness`, `thinness`, `overhang` | whether a shell can have that surface |
+//! | `subdivision`, `start` | the mesh that a run starts from |
+//! | `parametrize`, `edge`, `direction` | parameters at fractions of length and angle; rows and normals of edges; directions at a point |
+//! | `expressions` | displacements of places as sums over control points |
 //! | `symmetry_plane`, `symmetric_line`, `mirror` | planes of symmetry |
-//! | `mirror_check`, `mirror_image` | whether what acts there is its own image |
+//! | `mirror_check`, `mirror_image` | whether loads, material and shell are their own mirror images |
 //! | `scene_supports` | the supports of a scene |
 //! | `ties` | joints, seams and planes that tie rows |
 //! | `body` | a rigid body and its motions |
-//! | `supports` | what supports ask of a mesh |
+//! | `supports` | the constraints of supports on a mesh |
 //! | `hold`, `rigid_support` | the constraints that each kind makes |
 //! | `rigid_motion` | motions that they leave free |
 //! | `elimination` | constraints eliminated |
@@ -26,8 +26,8 @@
 //! | `connectivity` | control points of each element, and the order of sums |
 //! | `tables` | shape functions at the points |
 //! | `block_pattern`, `blocks` | 3 × 3 blocks of a matrix on control points |
-//! | `free_strains` | strains without energy over the parameter |
-//! | `reactions` | what supports exert |
+//! | `free_strains` | free strains over the parameter |
+//! | `reactions` | forces that supports exert |
 
 mod block_pattern;
 mod blocks;
@@ -48,8 +48,7 @@ mod mirror;
 mod mirror_check;
 mod mirror_image;
 mod overhang;
-mod patch;
-mod place;
+mod parametrize;
 mod placement;
 mod quadrature;
 mod reactions;
@@ -59,6 +58,7 @@ mod rotation;
 mod scene_supports;
 mod shape;
 mod soundness;
+mod start;
 mod subdivision;
 mod supports;
 mod symmetric_line;
@@ -81,12 +81,12 @@ pub(crate) use gauss::gauss_points;
 pub use limits::MOST_CONTROL_POINTS;
 pub(crate) use limits::ROUNDING;
 pub(crate) use mirror::Mirror;
-pub use patch::starting_mesh;
-pub(crate) use place::{line_place, parameters_of};
+pub(crate) use parametrize::{line_place, parameters_of};
 pub use placement::Placement;
 pub(crate) use quadrature::PointCounts;
 pub use reactions::{Exerted, PointForces};
 pub(crate) use rigid_motion::{HELD, free_motions};
+pub use start::starting_mesh;
 pub use supports::Supports;
 pub(crate) use tables::{BATCH, LANES};
 pub use tables::{PointTable, Tables};

@@ -1,8 +1,9 @@
-//! Forces by the projected area: which of two layers one above the other carries them, the area alone does not say.
+//! Check of forces by the projected area: where two layers lie one above the other, the area alone does not say which
+//! carries them.
 
 use crate::model::ModelError;
 use crate::model::limits::ANGLE;
-use crate::model::place::sample_parameters;
+use crate::model::parametrize::sample_parameters;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{ActionKind, ForceVector, LoadedArea, Scene};
 use crate::shell::{cross, dot, norm};
@@ -12,7 +13,7 @@ use crate::units::place;
 /// Refuses forces by the projected area that meet both sides of the surface.
 ///
 /// # Errors
-/// Where one does, by more than rounding.
+/// Where a force does, by more than rounding.
 pub(super) fn check_overhangs(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
     for action in &scene.actions {
         let ActionKind::AreaForce { force_n_per_mm2: ForceVector::Components(force), per: LoadedArea::Projected } =
@@ -23,7 +24,7 @@ pub(super) fn check_overhangs(scene: &Scene, mesh: &Mesh) -> Result<(), ModelErr
         if norm(force) == 0.0 {
             continue;
         }
-        let [us, vs] = [0, 1].map(|way| sample_parameters(mesh, way));
+        let [us, vs] = [0, 1].map(|direction| sample_parameters(mesh, direction));
         let points = us.iter().flat_map(|u| vs.iter().map(|v| mid_surface_point(mesh, &[], [*u, *v])));
         let facing = points.map(|point| {
             let normal = unit(cross(point.derivatives[0], point.derivatives[1]));

@@ -1,4 +1,4 @@
-//! u(x) at one set of coordinates: displacements, their derivatives, and what rigid sections that turn add to the
+//! The displacement u(x) at one set of coordinates, its derivatives, and what rigid sections that turn add to the
 //! stiffness.
 
 use crate::model::rotation::{Rotation, apply};
@@ -14,14 +14,14 @@ pub struct Placement<'a> {
     rotations: Vec<Rotation>,
     /// Direction in space of each entry.
     directions: Vec<[f64; 3]>,
-    /// For control points of sections: X − c + v.
+    /// Arms X − c + v of the control points of sections, mm.
     arms: Vec<[f64; 3]>,
-    /// For control points of sections: v. Apart from the arms, whose rounding is a share of the shell's size: at a
-    /// millionth of a degree v has few digits left in them.
+    /// Displacements v of the control points of sections in their frames, mm. They are kept apart from the arms, whose
+    /// rounding is a share of the shell's size: at a millionth of a degree v has few digits left in them.
     locals: Vec<[f64; 3]>,
 }
 
-/// Where a section stands.
+/// The pose of a section.
 #[derive(Clone, Debug)]
 struct Pose {
     /// Translation (mm) and rotation vector (radians).
@@ -35,7 +35,7 @@ impl Pose {
         Self { motions, rotation: Rotation::new([motions[3], motions[4], motions[5]]), centre }
     }
 
-    /// v of a control point X that is displaced by u.
+    /// Displacement v, in the section's frame, of a control point X that is displaced by u.
     pub fn local(&self, point: [f64; 3], displacement: [f64; 3]) -> [f64; 3] {
         let [x, y, z, ..] = self.motions;
         let arm = sub(point, self.centre);
@@ -45,13 +45,13 @@ impl Pose {
 }
 
 impl Unknowns {
-    /// The displacement that belongs to free unknowns at a parameter.
-    pub fn place(&self, unknowns: &[f64], parameter: f64) -> Placement<'_> {
+    /// Computes the displacement at some free unknowns and a parameter.
+    pub fn configure(&self, unknowns: &[f64], parameter: f64) -> Placement<'_> {
         Placement::new(self, unknowns, parameter)
     }
 
-    /// The free unknowns of a displacement that can be represented at a parameter. `turns` are the rotation vectors of
-    /// the sections where one of them turns freely, and empty otherwise.
+    /// Finds the free unknowns of a displacement that can be represented at a parameter. `turns` are the rotation
+    /// vectors of the sections where one of them turns freely, and empty otherwise.
     pub fn of_displacement(&self, displacement: &[[f64; 3]], turns: &[[f64; 3]], parameter: f64) -> Vec<f64> {
         let poses = self.poses_of(displacement, turns, parameter);
         self.home
@@ -69,7 +69,7 @@ impl Unknowns {
             .collect()
     }
 
-    /// Poses of the sections in a displacement.
+    /// Finds the poses of the sections in a displacement.
     fn poses_of(&self, displacement: &[[f64; 3]], turns: &[[f64; 3]], parameter: f64) -> Vec<Pose> {
         let given = self.given_at(parameter);
         let pose = |(index, section): (usize, &Section)| {
@@ -82,7 +82,7 @@ impl Unknowns {
                     None => 0.0,
                 };
             }
-            // A free translation shows in the rigid row.
+            // A free translation is that of the rigid row.
             let still = Pose::new(motions, section.centre);
             let point = section.rigid_row[0];
             let arm = sub(self.points[point], section.centre);
@@ -144,12 +144,12 @@ impl<'a> Placement<'a> {
         &self.unknowns.supports
     }
 
-    /// A force on a control point as seen in its frame.
+    /// Rotates a force on a control point into its frame.
     pub(super) fn seen_in_frame(&self, point: usize, force: [f64; 3]) -> [f64; 3] {
         self.section(point).map_or(force, |(_, rotation, _)| rotation.turn_back(force))
     }
 
-    /// A force in the frame of a control point as seen in space.
+    /// Rotates a force from the frame of a control point into space.
     pub(super) fn seen_in_space(&self, point: usize, force: [f64; 3]) -> [f64; 3] {
         self.section(point).map_or(force, |(_, rotation, _)| rotation.turn(force))
     }
@@ -191,7 +191,7 @@ impl<'a> Placement<'a> {
             .collect()
     }
 
-    /// Rotation vectors of the sections, radians; empty where the displacement alone says how they stand.
+    /// Rotation vectors of the sections, radians; empty where the displacement alone determines them.
     pub fn turns(&self) -> Vec<[f64; 3]> {
         if !self.unknowns.turns_are_unknown() {
             return Vec::new();
@@ -205,7 +205,7 @@ impl<'a> Placement<'a> {
         [0, 1, 2].map(|axis| self.coordinates[self.unknowns.motions[section][axis]])
     }
 
-    /// Motion of the control points for rates of the coordinates; either kind may be empty.
+    /// Velocity of the control points for rates of the free and the given coordinates, either of which may be empty.
     pub fn velocity(&self, free: &[f64], given: &[f64]) -> Vec<[f64; 3]> {
         let count = self.unknowns.count;
         let rate = |coordinate: usize| match coordinate.checked_sub(count) {
@@ -221,7 +221,7 @@ impl<'a> Placement<'a> {
             .collect()
     }
 
-    /// Tᵀ g: forces on the control points to forces on the free unknowns.
+    /// Computes Tᵀ g: forces on the free unknowns from forces g on the control points.
     pub fn restrict(&self, forces: &[[f64; 3]]) -> Vec<f64> {
         let mut restricted = vec![0.0; self.unknowns.count];
         for (point, force) in forces.iter().enumerate() {
@@ -232,7 +232,7 @@ impl<'a> Placement<'a> {
         restricted
     }
 
-    /// Forces conjugate to the given coordinates.
+    /// Computes the forces conjugate to the given coordinates, N, from forces on the control points.
     pub fn reactions(&self, forces: &[[f64; 3]]) -> Vec<f64> {
         let mut reactions = vec![0.0; self.unknowns.given_count()];
         for (point, force) in forces.iter().enumerate() {
@@ -246,7 +246,7 @@ impl<'a> Placement<'a> {
         reactions
     }
 
-    /// ∂²u/∂x_a∂x_b of a control point; zero unless one of the two turns its section.
+    /// Second derivative ∂²u/∂x_a∂x_b of a control point; `None` unless one of the two coordinates turns its section.
     fn second(&self, point: usize, a: &Entry, b: &Entry) -> Option<[f64; 3]> {
         let (_, rotation, size) = self.section(point)?;
         match (a.share, b.share) {
@@ -260,8 +260,8 @@ impl<'a> Placement<'a> {
         }
     }
 
-    /// Σ g · ∂²u/∂q_a∂q_b over control points, for pairs a ≥ b of free unknowns: what sections that turn freely add to
-    /// the stiffness. Empty where none does.
+    /// Computes Σ g · ∂²u/∂q_a∂q_b over control points, for pairs a ≥ b of free unknowns, which sections that turn
+    /// freely add to the stiffness. Empty where none does.
     pub fn curvature(&self, forces: &[[f64; 3]]) -> Vec<(usize, usize, f64)> {
         let mut terms = Vec::new();
         if !self.unknowns.turns_are_unknown() {
@@ -280,7 +280,7 @@ impl<'a> Placement<'a> {
         terms
     }
 
-    /// Σ g · ∂²u/∂q∂m ṁ over control points: how Tᵀ g changes as the given coordinates move.
+    /// Computes Σ g · ∂²u/∂q∂m ṁ over control points: the rate of Tᵀ g as the given coordinates move.
     pub fn restrict_rate(&self, forces: &[[f64; 3]], given: &[f64]) -> Vec<f64> {
         let mut restricted = vec![0.0; self.unknowns.count];
         for (point, force) in forces.iter().enumerate().filter(|(point, _)| self.section(*point).is_some()) {

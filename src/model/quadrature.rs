@@ -1,67 +1,73 @@
-//! How many Gauss points each element has, each way: for bending, and for stretching where that needs more.
+//! The number of Gauss points of each element in each direction: for bending, and for stretching where that needs more.
 //!
-//! Reduced integration that knows where splines are smooth (Adam, Hughes, Bouabdallah, Zarroug & Maitournam 2015, *Selective
-//! and reduced numerical integrations for NURBS-based isogeometric analysis*) takes p − 1 points where a spline is C^(p−1)
-//! across both ends of an element, and p next to the ends of the patch and to knots of higher multiplicity ([`patch`]). The
-//! counts are empirical, held by eigenvalues (`tests/verification/quadrature.rs`): with p points each way a single element has
-//! a field without energy beside the rigid motions, in every degree, and degree 2 with one point inside is four times too
-//! soft on graded meshes.
+//! Reduced integration that knows where splines are smooth (Adam, Hughes, Bouabdallah, Zarroug & Maitournam 2015,
+//! *Selective and reduced numerical integrations for NURBS-based isogeometric analysis*) takes p − 1 points where a
+//! spline is C^(p−1) across both ends of an element, and p next to the ends of the patch and to knots of higher
+//! multiplicity ([`patch`]). The counts are empirical, held by eigenvalues (`tests/verification/quadrature.rs`): with p
+//! points in each direction a single element has a field without energy in addition to the rigid motions, in every
+//! degree, and degree 2 with one point inside is four times too soft on graded meshes.
 //!
-//! Bending is content with them where the surface is developable, as tape springs are. Surfaces that are curved both ways take
-//! p + 1 points: a dome (R/t = 300, 16 × 16 cubic elements) is 0.17 % off with p − 1 and with p points, and 0.14 % with more.
-//! (On graded meshes of 16 fewer are better, 1.5 % for 2.3 %: there is less to lock. But that is luck.)
+//! Bending is content with them where the surface is developable, as tape springs are. Doubly curved surfaces take p +
+//! 1 points: a dome (R/t = 300, 16 × 16 cubic elements) is 0.17 % off with p − 1 and with p points, and 0.14 % with
+//! more. (On graded meshes of 16 fewer are better, 1.5 % for 2.3 %: there is less to lock. But that is luck.)
 //!
-//! Membrane forces are not: see [`crate::model::imbalance`]. So [`Quadrature::Balanced`] takes
-//! the cheapest rule for stretching, each way on its own, that leaves constant membrane forces in balance on the mesh in
-//! hand. Where stretching and bending act on each other (layers that are not symmetric) both have its points.
+//! Membrane forces are not: see [`crate::model::imbalance`]. So [`Quadrature::Balanced`] takes the cheapest rule for
+//! stretching, in each direction on its own, that leaves constant membrane forces in balance on the current mesh. Where
+//! stretching and bending act on each other (layers that are not symmetric) both have its points.
 
 use crate::model::imbalance::imbalance;
 use crate::scene::{Quadrature, Scene};
 use crate::shell::{ShellStiffness, cross, dot, norm, shell_stiffness};
 use crate::spline::{Mesh, Spans, mid_surface_point};
 
-/// Imbalance that stretching may be left with: the error of a displacement, relative to that of the membrane alone.
+/// Largest imbalance that stretching may be left with: the error of a displacement, relative to that of the membrane
+/// alone.
 ///
 /// What it bounds was measured on tubes under pressure, R/t from 30 to 3000, degrees 2 to 5, 4 to 64 elements a quarter turn,
 /// uniform and graded by 1 : 2 (`tests/verification/quadrature_balance.rs`).
 const MOST_IMBALANCE: f64 = 5e-3;
-/// Gaussian curvature, relative to the square of the largest normal curvature found, above which a surface is curved both ways.
+/// Gaussian curvature, relative to the square of the largest normal curvature found, above which a surface is doubly
+/// curved.
 const CURVED_BOTH_WAYS: f64 = 1e-3;
-/// Places each way at which the curvature is looked at.
+/// Number of points in each direction at which the curvature is examined.
 const SAMPLES: usize = 7;
-/// Points beyond the degree that [`Quadrature::Balanced`] goes up to.
+/// Largest number of points beyond the degree that [`Quadrature::Balanced`] tries.
 const MOST_MORE: usize = 3;
 
 /// Gauss points of each element, `[direction][element]`.
 pub(crate) type Counts = [Vec<usize>; 2];
 
-/// The points of a mesh.
+/// Numbers of Gauss points of the elements of a mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PointCounts {
-    /// For bending, and for stretching where `stretching` has none of its own.
+    /// Points for bending, and for stretching where `stretching` is `None`.
     pub bending: Counts,
-    /// For stretching alone.
+    /// Points for stretching alone.
     pub stretching: Option<Counts>,
 }
 
 impl PointCounts {
-    /// Points on the elements of `mesh` for the scene's rule.
+    /// Chooses the points on the elements of `mesh` by the scene's rule.
     pub fn of(scene: &Scene, mesh: &Mesh) -> Self {
         let both = |count: &dyn Fn(usize) -> Vec<usize>| [count(0), count(1)];
         let common = |bending: Counts| Self { bending, stretching: None };
         match scene.mesh.quadrature {
-            Quadrature::Full => common(both(&|k| everywhere(mesh, k, mesh.degree[k] + 1))),
-            Quadrature::FullPlusOne => common(both(&|k| everywhere(mesh, k, mesh.degree[k] + 2))),
-            Quadrature::FullPlusTwo => common(both(&|k| everywhere(mesh, k, mesh.degree[k] + 3))),
-            Quadrature::Reduced => common(both(&|k| reduced(mesh, k))),
-            Quadrature::Patch => common(both(&|k| patch(mesh, k))),
+            Quadrature::Full => common(both(&|direction| everywhere(mesh, direction, mesh.degree[direction] + 1))),
+            Quadrature::FullPlusOne => {
+                common(both(&|direction| everywhere(mesh, direction, mesh.degree[direction] + 2)))
+            }
+            Quadrature::FullPlusTwo => {
+                common(both(&|direction| everywhere(mesh, direction, mesh.degree[direction] + 3)))
+            }
+            Quadrature::Reduced => common(both(&|direction| reduced(mesh, direction))),
+            Quadrature::Patch => common(both(&|direction| patch(mesh, direction))),
             Quadrature::Balanced => {
                 let stiffness = shell_stiffness(&scene.material, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
                 let ratio = stretching_over_bending(&stiffness);
                 let is_developable = !is_curved_both_ways(mesh);
-                let full = |k: usize| everywhere(mesh, k, mesh.degree[k] + 1);
-                let bending = both(&|k| if is_developable { patch(mesh, k) } else { full(k) });
-                let stretching = both(&|k| balanced(mesh, k, &bending[k], ratio));
+                let full = |direction: usize| everywhere(mesh, direction, mesh.degree[direction] + 1);
+                let bending = both(&|direction| if is_developable { patch(mesh, direction) } else { full(direction) });
+                let stretching = both(&|direction| balanced(mesh, direction, &bending[direction], ratio));
                 match stretching == bending {
                     true => common(bending),
                     false if stiffness.coupling.is_some() => common(stretching),
@@ -71,7 +77,7 @@ impl PointCounts {
         }
     }
 
-    /// The larger of both counts.
+    /// Larger of both counts.
     pub fn most(&self) -> &Counts {
         self.stretching.as_ref().unwrap_or(&self.bending)
     }
@@ -81,14 +87,14 @@ fn everywhere(mesh: &Mesh, direction: usize, count: usize) -> Vec<usize> {
     vec![count; mesh.element_counts()[direction]]
 }
 
-/// Degree points; degree + 1 on a single element.
+/// Counts degree points; degree + 1 on a single element.
 fn reduced(mesh: &Mesh, direction: usize) -> Vec<usize> {
     let single = usize::from(mesh.element_counts()[direction] == 1);
     everywhere(mesh, direction, mesh.degree[direction] + single)
 }
 
-/// Degree − 1 points (at least 2) where the spline is smooth, degree next to the ends and to repeated knots; degree + 1 on a
-/// single element.
+/// Counts degree − 1 points (at least 2) where the spline is smooth, degree next to the ends and to repeated knots;
+/// degree + 1 on a single element.
 fn patch(mesh: &Mesh, direction: usize) -> Vec<usize> {
     let (degree, knots) = (mesh.degree[direction], &mesh.knots[direction]);
     let bounds = Spans::of(knots, degree).bounds;
@@ -104,7 +110,7 @@ fn patch(mesh: &Mesh, direction: usize) -> Vec<usize> {
     bounds.iter().map(count).collect()
 }
 
-/// The cheapest of `least` and degree, degree + 1, … points that leaves constant membrane forces in balance.
+/// Finds the cheapest of `least` and degree, degree + 1, … points that leaves constant membrane forces in balance.
 fn balanced(mesh: &Mesh, direction: usize, least: &[usize], stretching_over_bending: f64) -> Vec<usize> {
     let degree = mesh.degree[direction];
     let at_least = |count: usize| -> Vec<usize> { least.iter().map(|least| count.max(*least)).collect() };
@@ -114,7 +120,7 @@ fn balanced(mesh: &Mesh, direction: usize, least: &[usize], stretching_over_bend
     candidates.next().unwrap_or_else(|| at_least(degree + MOST_MORE))
 }
 
-/// Whether the undeformed surface cannot be unrolled.
+/// Whether the undeformed surface is doubly curved, so that it cannot be unrolled.
 fn is_curved_both_ways(mesh: &Mesh) -> bool {
     let parameter = |direction: usize, k: usize| {
         let (knots, degree) = (&mesh.knots[direction], mesh.degree[direction]);
@@ -133,8 +139,8 @@ fn is_curved_both_ways(mesh: &Mesh) -> bool {
     gauss > CURVED_BOTH_WAYS * normal * normal
 }
 
-/// The larger stiffness against stretching, along the surface's axes, over the smaller against bending, 1/mm²; 12/t² where
-/// the shell is isotropic.
+/// Ratio of the larger stiffness against stretching, along the surface's axes, to the smaller one against bending,
+/// 1/mm²; 12/t² where the shell is isotropic.
 fn stretching_over_bending(stiffness: &ShellStiffness) -> f64 {
     let ShellStiffness { membrane, bending, .. } = stiffness;
     membrane[0][0].max(membrane[1][1]) / bending[0][0].min(bending[1][1])

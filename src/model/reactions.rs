@@ -1,4 +1,4 @@
-//! What each support exerts on the shell: the multipliers of its constraints.
+//! The forces that each support exerts on the shell: the multipliers of its constraints.
 //!
 //! At equilibrium the forces g on the control points (internal less loads), each seen in the frame of its point, are those
 //! of the constraints b_k · v = m_k alone: g = Σ λ_k b_k. A support exerts Σ λ_k b_k over the constraints that are its own.
@@ -13,7 +13,7 @@
 //! 1. planes of symmetry. Near a support, the traction in the cut is what the other half exerts, and that of the support
 //!    across the plane falls to zero there. So the plane takes the force across it at the corner, and a couple between its
 //!    two rows of control points, but no force along it: the whole of that is the support's. The control points of the
-//!    edge follow those beside it, where the whole shell has its own; in degree 2, where both have the same functions,
+//!    edge follow those next to it, where the whole shell has its own; in degree 2, where both have the same functions,
 //!    reactions of a part and of the whole agree to rounding;
 //! 2. other supports, in the order of the scene;
 //! 3. planes of symmetry through lines inside: where the shell is what they say, they carry nothing;
@@ -25,21 +25,21 @@ use crate::model::Placement;
 use crate::model::elimination::{Expression, multipliers};
 use crate::model::supports::Supports;
 
-/// Forces on control points, N.
+/// Forces on some control points, N, by their numbers.
 pub type PointForces = BTreeMap<usize, [f64; 3]>;
 
-/// What supports and joints exert on the control points of a shell in equilibrium.
+/// Forces that supports and joints exert on the control points of a shell in equilibrium.
 #[derive(Clone, Debug)]
 pub struct Exerted {
-    /// By each support, in the order of [`Supports::footprints`].
+    /// Forces of each support, in the order of [`Supports::footprints`].
     pub by_supports: Vec<PointForces>,
-    /// By the joints: between control points of the shell itself.
+    /// Forces of the joints, between control points of the shell itself.
     pub by_joints: PointForces,
 }
 
 impl Placement<'_> {
-    /// Splits the forces on the control points (internal less loads, N) into those of the supports and joints. What a
-    /// residual leaves on the free unknowns is not among them.
+    /// Splits the forces on the control points (internal less loads, N) into those of the supports and joints. The
+    /// residual on the free unknowns is not among them.
     pub fn exerted(&self, forces: &[[f64; 3]]) -> Exerted {
         let supports = self.supports();
         let turn = in_turn(supports);
@@ -62,7 +62,7 @@ impl Placement<'_> {
     }
 }
 
-/// Constraints in the order in which they carry.
+/// Lists the constraints in the order in which they carry.
 fn in_turn(supports: &Supports) -> Vec<usize> {
     let mut mirrors = vec![0; supports.section_of.len()];
     for point in supports.footprints.iter().flat_map(|trace| &trace.mirrored) {

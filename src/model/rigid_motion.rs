@@ -1,15 +1,15 @@
-//! Rigid motions that supports leave free.
+//! Search for the rigid motions that supports leave free.
 
 use nalgebra::{DMatrix, SMatrix};
 
 use crate::model::body::{Body, FreeMotions};
 use crate::model::supports::Supports;
 
-/// Squares of how much a motion is held, relative to the most held one, below which it is free. A lever of a millionth of
-/// the shell holds nothing.
+/// Square of how much a motion is held, relative to the most held one, below which it is free. A lever of a millionth
+/// of the shell holds nothing.
 pub(crate) const HELD: f64 = 1e-12;
 
-/// The rigid motions of a body that supports on some control points (undeformed, mm) leave free.
+/// Finds the rigid motions of a body that supports on some control points (undeformed, mm) leave free.
 pub fn free_motions(body: Body, supports: &Supports, points: &[[f64; 3]]) -> FreeMotions {
     let mut gram = SMatrix::<f64, 6, 6>::zeros();
     for row in rows(body, supports, points) {
@@ -26,7 +26,7 @@ pub fn free_motions(body: Body, supports: &Supports, points: &[[f64; 3]]) -> Fre
     FreeMotions { body, basis }
 }
 
-/// What each constraint makes of the six rigid motions.
+/// Evaluates each constraint on the six rigid motions.
 fn rows(body: Body, supports: &Supports, points: &[[f64; 3]]) -> Vec<[f64; 6]> {
     let in_space = |component: usize| component >= 3 * points.len() || supports.section_of[component / 3].is_none();
     let mut rows: Vec<[f64; 6]> = supports

@@ -6,33 +6,33 @@
 //! follow from Σ_m λ_m Σ_k r_m(x_k) · r_l(x_k) = −f · r_l. The matrix is their Gram matrix, regular where the points do not lie on one
 //! line: loads that do no work on rigid motions leave no reaction, and the shell deforms as if it were free.
 //!
-//! The points stand at fixed fractions of the surface, so that a refined mesh holds the same.
+//! The points lie at fixed fractions of the surface, so that a refined mesh holds the same motions.
 
 use crate::model::ModelError;
 use crate::model::body::{Body, HeldMotions};
 use crate::model::elimination::Expression;
 use crate::model::expressions::control_expressions;
-use crate::model::place::parameters_of;
+use crate::model::parametrize::parameters_of;
 use crate::model::rigid_motion::free_motions;
 use crate::model::supports::Supports;
 use crate::scene::{Place, Scene};
 use crate::shell::{cross, dot, norm, sub};
 use crate::spline::{Mesh, mid_surface_point};
 
-/// Fractions of u and v of the points. Three remain on a closed turn, evenly spaced and never on one line; so few that
-/// they couple few control points.
+/// Fractions in u and v at which the points lie. Three remain on a closed turn, evenly spaced and never on one line; so
+/// few that they couple few control points.
 const FRACTIONS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
-/// Points nearer to each other than this share of the largest distance are one: a turn meets itself.
+/// Share of the largest distance below which two points are one, as where a full turn meets itself.
 const SAME: f64 = 1e-6;
-/// A point whose displacement counts.
+/// A point whose displacement is held on average.
 struct Point {
     position: [f64; 3],
-    /// Its displacement in those of control points.
+    /// Displacement of the point as a weighted sum over control points.
     sum: Vec<(usize, f64)>,
 }
 
 impl Supports {
-    /// Holds the motions that are free so far.
+    /// Holds the rigid motions that the other supports leave free.
     pub(super) fn hold_rigid_motions(
         &mut self,
         index: usize,
@@ -63,14 +63,14 @@ impl Supports {
             }
             self.push(Some(index), expression);
         }
-        let trace = &mut self.footprints[index];
-        trace.points = spread.iter().flat_map(|point| &point.sum).map(|(control, _)| *control).collect();
-        trace.pole = body.middle;
+        let footprint = &mut self.footprints[index];
+        footprint.points = spread.iter().flat_map(|point| &point.sum).map(|(control, _)| *control).collect();
+        footprint.pole = body.middle;
         self.held_motions = Some(HeldMotions { support: index, free });
         Ok(())
     }
 
-    /// Points that no moving section carries, each once.
+    /// Finds the points that no moving section carries, each once.
     fn spread_points(&self, scene: &Scene, mesh: &Mesh) -> Result<Vec<Point>, ModelError> {
         let mut spread: Vec<Point> = Vec::new();
         for fractions in FRACTIONS.iter().flat_map(|u| FRACTIONS.map(|v| [*u, v])) {

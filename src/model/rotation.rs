@@ -7,14 +7,14 @@ use crate::shell::dot;
 
 type Matrix = [[f64; 3]; 3];
 
-/// exp(ω) and its derivatives with respect to ω.
+/// The rotation exp(ω) and its derivatives with respect to ω.
 #[derive(Clone, Debug)]
 pub struct Rotation {
-    /// exp(ω) − I, without cancellation at small angles.
+    /// Change exp(ω) − I, without cancellation at small angles.
     pub change: Matrix,
-    /// ∂exp/∂ω_k.
+    /// First derivatives ∂exp/∂ω_k.
     pub first: [Matrix; 3],
-    /// ∂²exp/∂ω_k∂ω_l.
+    /// Second derivatives ∂²exp/∂ω_k∂ω_l.
     pub second: [[Matrix; 3]; 3],
 }
 
@@ -51,23 +51,23 @@ impl Rotation {
         Self { change: sum(&[(a[0], spin), (b[0], spin_square)]), first, second }
     }
 
-    /// exp(ω) x.
+    /// Rotates a vector: exp(ω) x.
     pub fn turn(&self, x: [f64; 3]) -> [f64; 3] {
         let change = apply(&self.change, x);
         [0, 1, 2].map(|c| x[c] + change[c])
     }
 
-    /// exp(ω)ᵀ x = exp(−ω) x.
+    /// Rotates a vector back: exp(ω)ᵀ x = exp(−ω) x.
     pub fn turn_back(&self, x: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|c| x[c] + (0..3).map(|row| self.change[row][c] * x[row]).sum::<f64>())
     }
 }
 
-/// Terms of the series: enough for three full turns.
+/// Number of terms of the series: enough for three full turns.
 const TERMS: usize = 40;
 
-/// Σ cₙ tⁿ with cₙ = (−1)ⁿ / (2n + order)!, and its first two derivatives in t: order 1 is sin θ/θ, order 2 is
-/// (1 − cos θ)/θ². The terms grow to e^θ before they fall: up to a full turn three digits are lost at most.
+/// Sums Σ cₙ tⁿ with cₙ = (−1)ⁿ / (2n + order)!, and its first two derivatives in t: order 1 is sin θ/θ, order 2 is (1
+/// − cos θ)/θ². The terms grow to e^θ before they fall: up to a full turn three digits are lost at most.
 fn series(t: f64, order: u32) -> [f64; 3] {
     let mut coefficients = [0.0; TERMS];
     let mut coefficient = if order == 1 { 1.0 } else { 0.5 };
@@ -90,7 +90,7 @@ fn series(t: f64, order: u32) -> [f64; 3] {
     sums
 }
 
-/// The matrix of y ↦ x × y.
+/// Matrix of y ↦ x × y.
 fn skew(x: [f64; 3]) -> Matrix {
     [[0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]]
 }
@@ -103,7 +103,7 @@ fn sum(parts: &[(f64, Matrix)]) -> Matrix {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| parts.iter().map(|(factor, matrix)| factor * matrix[i][j]).sum()))
 }
 
-/// A matrix times a vector.
+/// Multiplies a matrix by a vector.
 pub fn apply(matrix: &Matrix, x: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| dot(row, x))
 }

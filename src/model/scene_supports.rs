@@ -1,8 +1,8 @@
-//! The supports of a scene: those that it names, or those that turning ends come to.
+//! The supports of a scene: those that it names, or those that turning ends are equivalent to.
 
 use crate::scene::{Edge, Geometry, History, Hold, Load, Motion, Place, Scene, Sense, Support};
 
-/// The supports of a scene in words of its own, or those that turning ends come to.
+/// Lists the supports of a scene: those that it names, or those that turning ends are equivalent to.
 pub fn supports_of(scene: &Scene) -> Vec<Support> {
     let (Load::EndRotation(load), Geometry::TapeSpring { length_mm, radius_mm, arc_deg }) =
         (&scene.load, &scene.geometry)

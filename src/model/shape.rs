@@ -11,19 +11,19 @@ use crate::spline::{
     straight_line,
 };
 
-/// A surface, and how many elements the scene asks for.
+/// A surface, and the number of elements that the scene asks for.
 pub(super) struct Shape {
-    /// Exact, with the degree of the scene's mesh.
+    /// Exact surface in its fewest elements, with the degree of the scene's mesh.
     pub mesh: Mesh,
-    /// Elements each way of the model.
+    /// Number of elements of the model in each direction.
     pub elements: [usize; 2],
 }
 
-/// The surface of a scene. A tape spring with turning ends spans x in [0, L] and the arc angle φ in [−α/2, α/2] from the
-/// apex; its half-length model x in [0, L/2], its half-arc model φ in [0, α/2].
+/// Builds the surface of a scene. A tape spring with turning ends spans x in [0, L] and the arc angle φ in [−α/2, α/2]
+/// from the apex; its half-length model x in [0, L/2], its half-arc model φ in [0, α/2].
 ///
 /// # Errors
-/// Where the degree of the mesh is below that of the surface, or the surface is none that a shell can have.
+/// Where the degree of the mesh is below that of the surface, or the surface is not one that a shell can have.
 pub(super) fn shape(scene: &Scene) -> Result<Shape, ModelError> {
     let [p, q] = scene.mesh.degree;
     let elements = scene.mesh.elements;
@@ -79,19 +79,19 @@ fn tape_spring(scene: &Scene, length_mm: f64, radius_mm: f64, arc_deg: f64) -> S
     Shape { mesh, elements }
 }
 
-/// Cylinder over `across` (in the y–z plane) along `along` (x).
+/// Builds the cylinder over `across` (in the y–z plane) along `along` (x).
 fn translated(along: &HomogeneousCurve, across: &HomogeneousCurve) -> Mesh {
     product(along, across, |[x, _, _], [y, z, w]| [x * w, *y, *z, *w])
 }
 
-/// Control points from those of two curves, u slow.
+/// Combines the control points of two curves, u slow.
 fn product(u: &HomogeneousCurve, v: &HomogeneousCurve, point: impl Fn(&[f64; 3], &[f64; 3]) -> [f64; 4]) -> Mesh {
     let control_points =
         u.points.iter().flat_map(|a| v.points.iter().map(|b| point(a, b)).collect::<Vec<_>>()).collect();
     Mesh { degree: [u.degree, v.degree], knots: [u.knots.clone(), v.knots.clone()], control_points }
 }
 
-/// The user's patch on [0, 1]², raised to the degree of the mesh, smooth to rounding.
+/// Builds the user's patch on [0, 1]², raised to the degree of the mesh and smooth up to rounding.
 fn nurbs(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
     let mesh = sound(patch, degree).map_err(|fault| match fault {
         ModelError::DegreeTooLow { .. } => fault,
@@ -104,7 +104,7 @@ fn nurbs(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
     Ok(mesh)
 }
 
-/// The surface of a patch, where a shell can have it.
+/// Builds the surface of a patch, where a shell can have it.
 fn sound(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
     let mesh = raised_to(patch, degree)?;
     let closed = closed_directions(&mesh).map(|closed| closed && patch.seam == Some(Seam::Smooth));
@@ -113,7 +113,7 @@ fn sound(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
     Ok(mesh)
 }
 
-/// The patch whose points are listed with u running fastest.
+/// Returns the patch whose points are listed with u running fastest.
 fn listed_the_other_way(patch: &NurbsPatch) -> NurbsPatch {
     let [along, across] = [(&patch.knots_u, patch.degrees[0]), (&patch.knots_v, patch.degrees[1])]
         .map(|(knots, degree)| control_count(knots, degree));
@@ -136,21 +136,21 @@ fn raised_to(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError>
         knots: [unit(&patch.knots_u), unit(&patch.knots_v)],
         control_points: weighted.collect(),
     };
-    for way in 0..2 {
-        if degree[way] < mesh.degree[way] {
-            return Err(ModelError::DegreeTooLow { geometry: mesh.degree[way], mesh: degree[way] });
+    for direction in 0..2 {
+        if degree[direction] < mesh.degree[direction] {
+            return Err(ModelError::DegreeTooLow { geometry: mesh.degree[direction], mesh: degree[direction] });
         }
-        while mesh.degree[way] < degree[way] {
-            mesh = raised(&mesh, way);
+        while mesh.degree[direction] < degree[direction] {
+            mesh = raised(&mesh, direction);
         }
     }
     Ok(mesh)
 }
 
-/// The same surface with the degree in one direction higher by one: the space in which every distinct knot has one more
+/// Raises the degree of a surface in one direction by one: the space in which every distinct knot has one more
 /// multiplicity contains it, so interpolating at the Greville points is exact.
-fn raised(mesh: &Mesh, way: usize) -> Mesh {
-    let old = &mesh.knots[way];
+fn raised(mesh: &Mesh, direction: usize) -> Mesh {
+    let old = &mesh.knots[direction];
     let mut knots = Vec::with_capacity(2 * old.len());
     for (index, knot) in old.iter().enumerate() {
         knots.push(*knot);
@@ -158,7 +158,7 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
             knots.push(*knot);
         }
     }
-    let degree = mesh.degree[way] + 1;
+    let degree = mesh.degree[direction] + 1;
     let count = control_count(&knots, degree);
     let greville: Vec<f64> = (0..count)
         .map(|k| (knots[k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64).clamp(0.0, 1.0))
@@ -174,27 +174,27 @@ fn raised(mesh: &Mesh, way: usize) -> Mesh {
         matrix
     };
     let counts = mesh.control_counts();
-    let values = collocate(old, mesh.degree[way], counts[way]);
+    let values = collocate(old, mesh.degree[direction], counts[direction]);
     let square = collocate(&knots, degree, count);
     // Nonsingular by Schoenberg and Whitney: each Greville point lies inside the support of its function.
     let map = square.lu().solve(&values).unwrap_or(values);
-    let across = counts[1 - way];
+    let across = counts[1 - direction];
     let mut new_counts = counts;
-    new_counts[way] = count;
-    let index = |counts: [usize; 2], along: usize, j: usize| Grid::new(counts).index_along(way, along, j);
+    new_counts[direction] = count;
+    let index = |counts: [usize; 2], along: usize, j: usize| Grid::new(counts).index_along(direction, along, j);
     let mut control_points = vec![[0.0; 4]; count * across];
     for j in 0..across {
         for row in 0..count {
             let target = &mut control_points[index(new_counts, row, j)];
-            for column in 0..counts[way] {
+            for column in 0..counts[direction] {
                 let source = mesh.control_points[index(counts, column, j)];
                 (0..4).for_each(|c| target[c] += map[(row, column)] * source[c]);
             }
         }
     }
     let mut raised = Mesh { degree: mesh.degree, knots: mesh.knots.clone(), control_points };
-    raised.degree[way] = degree;
-    raised.knots[way] = knots;
+    raised.degree[direction] = degree;
+    raised.knots[direction] = knots;
     raised
 }
 

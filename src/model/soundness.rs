@@ -1,9 +1,10 @@
-//! Whether a surface that a user gives is one that a shell can have: it does not fold over itself, has a normal everywhere,
-//! and edges that coincide are said to.
+//! Checks of a surface that a user gives: it does not fold over itself, has a normal everywhere, and edges that
+//! coincide are declared as a seam.
 //!
-//! Normals are looked at on a grid: points of every span and its ends. From one to the next they turn by less than a quarter
-//! turn, or do once the step between them is halved often enough; where they never do the surface turns over. Between
-//! points, the area of a parameter square is followed to its least value, which a fold or a collapse takes to zero.
+//! Normals are examined on a grid: points of every span and its ends. From one to the next they turn by less than a
+//! quarter turn, or do once the step between them is halved often enough; where they never do the surface turns over.
+//! Between points, the area of a parameter square is followed to its least value, which a fold or a collapse takes to
+//! zero.
 
 use crate::model::ModelError;
 use crate::model::limits::POSITION;
@@ -12,13 +13,13 @@ use crate::shell::{cross, dot, norm, scaled, sub};
 use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 use crate::units::{place, significant};
 
-/// Areas of a parameter square, relative to the largest, that are none.
+/// Area of a parameter square, relative to the largest, below which there is none.
 const NO_AREA: f64 = 1e-9;
-/// Halvings of a step after which a normal that still turns over does so for good.
+/// Number of halvings of a step after which a normal that still turns over is taken to do so.
 const HALVINGS: usize = 12;
-/// An area that is this share of those beside it may lie next to a fold.
+/// Ratio of an area to the neighbouring ones below which it may lie next to a fold.
 const DIP: f64 = 0.9;
-/// Steps towards the least area between two points; each leaves two thirds of the interval.
+/// Number of steps towards the least area between two points; each leaves two thirds of the interval.
 const LEAST_AREA_STEPS: usize = 40;
 
 /// A point of the grid.
@@ -37,23 +38,23 @@ impl Sample {
     }
 
     fn between(mesh: &Mesh, one: &Sample, other: &Sample, share: f64) -> Self {
-        Self::new(mesh, [0, 1].map(|way| one.at[way] + share * (other.at[way] - one.at[way])))
+        Self::new(mesh, [0, 1].map(|direction| one.at[direction] + share * (other.at[direction] - one.at[direction])))
     }
 }
 
 /// Refuses a surface that folds over itself or has no normal somewhere.
 ///
 /// # Errors
-/// Where it does.
+/// Where the surface does.
 pub fn check_normals(mesh: &Mesh) -> Result<(), ModelError> {
-    let [along, across] = [0, 1].map(|way| parameters(mesh, way));
+    let [along, across] = [0, 1].map(|direction| parameters(mesh, direction));
     let grid: Vec<Vec<Sample>> =
         along.iter().map(|u| across.iter().map(|v| Sample::new(mesh, [*u, *v])).collect()).collect();
     let largest = grid.iter().flatten().map(|sample| norm(sample.area)).fold(0.0, f64::max);
     let least = NO_AREA * largest;
     let columns = (0..across.len()).map(|j| grid.iter().map(|row| row[j]).collect::<Vec<Sample>>());
     let lines: Vec<Vec<Sample>> = grid.iter().cloned().chain(columns).collect();
-    // Where there is no area there is no normal either: that is told of the point itself.
+    // Where there is no area there is no normal either, which is reported for the point itself.
     let has_area = |pair: &&[Sample]| pair.iter().all(|sample| norm(sample.area) > least);
     let mut pairs = lines.iter().flat_map(|line| line.windows(2)).filter(has_area);
     if let Some(pair) = pairs.find(|pair| turns_over(mesh, &pair[0], &pair[1], HALVINGS)) {
@@ -66,15 +67,16 @@ pub fn check_normals(mesh: &Mesh) -> Result<(), ModelError> {
     threes.try_for_each(|three| check_area(mesh, [&three[0], &three[1], &three[2]], least))
 }
 
-/// Parameters of the grid: both ends of every span, and more in between than an area that is a polynomial has turning points.
-fn parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
-    let steps = 2 * mesh.degree[way] + 1;
-    let bounds = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
+/// Lists the parameters of the grid: both ends of every span, and more points in between than a polynomial area has
+/// turning points.
+fn parameters(mesh: &Mesh, direction: usize) -> Vec<f64> {
+    let steps = 2 * mesh.degree[direction] + 1;
+    let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
     let inside = |[from, to]: [f64; 2]| (0..steps).map(move |k| from + (to - from) * k as f64 / steps as f64);
     bounds.into_iter().flat_map(inside).chain([1.0]).collect()
 }
 
-/// Whether the normal turns over between two points, however near to each other.
+/// Whether the normal turns over between two points, however near each other they are.
 fn turns_over(mesh: &Mesh, one: &Sample, other: &Sample, halvings: usize) -> bool {
     if dot(one.area, other.area) > 0.0 {
         return false;
@@ -86,8 +88,8 @@ fn turns_over(mesh: &Mesh, one: &Sample, other: &Sample, halvings: usize) -> boo
     turns_over(mesh, one, &middle, halvings - 1) || turns_over(mesh, &middle, other, halvings - 1)
 }
 
-/// Where the middle of three points has the least area of them, follows it to the least one between the outer two, seen
-/// along the normal of the middle.
+/// Checks the area where the middle of three points has the least: follows it to the least one between the outer two,
+/// projected on the normal of the middle.
 fn check_area(mesh: &Mesh, [before, middle, after]: [&Sample; 3], least: f64) -> Result<(), ModelError> {
     let size = norm(middle.area);
     let beside = [before, after].map(|sample| norm(sample.area));
@@ -130,23 +132,24 @@ impl Gaps {
         let corner = mesh.point(0);
         let arms = mesh.points().map(|point| sub(point, corner));
         let tolerance = POSITION * arms.map(norm).fold(0.0, f64::max);
-        let gap = |way: usize, reversed: bool| {
-            let on =
-                |end: f64, at: f64| mid_surface_point(mesh, &[], if way == 0 { [end, at] } else { [at, end] }).position;
+        let gap = |direction: usize, reversed: bool| {
+            let on = |end: f64, at: f64| {
+                mid_surface_point(mesh, &[], if direction == 0 { [end, at] } else { [at, end] }).position
+            };
             let distance = |at: f64| norm(sub(on(0.0, at), on(1.0, if reversed { 1.0 - at } else { at })));
-            parameters(mesh, 1 - way).into_iter().map(distance).fold(0.0, f64::max)
+            parameters(mesh, 1 - direction).into_iter().map(distance).fold(0.0, f64::max)
         };
         Self { same: [gap(0, false), gap(1, false)], reversed: [gap(0, true), gap(1, true)], tolerance }
     }
 }
 
-/// Directions in which the surface closes: the edge at the end of the direction is that at its begin.
+/// Finds the directions in which the surface closes: the edge at the end is that at the start.
 pub fn closed_directions(mesh: &Mesh) -> [bool; 2] {
     let gaps = Gaps::new(mesh);
     gaps.same.map(|gap| gap <= gaps.tolerance)
 }
 
-/// Holds what a scene says of a seam against the edges.
+/// Checks that the scene's seam agrees with the edges that coincide.
 ///
 /// # Errors
 /// Where opposite edges coincide and no seam is given, or the other way round.
@@ -154,15 +157,17 @@ pub fn check_seam(mesh: &Mesh, seam: Option<Seam>) -> Result<(), ModelError> {
     const EDGES: [&str; 2] = ["u-start and u-end", "v-start and v-end"];
     let gaps = Gaps::new(mesh);
     let shown = |gap: f64| significant(gap, 3);
-    let meeting = (0..2).find(|way| gaps.same[*way] <= gaps.tolerance);
-    let reversed = (0..2).find(|way| gaps.reversed[*way] <= gaps.tolerance);
+    let meeting = (0..2).find(|direction| gaps.same[*direction] <= gaps.tolerance);
+    let reversed = (0..2).find(|direction| gaps.reversed[*direction] <= gaps.tolerance);
     match (seam, meeting, reversed) {
-        (None, Some(way), _) => Err(ModelError::EdgesMeet {
-            edges: EDGES[way],
-            gap_mm: shown(gaps.same[way]),
+        (None, Some(direction), _) => Err(ModelError::EdgesMeet {
+            edges: EDGES[direction],
+            gap_mm: shown(gaps.same[direction]),
             tolerance_mm: shown(gaps.tolerance),
         }),
-        (None | Some(Seam::Smooth), _, Some(way)) => Err(ModelError::EdgesMeetReversed { edges: EDGES[way] }),
+        (None | Some(Seam::Smooth), _, Some(direction)) => {
+            Err(ModelError::EdgesMeetReversed { edges: EDGES[direction] })
+        }
         (Some(_), None, None) => {
             Err(ModelError::NoSeam { gaps_mm: gaps.same.map(shown), tolerance_mm: shown(gaps.tolerance) })
         }

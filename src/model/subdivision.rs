@@ -1,41 +1,41 @@
-//! Knots inside the spans of a surface, so that a mesh has the elements that a scene asks for, as even as can be.
+//! Subdivision of the spans of a surface, so that a mesh has the elements that a scene asks for, as even as possible.
 
 use crate::model::ModelError;
 use crate::shell::norm;
 use crate::spline::{Mesh, Spans, mid_surface_point};
 
-/// Steps in which the length of a span is summed up.
+/// Number of steps in which the length of a span is summed up.
 const STEPS: usize = 64;
-/// Where the speed of the parameter varies by less than this factor in a span, the parameter is divided evenly: arcs of one
-/// segment reach 1.6.
+/// Largest ratio of the parameter's speeds in a span at which the parameter is divided evenly: arcs of one segment
+/// reach 1.6.
 const EVEN_SPEED: f64 = 1.7;
 
-/// Inserts knots so that there are exactly `elements` each way: shared out over the spans by their lengths on the middle
-/// line, at least one for each, and even inside each span.
+/// Inserts knots so that there are exactly `elements` in each direction: shared out over the spans by their lengths on
+/// the middle line, at least one for each, and even inside each span.
 ///
 /// # Errors
 /// Where fewer elements are asked for than the surface has spans.
 pub fn subdivide(mesh: Mesh, elements: [usize; 2]) -> Result<Mesh, ModelError> {
     let mut new: [Vec<f64>; 2] = Default::default();
-    for way in 0..2 {
-        let spans: Vec<Span> = Spans::of(&mesh.knots[way], mesh.degree[way])
+    for direction in 0..2 {
+        let spans: Vec<Span> = Spans::of(&mesh.knots[direction], mesh.degree[direction])
             .bounds
             .into_iter()
-            .map(|bounds| Span::measured(&mesh, way, bounds))
+            .map(|bounds| Span::measured(&mesh, direction, bounds))
             .collect();
-        if elements[way] < spans.len() {
-            let direction = ["u", "v"][way];
-            return Err(ModelError::TooFewElements { direction, asked: elements[way], least: spans.len() });
+        if elements[direction] < spans.len() {
+            let name = ["u", "v"][direction];
+            return Err(ModelError::TooFewElements { direction: name, asked: elements[direction], least: spans.len() });
         }
         let lengths: Vec<f64> = spans.iter().map(Span::length).collect();
-        let pieces = shared_out(&lengths, elements[way]);
+        let pieces = shared_out(&lengths, elements[direction]);
         let even = pieces.iter().all(|count| *count == pieces[0]);
         for (index, (span, count)) in spans.iter().zip(&pieces).enumerate() {
             let [from, to] = span.bounds;
             let uniform = even && (spans.len() as f64 * from - index as f64).abs() < 1e-12;
-            new[way].extend((1..*count).map(|k| match (span.has_even_speed(), uniform) {
+            new[direction].extend((1..*count).map(|k| match (span.has_even_speed(), uniform) {
                 // Uniform spans are divided as multiples of one number, so that equal meshes have equal bits.
-                (true, true) => (index * count + k) as f64 / elements[way] as f64,
+                (true, true) => (index * count + k) as f64 / elements[direction] as f64,
                 (true, false) => from + (to - from) * k as f64 / *count as f64,
                 (false, _) => span.at(k as f64 / *count as f64),
             }));
@@ -47,19 +47,19 @@ pub fn subdivide(mesh: Mesh, elements: [usize; 2]) -> Result<Mesh, ModelError> {
 /// A span between two knots, on the middle line of the other direction.
 struct Span {
     bounds: [f64; 2],
-    /// Lengths from its begin to the ends of [`STEPS`] equal steps of the parameter, mm.
+    /// Lengths from its start to the ends of [`STEPS`] equal steps of the parameter, mm.
     lengths: Vec<f64>,
 }
 
 impl Span {
-    fn measured(mesh: &Mesh, way: usize, bounds: [f64; 2]) -> Self {
+    fn measured(mesh: &Mesh, direction: usize, bounds: [f64; 2]) -> Self {
         let [from, to] = bounds;
         let step = (to - from) / STEPS as f64;
         let mut length = 0.0;
         let sum = |k: usize| {
             let parameter = from + (k as f64 + 0.5) * step;
-            let at = if way == 0 { [parameter, 0.5] } else { [0.5, parameter] };
-            length += step * norm(mid_surface_point(mesh, &[], at).derivatives[way]);
+            let at = if direction == 0 { [parameter, 0.5] } else { [0.5, parameter] };
+            length += step * norm(mid_surface_point(mesh, &[], at).derivatives[direction]);
             length
         };
         Self { bounds, lengths: (0..STEPS).map(sum).collect() }
@@ -77,7 +77,7 @@ impl Span {
         most <= EVEN_SPEED * least
     }
 
-    /// The parameter at a fraction of the length.
+    /// Finds the parameter at a fraction of the length.
     fn at(&self, fraction: f64) -> f64 {
         let wanted = fraction * self.length();
         let k = self.lengths.partition_point(|length| *length < wanted).min(STEPS - 1);
@@ -88,8 +88,8 @@ impl Span {
     }
 }
 
-/// Whole numbers of at least 1 that sum to `total` and are nearest to the shares of the lengths: each begins where the
-/// rounded sum of those before it ends, so that a symmetric line is divided symmetrically where that can be.
+/// Distributes `total` over the lengths in whole numbers of at least 1 that are nearest to their shares: each begins
+/// where the rounded sum of those before it ends, so that a symmetric line is divided symmetrically where that can be.
 fn shared_out(lengths: &[f64], total: usize) -> Vec<usize> {
     let whole: f64 = lengths.iter().sum();
     let mut reached = 0.0;

@@ -5,35 +5,36 @@
 //!
 //! A_⊥ = 0 and (A_,ξ − (W_,ξ/W) A)_∥ = 0,
 //!
-//! of which the second is one only where W_,ξ/W = c is the same all along the line. Then they hold on the whole line exactly
-//! where they hold for each j, whether a knot stands at ξ₀ or not: Σ_i N_i w_ij u_ij,⊥ = 0 and Σ_i (N_i′ − c N_i) w_ij u_ij,∥ = 0.
-//! The undeformed surface must meet them itself; then so does the deformed one, at any rotation.
+//! of which the second is one only where W_,ξ/W = c is the same all along the line. Then they hold on the whole line
+//! exactly where they hold for each j, whether there is a knot at ξ₀ or not: Σ_i N_i w_ij u_ij,⊥ = 0 and Σ_i (N_i′ − c
+//! N_i) w_ij u_ij,∥ = 0. The undeformed surface must meet them itself; then so does the deformed one, at any rotation.
 
 use crate::model::expressions::{Sum, line_terms, nonzero, shares};
 use crate::model::symmetry_plane::NoPlane;
 use crate::shell::{add, scaled};
 use crate::spline::Mesh;
 
-/// Shares of weights along a line that differ by less are rounding.
+/// Difference of shares of weights along a line below which it is rounding.
 const EVEN: f64 = 1e-9;
 
-/// A line of a mesh.
+/// A line of a mesh that a plane of symmetry can hold.
 pub(super) struct Line {
-    /// Its displacement: one sum for each of its control points as a curve; weights of 1 in all.
+    /// Displacements of the line's control points as a curve, as weighted sums over control points of the mesh; weights
+    /// sum to 1.
     pub places: Vec<Sum>,
-    /// The derivative of its displacement across it, alike, in parts of the largest weight.
+    /// Derivatives of the displacement across the line, as such sums, relative to the largest weight.
     pub slopes: Vec<Sum>,
 }
 
 impl Line {
-    /// The line on which the parameter of direction `way` has a value.
+    /// Creates the line on which the parameter of `direction` has a value.
     ///
     /// # Errors
-    /// Where no spline keeps its slope there.
-    pub(super) fn new(mesh: &Mesh, way: usize, parameter: f64) -> Result<Self, NoPlane> {
+    /// Where no spline can keep its slope there.
+    pub(super) fn new(mesh: &Mesh, direction: usize, parameter: f64) -> Result<Self, NoPlane> {
         let mut line = Self { places: Vec::new(), slopes: Vec::new() };
         let mut rate = None;
-        for [value, slope] in line_terms(mesh, way, parameter) {
+        for [value, slope] in line_terms(mesh, direction, parameter) {
             let sum = |terms: &Sum| terms.iter().map(|(_, factor)| factor).sum::<f64>();
             let steepest = slope.iter().map(|(_, factor)| factor.abs()).fold(0.0, f64::max);
             let total = sum(&value);
@@ -50,18 +51,18 @@ impl Line {
         Ok(line)
     }
 
-    /// Its control points as a curve, mm.
+    /// Control points of the line as a curve, mm.
     pub(super) fn points(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
         sums_of(mesh, &self.places)
     }
 
-    /// Steps across it from each of them, in parts of the largest weight.
+    /// Steps across the line from each of its control points, relative to the largest weight.
     pub(super) fn steps(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
         sums_of(mesh, &self.slopes)
     }
 }
 
-/// Weighted sums of the control points, mm.
+/// Evaluates weighted sums of the control points, mm.
 fn sums_of(mesh: &Mesh, sums: &[Sum]) -> Vec<[f64; 3]> {
     let of_sum = |sum: &Sum| {
         sum.iter().fold([0.0; 3], |to, (point, factor)| {

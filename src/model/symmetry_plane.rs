@@ -5,10 +5,10 @@ use crate::model::limits::{ANGLE, POSITION, ROUNDING};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::units::{place, significant};
 
-/// Why an edge or a line is no plane of symmetry.
+/// Reasons why an edge or a line lies in no plane of symmetry.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoPlane {
-    /// It is not plane.
+    /// The edge or line is not plane.
     #[error(
         "it leaves a plane by {} mm at {at} (up to {} mm, {POSITION} of its size, is taken for rounding)",
         significant(*off_mm, 3),
@@ -17,9 +17,9 @@ pub enum NoPlane {
     NotPlane {
         /// Largest distance from the plane, mm.
         off_mm: f64,
-        /// Where.
+        /// Position at which it occurs, as text with its unit.
         at: String,
-        /// What is taken for rounding, mm.
+        /// Distance up to which it is taken for rounding, mm.
         tolerance_mm: f64,
     },
     /// The surface leaves the plane at another angle.
@@ -31,13 +31,13 @@ pub enum NoPlane {
         significant(*tolerance_mm, 3)
     )]
     NotAtRightAngles {
-        /// Angle, degrees.
+        /// Deviation from a right angle, degrees.
         off_deg: f64,
-        /// Where.
+        /// Position at which it occurs, as text with its unit.
         at: String,
         /// Largest distance from the plane at right angles to the surface, mm.
         off_mm: f64,
-        /// What is taken for rounding, mm.
+        /// Distance up to which it is taken for rounding, mm.
         tolerance_mm: f64,
     },
     /// The lines of control points leave the plane at another angle.
@@ -48,9 +48,9 @@ pub enum NoPlane {
         significant(ANGLE.to_degrees(), 2)
     )]
     Skewed {
-        /// Angle, degrees.
+        /// Deviation from a right angle, degrees.
         off_deg: f64,
-        /// Where.
+        /// Position at which it occurs, as text with its unit.
         at: String,
     },
     /// The weights across a line inside are shared out differently along it.
@@ -60,7 +60,7 @@ pub enum NoPlane {
     UnevenWeights,
 }
 
-/// The vector itself, or without its share along another unit vector where that is rounding of coordinates.
+/// Removes the component of a vector along another unit vector, where that is rounding of coordinates.
 pub(super) fn square_to(vector: [f64; 3], other: [f64; 3]) -> [f64; 3] {
     let share = dot(vector, other);
     if !(ROUNDING..2.0 * ANGLE).contains(&share.abs()) {
@@ -69,7 +69,7 @@ pub(super) fn square_to(vector: [f64; 3], other: [f64; 3]) -> [f64; 3] {
     unit(sub(vector, scaled(share, other)))
 }
 
-/// The vector itself, or the axis that it differs from by rounding of coordinates.
+/// Replaces a vector by the axis that it differs from by rounding of coordinates, if any.
 fn along_axis(vector: [f64; 3]) -> [f64; 3] {
     let largest = (0..3).fold(0, |best, c| if vector[c].abs() > vector[best].abs() { c } else { best });
     let mut axis = [0.0; 3];
@@ -77,16 +77,16 @@ fn along_axis(vector: [f64; 3]) -> [f64; 3] {
     if (ROUNDING..ANGLE).contains(&norm(sub(vector, axis))) { axis } else { vector }
 }
 
-/// The unit vector along a vector.
+/// Normalises a vector.
 pub(super) fn unit(vector: [f64; 3]) -> [f64; 3] {
     scaled(1.0 / norm(vector), vector)
 }
 
-/// The unit normal of the plane of symmetry that a line of the surface can lie in: the direction of the steps from its control
-/// points across it.
+/// Finds the unit normal of the plane of symmetry that a line of the surface can lie in: the direction of the steps
+/// from its control points across it.
 ///
 /// # Errors
-/// Why it cannot.
+/// Where the line cannot lie in one.
 pub(super) fn symmetry_plane(points: &[[f64; 3]], steps: &[[f64; 3]]) -> Result<[f64; 3], NoPlane> {
     let off_axis = |normal: [f64; 3], step: [f64; 3]| norm(cross(step, normal)).atan2(dot(step, normal));
     let first = unit(steps[0]);
@@ -120,7 +120,8 @@ pub(super) fn symmetry_plane(points: &[[f64; 3]], steps: &[[f64; 3]]) -> Result<
     }
 }
 
-/// The point that lies farthest from the plane through the two that span most with the first, and how far, mm.
+/// Finds the point farthest from the plane through the first point and the two that span most with it, and its
+/// distance, mm.
 fn off_own_plane(points: &[[f64; 3]]) -> (f64, [f64; 3]) {
     let arms: Vec<[f64; 3]> = points.iter().map(|x| sub(*x, points[0])).collect();
     let longest =

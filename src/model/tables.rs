@@ -10,28 +10,29 @@ use crate::spline::{
     Grid, Mesh, Spans, basis_derivatives, basis_derivatives_len, find_span, quotient_derivatives, tensor_derivatives,
 };
 
-/// Basis functions are padded to a multiple of this, so that kernels work on whole vectors of any width.
+/// Multiple that numbers of basis functions are padded to, so that kernels work on whole vectors of any width.
 pub(crate) const LANES: usize = 8;
 
-/// Points that kernels work on at once.
+/// Number of points that kernels work on at once.
 pub(crate) const BATCH: usize = 4;
 
-/// Tables of a mesh. Elements are ordered with the second direction fastest, points within an element likewise.
+/// Shape functions and undeformed points of a mesh. Elements are ordered with the second direction fastest, points
+/// within an element likewise.
 #[derive(Debug)]
 pub struct Tables {
-    /// Numbers of the elements.
+    /// Grid that numbers the elements.
     pub elements: Grid,
-    /// Control points of the elements, and the order of sums.
+    /// Control points of the elements, and the order of sums over them.
     pub connectivity: Connectivity,
-    /// (p₁ + 1)(p₂ + 1).
+    /// Number of functions of an element, (p₁ + 1)(p₂ + 1).
     pub functions_per_element: usize,
-    /// The same, padded to a multiple of 8; the padding holds zeros.
+    /// Number of functions of an element, padded to a multiple of 8; the padding holds zeros.
     pub padded: usize,
-    /// Points of the energy: all of it, or of bending alone where stretching has points of its own.
+    /// Points of the energy: of all of it, or of bending alone where stretching has points of its own.
     pub points: PointTable<PointBatch, 5>,
-    /// Points of stretching, where it has its own.
+    /// Points of stretching, where it has points of its own.
     pub stretching: Option<PointTable<StretchingBatch, 2>>,
-    /// Reference length of each element each way through its middle, mm.
+    /// Undeformed length of each element through its middle in each direction, mm.
     pub lengths: Vec<[f64; 2]>,
 }
 
@@ -40,20 +41,21 @@ pub struct Tables {
 pub struct PointTable<Batch, const ROWS: usize> {
     /// Points of element e: `point_start[e]..point_start[e + 1]`.
     point_start: Vec<usize>,
-    /// The same of batches.
+    /// Batches of element e: `batch_start[e]..batch_start[e + 1]`.
     batch_start: Vec<usize>,
     padded: usize,
-    /// `functions[(point · ROWS + k) · padded + a]`: derivative k of function a = a₁ (p₂ + 1) + a₂.
+    /// Derivatives of the functions, `functions[(point · ROWS + k) · padded + a]`: derivative k of function a = a₁ (p₂
+    /// + 1) + a₂.
     pub functions: Vec<f64>,
-    /// Points, element by element.
+    /// Undeformed points, element by element.
     pub references: Vec<PointReference>,
-    /// The same points by fours, the last of an element's with what is left.
+    /// Undeformed points in batches of four, the last of an element with the rest.
     pub batches: Vec<Batch>,
 }
 
 impl<Batch, const ROWS: usize> PointTable<Batch, ROWS> {
-    /// Points of elements with `counts` Gauss points; `references` are made from the whole points by `part`, and batches from
-    /// those by `batch`. Also what `of_element` makes of each element's whole points.
+    /// Builds the table of elements with `counts` Gauss points; `references` are made from the whole points by `part`,
+    /// and batches from those by `batch`. Also returns what `of_element` makes of each element's whole points.
     fn new<T: Send>(
         geometry: &Geometry,
         counts: &Counts,
@@ -64,7 +66,8 @@ impl<Batch, const ROWS: usize> PointTable<Batch, ROWS> {
     where
         Batch: Send,
     {
-        let directions = [0, 1].map(|k| Direction::new(geometry.mesh, k, &geometry.spans[k], &counts[k]));
+        let directions = [0, 1]
+            .map(|direction| Direction::new(geometry.mesh, direction, &geometry.spans[direction], &counts[direction]));
         let elements = geometry.elements();
         let count = elements.len();
         let points_of = |element: usize| {
@@ -104,36 +107,37 @@ impl<Batch, const ROWS: usize> PointTable<Batch, ROWS> {
         (table, all_made)
     }
 
-    /// Bytes that an assembly reads.
+    /// Number of bytes that an assembly reads.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.functions[..]) + size_of_val(&self.batches[..])
     }
 
-    /// Functions of all points of an element: points · ROWS · `padded` numbers.
+    /// Derivatives of the functions at all points of an element: points · ROWS · `padded` numbers.
     pub fn element_functions(&self, element: usize) -> &[f64] {
         let size = ROWS * self.padded;
         &self.functions[self.point_start[element] * size..self.point_start[element + 1] * size]
     }
 
-    /// Reference points of an element.
+    /// Undeformed points of an element.
     pub fn element_points(&self, element: usize) -> &[PointReference] {
         &self.references[self.point_start[element]..self.point_start[element + 1]]
     }
 
-    /// The same points by fours.
+    /// Undeformed points of an element in batches of four.
     pub fn element_batches(&self, element: usize) -> &[Batch] {
         &self.batches[self.batch_start[element]..self.batch_start[element + 1]]
     }
 }
 
 impl Tables {
-    /// Tables for the scene's quadrature and material on a mesh.
+    /// Builds the tables for the scene's quadrature and material on a mesh.
     pub fn new(scene: &Scene, mesh: &Mesh) -> Self {
         Self::on_elements_of(scene, mesh, mesh)
     }
 
-    /// Tables of the functions of `mesh` at the quadrature points of the elements of `finer`, which is `mesh` with
-    /// knots inserted: what a displacement on `mesh` has for an energy where `finer` is integrated.
+    /// Builds the tables of the functions of `mesh` at the quadrature points of the elements of `finer`, which is
+    /// `mesh` with knots inserted. They give the energy of a displacement on `mesh` integrated over the elements of
+    /// `finer`.
     pub fn on_elements_of(scene: &Scene, mesh: &Mesh, finer: &Mesh) -> Self {
         let geometry = Geometry::new(scene, mesh, finer);
         let counts = PointCounts::of(scene, finer);
@@ -144,7 +148,8 @@ impl Tables {
             let alone = PointReference::stretching_alone;
             PointTable::new(&geometry, &counts, alone, StretchingBatch::new, |_| ()).0
         });
-        let first = [0, 1].map(|k| geometry.spans[k].index.iter().map(|s| s - mesh.degree[k]).collect());
+        let first = [0, 1]
+            .map(|direction| geometry.spans[direction].index.iter().map(|s| s - mesh.degree[direction]).collect());
         Self {
             elements: geometry.elements(),
             connectivity: Connectivity::of_tensor_product(mesh, &first),
@@ -157,20 +162,20 @@ impl Tables {
     }
 }
 
-/// What points are made from: the functions of a mesh on elements that may be finer than its own.
+/// The functions of a mesh on elements that may be finer than its own, from which points are made.
 struct Geometry<'a> {
     material: &'a Material,
     mesh: &'a Mesh,
-    /// Elements each way, with the knot spans of `mesh` that they lie in.
+    /// Elements in each direction, with the knot spans of `mesh` that they lie in.
     spans: [Spans; 2],
 }
 
 impl<'a> Geometry<'a> {
     fn new(scene: &'a Scene, mesh: &'a Mesh, finer: &Mesh) -> Self {
-        let spans = [0, 1].map(|k| {
-            let mut spans = Spans::of(&finer.knots[k], mesh.degree[k]);
+        let spans = [0, 1].map(|direction| {
+            let mut spans = Spans::of(&finer.knots[direction], mesh.degree[direction]);
             for (index, [from, to]) in spans.index.iter_mut().zip(&spans.bounds) {
-                *index = find_span(&mesh.knots[k], mesh.degree[k], 0.5 * (from + to));
+                *index = find_span(&mesh.knots[direction], mesh.degree[direction], 0.5 * (from + to));
             }
             spans
         });
@@ -190,14 +195,14 @@ impl<'a> Geometry<'a> {
     }
 }
 
-/// One direction: basis functions at the Gauss points of each element.
+/// Basis functions of one direction at the Gauss points of each element.
 struct Direction {
     first: Vec<usize>,
-    /// Size in the parameter of each element.
+    /// Size of each element in the parameter.
     sizes: Vec<f64>,
-    /// `weights[element][point]`: Gauss weights on [−1, 1].
+    /// Gauss weights on [−1, 1], `weights[element][point]`.
     weights: Vec<Vec<f64>>,
-    /// `basis[element][point]` as [`basis_derivatives`] fills it.
+    /// Basis functions, `basis[element][point]` as [`basis_derivatives`] fills it.
     basis: Vec<Vec<Vec<f64>>>,
 }
 
@@ -225,13 +230,13 @@ impl Direction {
     }
 }
 
-/// A quadrature point, and what it adds to the lengths of its element each way.
+/// A quadrature point, and its contributions to the lengths of its element in each direction.
 struct ElementPoint {
     reference: PointReference,
     lengths: [f64; 2],
 }
 
-/// Lengths of an element each way through its middle, mm.
+/// Computes the lengths of an element through its middle in each direction, mm.
 fn element_lengths(points: &[ElementPoint]) -> [f64; 2] {
     let mut lengths = [0.0; 2];
     for point in points {

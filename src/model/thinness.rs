@@ -1,5 +1,5 @@
-//! Whether a shell is thin, and drawn where its theory takes it to be: its thickness and its offset against the smallest radius of
-//! curvature and the shorter side of the surface.
+//! Checks that a shell is thin and near the surface that it is drawn on: its thickness and its offset, compared with
+//! the smallest radius of curvature and the shorter side of the surface.
 
 use crate::model::ModelError;
 use crate::model::gauss::span_points;
@@ -8,24 +8,25 @@ use crate::shell::{PointReference, cross, norm};
 use crate::spline::{Mesh, SurfacePoint, mid_surface_point};
 use crate::units::place;
 
-/// Share of a radius or a side from which on a thickness is said: plates so thick bend by shear too, by about (t/L)² more.
+/// Share of a radius or a side from which on the thickness causes a remark: plates so thick bend by shear too, by about
+/// (t/L)² more.
 pub const THICK: f64 = 0.2;
 /// Offset over radius beyond which results are no longer of use.
 const MOST_OFFSET: f64 = 0.02;
-/// Error of a tube under pressure by offset over radius, c/R: to first order, the theory has the stretch u/R (1 − c/R) in the middle
-/// of the thickness for u/R (1 + c/R), squared in the energy, and an area of R for R − c.
+/// Error of a tube under pressure over offset by radius, c/R: to first order, the theory has the stretch u/R (1 − c/R)
+/// in the middle of the thickness for u/R (1 + c/R), squared in the energy, and an area of R for R − c.
 pub const ERROR_OF_OFFSET: f64 = 3.0;
-/// Gauss points a span for curvature, area and length.
+/// Number of Gauss points of a span for curvature, area and length.
 const POINTS: usize = 2;
-/// Share of the area whose radii are left aside: the tip of a cone, a small hole at a pole.
+/// Share of the area whose radii are disregarded: the tip of a cone, a small hole at a pole.
 const TIPS: f64 = 0.01;
 
 /// The lengths of a surface that its thickness is compared with.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Smallest radius of curvature but for tips, mm; infinite for a plane.
+    /// Smallest radius of curvature except at tips, mm; infinite for a plane.
     pub radius_mm: f64,
-    /// Where it is.
+    /// Point with that radius, mm.
     pub at: [f64; 3],
     /// Length of the shorter of the two lines through the middle, mm.
     pub side_mm: f64,
@@ -39,9 +40,9 @@ struct Sample {
 }
 
 impl Extent {
-    /// Of the surface of a mesh, which has a normal everywhere.
+    /// Measures the surface of a mesh, which has a normal everywhere.
     pub fn of(mesh: &Mesh, material: &Material) -> Self {
-        let [us, vs] = [0, 1].map(|way| span_points(mesh, way, POINTS));
+        let [us, vs] = [0, 1].map(|direction| span_points(mesh, direction, POINTS));
         let sample = |[u, along]: [f64; 2], [v, across]: [f64; 2]| {
             let SurfacePoint { position, derivatives } = mid_surface_point(mesh, &[], [u, v]);
             let curvature = PointReference::new(derivatives, material, 1.0).largest_curvature();
@@ -59,17 +60,20 @@ impl Extent {
     }
 }
 
-/// Length of the line through the middle that runs in a direction, mm.
-fn side_mm(mesh: &Mesh, way: usize) -> f64 {
-    let point = |at: f64| mid_surface_point(mesh, &[], if way == 0 { [at, 0.5] } else { [0.5, at] });
-    span_points(mesh, way, POINTS).into_iter().map(|[at, weight]| weight * norm(point(at).derivatives[way])).sum()
+/// Computes the length of the line through the middle that runs in a direction, mm.
+fn side_mm(mesh: &Mesh, direction: usize) -> f64 {
+    let point = |at: f64| mid_surface_point(mesh, &[], if direction == 0 { [at, 0.5] } else { [0.5, at] });
+    span_points(mesh, direction, POINTS)
+        .into_iter()
+        .map(|[at, weight]| weight * norm(point(at).derivatives[direction]))
+        .sum()
 }
 
-/// Refuses a body that is no shell, and a surface drawn too far from its middle.
+/// Refuses a body too thick for a shell, and a surface drawn too far from its middle.
 ///
 /// # Errors
-/// Where the thickness reaches the smallest radius of curvature or the shorter side, or the offset is more of a radius than the
-/// theory bears.
+/// Where the thickness reaches the smallest radius of curvature or the shorter side, or the offset is a larger share of
+/// a radius than the theory allows.
 pub fn check_thinness(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
     let Extent { radius_mm, at, side_mm } = Extent::of(mesh, &scene.material);
     let (thickness_mm, offset_mm) = (scene.material.thickness_mm(), scene.material.offset_mm());

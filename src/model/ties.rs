@@ -1,4 +1,4 @@
-//! What ties rows of control points to each other: joints, seams and planes of symmetry.
+//! The ties between rows of control points: joints, seams and planes of symmetry.
 
 use crate::model::ModelError;
 use crate::model::edge::{EdgeRows, edge_rows};
@@ -7,19 +7,19 @@ use crate::model::soundness::closed_directions;
 use crate::scene::{Edge, Geometry, Hold, NurbsPatch, ParametricDirection, Place, Scene, Seam, Support};
 use crate::spline::Mesh;
 
-/// What ties rows of control points to each other.
+/// Ties between rows of control points of a mesh.
 #[derive(Debug)]
 pub struct Ties {
-    /// Joints each way.
+    /// Joints in each direction.
     pub joints: [Vec<Joint>; 2],
-    /// One or none each way.
+    /// Seam in each direction: one joint or none.
     pub seam: [Vec<Joint>; 2],
-    /// Edges in planes of symmetry.
+    /// Edges that lie in planes of symmetry.
     mirrors: Vec<Edge>,
 }
 
 impl Ties {
-    /// Joints and seams of a mesh, and the planes of symmetry among some supports.
+    /// Finds the joints and seams of a mesh, and the planes of symmetry among some supports.
     ///
     /// # Errors
     /// Where the geometry is not smooth at a joint.
@@ -31,7 +31,9 @@ impl Ties {
             Geometry::Nurbs(NurbsPatch { seam: Some(Seam::Smooth), .. }) => closed_directions(mesh),
             _ => [false, false],
         };
-        let closing = |way: usize| if closed[way] { seam(mesh, way).map(|joint| vec![joint]) } else { Ok(vec![]) };
+        let closing = |direction: usize| {
+            if closed[direction] { seam(mesh, direction).map(|joint| vec![joint]) } else { Ok(vec![]) }
+        };
         let mirrors = supports.iter().filter(|support| support.hold == Hold::Symmetric).filter_map(|s| match s.on {
             Place::Edge(edge) => Some(edge),
             _ => None,
@@ -43,8 +45,8 @@ impl Ties {
         })
     }
 
-    /// Rows of an edge. Control points that a plane of symmetry or a C¹ joint holds on one line span the tangent there
-    /// and share its normal: their own would take a free motion away.
+    /// Finds the rows of control points of an edge. Those that a plane of symmetry or a C¹ joint holds on one line span
+    /// the tangent there and share its normal: their own normals would take a free motion away.
     ///
     /// # Errors
     /// Where the surface has no normal on the edge.

@@ -27,26 +27,26 @@ use crate::spline::{Grid, Mesh};
 /// The share of one coordinate in the displacement of one control point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
-    /// Index of the coordinate; of a free unknown where below [`Unknowns::count`].
+    /// Index of the coordinate, which is a free unknown if it is below [`Unknowns::count`].
     pub coordinate: usize,
-    /// What a unit of it does.
+    /// Effect of a unit of the coordinate.
     pub share: Share,
 }
 
-/// What a unit of a coordinate does to a control point.
+/// Effect of a unit of a coordinate on a control point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Share {
-    /// Moves it by this.
+    /// The control point moves by this vector.
     Fixed([f64; 3]),
-    /// Moves it by this, turned with its section.
+    /// The control point moves by this vector, turned with its section.
     Turning([f64; 3]),
-    /// Moves its section along an axis.
+    /// The section moves along the axis with this index.
     Translation(usize),
-    /// Turns its section: component of the rotation vector.
+    /// The section turns by the component of its rotation vector with this index.
     Rotation(usize),
 }
 
-/// Where the value of a free unknown stands.
+/// The quantity that a free unknown stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Home {
     /// A component of a control point in its frame.
@@ -55,7 +55,7 @@ pub(super) enum Home {
     Motion { section: usize, motion: usize, point: usize },
 }
 
-/// Free unknowns of a mesh.
+/// The free unknowns of a mesh, and how the control points depend on them.
 #[derive(Debug)]
 pub struct Unknowns {
     pub(super) count: usize,
@@ -66,7 +66,7 @@ pub struct Unknowns {
     pub(super) supports: Supports,
     /// Coordinate of each motion of each section.
     pub(super) motions: Vec<[usize; 6]>,
-    /// Laws of the given coordinates.
+    /// Prescribed motions of the given coordinates.
     given: Vec<PrescribedMotion>,
     /// Undeformed control points, mm.
     pub(crate) points: Vec<[f64; 3]>,
@@ -109,7 +109,7 @@ impl Unknowns {
         self.given.len()
     }
 
-    /// Given coordinates at a parameter, mm.
+    /// Values of the given coordinates at a parameter, mm.
     pub fn given_at(&self, parameter: f64) -> Vec<f64> {
         self.given.iter().map(|law| law.at(parameter)).collect()
     }
@@ -119,22 +119,22 @@ impl Unknowns {
         self.given.iter().map(|law| law.rate(parameter)).collect()
     }
 
-    /// The rigid sections that move.
+    /// Rigid sections that move.
     pub fn sections(&self) -> &[Section] {
         &self.supports.sections
     }
 
-    /// Where the supports hold the shell.
+    /// Constraints that the supports impose.
     pub fn supports(&self) -> &Supports {
         &self.supports
     }
 
-    /// Whether the displacement alone does not say how the sections stand: a section turns freely.
+    /// Whether the displacement alone does not determine the rotations of the sections, because one turns freely.
     pub fn turns_are_unknown(&self) -> bool {
         self.motions.iter().any(|motions| motions[3..].iter().any(|coordinate| *coordinate < self.count))
     }
 
-    /// The control point that an unknown belongs to; of several that share it, the first.
+    /// Control point that an unknown belongs to; the first one where several share it.
     pub fn home_of(&self, unknown: usize) -> usize {
         match self.home[unknown] {
             Home::Component(point, _) | Home::Motion { point, .. } => point,
@@ -158,9 +158,9 @@ impl Unknowns {
             })
     }
 
-    /// Numbers the free motions of sections and the components that were not eliminated, line of control points after line
-    /// along the way that has more of them, so that unknowns that meet stand near each other; and lists each control point's
-    /// entries.
+    /// Numbers the free motions of sections and the components that were not eliminated, line of control points after
+    /// line along the direction that has more of them, so that unknowns that meet are near each other; and lists each
+    /// control point's entries.
     fn number(&mut self, eliminated: &BTreeMap<usize, Expression>, grid: Grid) {
         let components = 3 * self.points.len();
         let mut of_component = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Switch-branch: the way from an unstable equilibrium to a stable one at the same load.
+//! The stage switch-branch: from an unstable equilibrium to a stable one at the same load.
 
 use crate::energy::Balance;
 use crate::equilibrium::{Configuration, Effort, Equilibrium, Iterate, SolveError, Solved, soft_mode};
@@ -12,8 +12,8 @@ use crate::state::{Course, State};
 /// Largest motion off an unstable equilibrium along its soft mode, in thicknesses: beyond rounding by far, and far less
 /// than what bending makes of it.
 const SWITCHING_AMPLITUDE: f64 = 0.1;
-/// Modes that are left one after the other. Each descent ends in a minimum of the energy but where a symmetry holds it on a
-/// ridge; the tape spring in equal-sense bending has two such modes at once.
+/// Largest number of modes that are left one after the other. Each descent ends in a minimum of the energy but where a
+/// symmetry holds it on a ridge; the tape spring in equal-sense bending has two such modes at once.
 const MOST_MODES: usize = 8;
 
 /// Leaves an unstable equilibrium along its soft modes, one after the other; `course_on` is what its drive remembers on the branch.
@@ -57,7 +57,7 @@ pub(super) fn switch_branch(
     })
 }
 
-/// Off along the softest mode at a state, and down; adds to what it took so far.
+/// Leaves the equilibrium of a state along its softest mode and descends to another one; adds to the effort so far.
 fn leave(step: &mut Step, from: &State, effort: &mut Effort) -> Result<Solved, SolveError> {
     let Step { scene, work, observer, .. } = step;
     let mut watch = |iterate: &Iterate| {

@@ -1,4 +1,4 @@
-//! When a stage doubts its numbers: what is looked at, and from where on it is said.
+//! Warnings about the numbers of a stage: what is checked, and from which size on there is a warning.
 
 use std::sync::Arc;
 
@@ -11,67 +11,69 @@ use crate::record::{LARGE, Reading, Report, Warning};
 use crate::scene::{Scene, Stage};
 use crate::state::{Refinement, State};
 
-/// The same of the last refinement, taken for the whole mesh, up to which a run whose indicators ask for no more has seen that
-/// its elements are fine enough; halving them all to see it again would cost `baseline-quarter.toml` a tenth of its time. Where
-/// the length limit keeps spans that bend much, the last refinement may have been at a load at which nothing bent yet.
+/// Relative change by the last refinement, taken for the whole mesh, up to which a run whose indicators ask for no more
+/// has seen that its elements are fine enough; halving them all to see it again would cost `baseline-quarter.toml` a
+/// tenth of its time. Where the length limit keeps spans that bend much, the last refinement may have been at a load at
+/// which nothing bent yet.
 const SMALL: f64 = 0.01;
-/// Change of a probe, relative to the larger of both readings, from which on it is said.
+/// Change of a probe, relative to the larger of both readings, from which on there is a warning.
 const OFF: f64 = 0.1;
 /// Readings smaller than this share of the largest displacement, of the largest force, or of that times the longest side,
 /// are not compared with another.
 const SMALL_READING: f64 = 1e-3;
-/// Iterations at most to the equilibrium of the halved mesh.
+/// Largest number of iterations to the equilibrium of the halved mesh.
 const MOST_ITERATIONS: usize = 8;
-/// Share by which the halved mesh buckles before, from which on it is said.
+/// Share of the load by which the halved mesh buckles earlier, from which on there is a warning.
 const LATE: f64 = 0.05;
-/// Strain from which on it is said: stress over strain of the law differs from one of logarithmic strains by 1.5 times this.
+/// Strain from which on there is a warning: stress over strain of the law differs from one of logarithmic strains by
+/// 1.5 times this.
 const LARGE_STRAIN: f64 = 0.05;
 
-/// Where numbers are most likely read.
+/// States whose numbers are most likely read, which are checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Looked {
-    /// At the last equilibrium before a jump.
+pub(super) enum ReadAt {
+    /// The last equilibrium before a jump.
     BeforeJump,
-    /// At a critical point that was passed.
+    /// A critical point that was passed.
     AtCriticalPoint,
-    /// At the end of the run.
+    /// The end of the run.
     AtEnd,
 }
 
-/// The states around a stage whose numbers are looked at again.
+/// Finds the states around a stage whose numbers are checked.
 pub(super) fn doubtful<'s>(
     scene: &Scene,
     before: &'s State,
     after: &'s State,
     report: &Report,
-) -> impl Iterator<Item = (&'s State, Looked)> + use<'s> {
+) -> impl Iterator<Item = (&'s State, ReadAt)> + use<'s> {
     let solved = report.stage == Stage::Solve;
-    // Of later ones the first mode says nothing.
+    // Only at the first critical point is the first mode the one that buckles.
     let is_first = before.negative_pivots == 0;
-    let jumped = (report.jumped && solved).then_some((before, Looked::BeforeJump));
+    let jumped = (report.jumped && solved).then_some((before, ReadAt::BeforeJump));
     let ended = if report.critical_point.is_some() && solved && is_first {
-        Some((after, Looked::AtCriticalPoint))
+        Some((after, ReadAt::AtCriticalPoint))
     } else {
-        next_stage(scene, after).is_none().then_some((after, Looked::AtEnd))
+        next_stage(scene, after).is_none().then_some((after, ReadAt::AtEnd))
     };
     jumped.into_iter().chain(ended)
 }
 
-/// An equilibrium whose numbers are looked at again.
+/// An equilibrium whose numbers are checked.
 pub(super) struct Doubts<'a> {
     pub scene: &'a Scene,
     /// Terms of the caller's own.
     pub own: &'a [Arc<dyn TermSource>],
-    /// Of the state's mesh.
+    /// Workspace of the state's mesh.
     pub work: &'a mut Workspace,
     pub state: &'a State,
 }
 
 impl Doubts<'_> {
-    /// Warnings about the state.
-    pub fn all(mut self, looked: Looked) -> Vec<Warning> {
+    /// Checks the state; returns the warnings about it.
+    pub fn all(mut self, read_at: ReadAt) -> Vec<Warning> {
         let large_strains = self.large_strains();
-        large_strains.into_iter().chain(self.coarse(looked)).collect()
+        large_strains.into_iter().chain(self.coarse(read_at)).collect()
     }
 
     fn large_strains(&self) -> Option<Warning> {
@@ -80,8 +82,8 @@ impl Doubts<'_> {
         (strain > LARGE_STRAIN).then_some(Warning::LargeStrains { parameter: state.parameter, strain, at })
     }
 
-    /// What halving every element would change: the energy, else the load at which it buckles, else a probe.
-    fn coarse(&mut self, looked: Looked) -> Option<Warning> {
+    /// Warns of what halving every element would change: the energy, else the load at which it buckles, else a probe.
+    fn coarse(&mut self, read_at: ReadAt) -> Option<Warning> {
         if self.refining_has_shown() {
             return None;
         }
@@ -93,8 +95,8 @@ impl Doubts<'_> {
         if energy_share.is_finite() && energy_share > LARGE {
             return (!halving.is_still()).then_some(Warning::CoarseElements { parameter, elements, energy_share });
         }
-        // Beyond a critical point the mesh in hand is unstable as well.
-        let is_stable = looked == Looked::AtCriticalPoint || state.negative_pivots == 0;
+        // Beyond a critical point the current mesh is unstable as well.
+        let is_stable = read_at == ReadAt::AtCriticalPoint || state.negative_pivots == 0;
         let buckled = if is_stable { halved.buckling() } else { None };
         if let Some(LinearBuckling { parameter: at, .. }) = buckled {
             return (at < (1.0 - LATE) * parameter).then_some(Warning::LateBuckling {
@@ -104,13 +106,14 @@ impl Doubts<'_> {
             });
         }
         // Near a critical point the halved mesh may lead anywhere.
-        let are_read = looked == Looked::AtEnd && !self.scene.probes.is_empty();
+        let are_read = read_at == ReadAt::AtEnd && !self.scene.probes.is_empty();
         if are_read { self.probe_off(halved) } else { None }
     }
 
-    /// A probe that reads otherwise at the equilibrium of the halved mesh. To first order is not enough: what is left out of
-    /// balance are membrane forces, and reactions would be off by multiples where the reading is right. What cannot be read, or not
-    /// be solved for, on the halved mesh is not looked at: on the mesh in hand a stage has read it.
+    /// Warns of a probe that reads otherwise at the equilibrium of the halved mesh. A first-order estimate is not
+    /// enough: the forces that it leaves out of balance are membrane forces, and reactions would be off by multiples
+    /// where the reading is right. Probes that cannot be read, or not be solved for, on the halved mesh are skipped: on
+    /// the current mesh a stage has read them.
     fn probe_off(&mut self, mut halved: Halved) -> Option<Warning> {
         let Self { scene, work, state, .. } = self;
         let here = read_probes(scene, work, Configuration::of(state), state.strain_energy_n_mm).ok()?;

@@ -7,7 +7,7 @@ use crate::energy::TermSource;
 use crate::equilibrium::{Configuration, WorkspaceError};
 use crate::model::{ModelError, starting_mesh};
 use crate::pipeline::measured::Measured;
-use crate::pipeline::mesh_in_hand::MeshInHand;
+use crate::pipeline::current_mesh::CurrentMesh;
 use crate::record::{Report, Warning};
 use crate::scene::{Adapt, Indicator, Scene, Stage};
 use crate::state::{Estimate, State};
@@ -17,7 +17,7 @@ pub(super) struct Evaluation<'a> {
     pub scene: &'a Scene,
     pub adapt: &'a Adapt,
     pub own: &'a [Arc<dyn TermSource>],
-    pub in_hand: &'a mut MeshInHand,
+    pub current: &'a mut CurrentMesh,
     pub state: &'a State,
 }
 
@@ -28,7 +28,7 @@ impl Evaluation<'_> {
     /// Where the mesh, or one with its spans halved, does not fit in memory, or a probe cannot be read.
     pub fn run(mut self) -> Result<(State, Report), WorkspaceError> {
         let Self { scene, adapt, state, .. } = self;
-        let work = self.in_hand.workspace(scene, self.own, &state.mesh)?;
+        let work = self.current.workspace(scene, self.own, &state.mesh)?;
         let indicators = evaluate_indicators(scene, adapt, work.discretization(), &state.displacement);
         let report = Report {
             largest_indicator: indicators.largest,
@@ -54,7 +54,7 @@ impl Evaluation<'_> {
         }
         let Some((errors, relative)) = self.errors()? else { return Ok((State { estimate: None, ..next }, report)) };
         let Self { scene, adapt, state, .. } = *self;
-        let discretization = self.in_hand.workspace(scene, self.own, &state.mesh)?.discretization();
+        let discretization = self.current.workspace(scene, self.own, &state.mesh)?.discretization();
         let judged = JudgedMesh {
             mesh: &state.mesh,
             errors: &errors,
@@ -76,12 +76,12 @@ impl Evaluation<'_> {
     fn errors(&mut self) -> Result<Option<([DirectionalError; 2], [f64; 2])>, WorkspaceError> {
         let Self { scene, own, state, .. } = *self;
         let measured = Measured::of(scene);
-        let work = self.in_hand.workspace(scene, own, &state.mesh)?;
+        let work = self.current.workspace(scene, own, &state.mesh)?;
         let here = measured.read(scene, work, Configuration::of(state))?;
         let slope = measured.slope(scene, work, state, here)?;
         let mut unread: Option<ModelError> = None;
         let mut errors = Vec::with_capacity(2);
-        for enriched in self.in_hand.enriched(scene, own, &state.mesh)? {
+        for enriched in self.current.enriched(scene, own, &state.mesh)? {
             let error = enriched.error_of(state, here, &mut |work, at| {
                 measured.read(scene, work, at).unwrap_or_else(|cause| {
                     unread = Some(cause);

@@ -1,4 +1,4 @@
-//! The load as drive: increments of the parameter, cut where they fail or jump.
+//! The drive by load: increments of the parameter, which are cut where they fail or jump.
 
 use crate::equilibrium::{Configuration, Continuation, Equilibrium, Observer, SolveError, Solved, Workspace};
 use crate::pipeline::StageError;
@@ -11,12 +11,12 @@ use crate::scene::Scene;
 use crate::shell::{norm, sub};
 use crate::state::{Course, DriveMemory, Previous, State};
 
-/// A motion this many times as far as the path's before it is no step along that path. Near a limit point the rate grows
-/// without bound, but a step that ends stable has not come to it; next to bifurcations of tape springs the ratio was 7 and
-/// more.
-const LEFT: f64 = 4.0;
+/// Ratio of the rates of motion in a step and in the one before, beyond which the shell has changed to another branch.
+/// Near a limit point the rate grows without bound, but a step that ends stable has not come to it; next to
+/// bifurcations of tape springs the ratio was 7 and more.
+const BRANCH_CHANGE_RATIO: f64 = 4.0;
 
-/// Moves the load on by increments.
+/// Drive that moves the load on by increments.
 pub(super) struct LoadDrive<'a> {
     pub step: Step<'a>,
 }
@@ -40,17 +40,17 @@ impl Drives for LoadDrive<'_> {
             }
             Err(cause) => return self.step.cut(attempt, cause),
         };
-        let way = Way::of(self.step.state, &attempt, &watch, &solved);
-        let is_to_be_located = match way {
-            Way::Along => watch.unstable,
-            Way::OverRipple => false,
-            Way::OffPath => true,
+        let arrival = Arrival::of(self.step.state, &attempt, &watch, &solved);
+        let is_to_be_located = match arrival {
+            Arrival::AlongPath => watch.unstable,
+            Arrival::OverRipple => false,
+            Arrival::OffPath => true,
         };
         if is_to_be_located && !attempt.may_jump {
             let report = self.step.rejected(Outcome::RejectedJump, attempt.target, solved.effort);
             return Ok((self.before_jump(attempt), report));
         }
-        self.take(attempt, way, &solved)
+        self.take(attempt, arrival, &solved)
     }
 
     fn re_equilibrate(&mut self) -> Result<(State, Report), StageError> {
@@ -63,21 +63,22 @@ impl Drives for LoadDrive<'_> {
 }
 
 impl LoadDrive<'_> {
-    /// The state where it was, with a jump ahead to be located.
+    /// Returns the state before the step, with a jump ahead to be located.
     fn before_jump(&self, attempt: Attempt) -> State {
         let DriveMemory { control, course } = &self.step.state.drive;
         self.step.stay(attempt.control_after_jump(control), course.clone())
     }
 
-    /// The state at the load that was tried.
-    fn take(&mut self, attempt: Attempt, way: Way, solved: &Solved) -> Result<(State, Report), StageError> {
+    /// Accepts the step: returns the state at the attempted load.
+    fn take(&mut self, attempt: Attempt, arrival: Arrival, solved: &Solved) -> Result<(State, Report), StageError> {
         let Step { scene, state, .. } = self.step;
         let released = energy_released(state, solved);
         let mut next = settle(state, solved);
         next.step = state.step + 1;
         next.parameter = attempt.target;
-        // The path bends on from an equilibrium before only where it is one path, and where displacements say all.
-        let onwards = way == Way::Along && state.negative_pivots == 0 && next.turns.is_empty();
+        // An equilibrium before helps to predict only where both lie on one path, and where displacements determine the
+        // state.
+        let onwards = arrival == Arrival::AlongPath && state.negative_pivots == 0 && next.turns.is_empty();
         next.drive = DriveMemory {
             control: attempt.control_after_success(scene, &state.drive.control, solved.effort.iterations),
             course: match onwards {
@@ -85,59 +86,59 @@ impl LoadDrive<'_> {
                 false => Course::Unknown,
             },
         };
-        if let Some(refinement) = next.refinement.as_mut().filter(|_| way != Way::Along) {
-            refinement.ripple_n_mm = if way == Way::OverRipple { released.max(0.0) } else { 0.0 };
+        if let Some(refinement) = next.refinement.as_mut().filter(|_| arrival != Arrival::AlongPath) {
+            refinement.ripple_n_mm = if arrival == Arrival::OverRipple { released.max(0.0) } else { 0.0 };
         }
         let mut report = self.step.arrived(&next, solved)?;
-        report.jumped = way == Way::OffPath;
-        report.rippled = way == Way::OverRipple;
-        report.critical_point = CriticalPoint::passed_by_load(state, &next).filter(|_| way == Way::Along);
-        report.energy_released_n_mm = if way == Way::Along { Some(0.0) } else { known_release(released) };
+        report.jumped = arrival == Arrival::OffPath;
+        report.rippled = arrival == Arrival::OverRipple;
+        report.critical_point = CriticalPoint::passed_by_load(state, &next).filter(|_| arrival == Arrival::AlongPath);
+        report.energy_released_n_mm = if arrival == Arrival::AlongPath { Some(0.0) } else { known_release(released) };
         Ok((next, report))
     }
 }
 
-/// Whether the shell moved much farther than it did before for as much load: it has left its path for another one, though
-/// next to a bifurcation that takes little energy. Known by the equilibrium before.
+/// Whether the shell moved much farther than it did before for as much load: it has left its path for another one,
+/// though next to a bifurcation that takes little energy. The rate before follows from the equilibrium before.
 fn leaves_path(state: &State, to: f64, solved: &Solved) -> bool {
     let Some(previous) = state.drive.previous() else { return false };
     let length = |from: &[[f64; 3]], to: &[[f64; 3]]| {
         from.iter().zip(to).map(|(u, v)| norm(sub(*v, *u)).powi(2)).sum::<f64>().sqrt()
     };
     let rate = length(&previous.displacement, &state.displacement) / (state.parameter - previous.parameter);
-    length(&state.displacement, &solved.displacement) > LEFT * rate * (to - state.parameter)
+    length(&state.displacement, &solved.displacement) > BRANCH_CHANGE_RATIO * rate * (to - state.parameter)
 }
 
-/// How a solve came to its equilibrium.
+/// The way in which a solve came to its equilibrium.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
-    /// Along the path.
-    Along,
-    /// Over a ripple of the mesh.
+enum Arrival {
+    /// The solve followed the path.
+    AlongPath,
+    /// The solve passed over a ripple of the mesh.
     OverRipple,
-    /// By a jump, or onto another path.
+    /// The solve jumped, or changed to another path.
     OffPath,
 }
 
-impl Way {
-    /// Of a solve that moved the load on from a state.
+impl Arrival {
+    /// Classifies a solve that moved the load on from a state.
     fn of(state: &State, attempt: &Attempt, watch: &Watch, solved: &Solved) -> Self {
         let released = energy_released(state, solved);
         let ripples = watch.unstable && solved.negative_pivots == 0 && is_ripple(state, released);
         let bracketed = watch.unstable && state.drive.control.jump_beyond.is_some();
         let left = (ripples || bracketed) && leaves_path(state, attempt.target, solved);
         if left || is_jump(released, solved.balance.scale(state.strain_energy_n_mm), solved.balance.stored) {
-            Way::OffPath
+            Arrival::OffPath
         } else if ripples {
-            Way::OverRipple
+            Arrival::OverRipple
         } else {
-            Way::Along
+            Arrival::AlongPath
         }
     }
 }
 
-/// Equilibrium at another load. A descent leaves an unstable branch; a run that stands on one follows it by Newton's method, as
-/// far as that goes.
+/// Solves for the equilibrium at another load. A descent leaves an unstable branch; a run that is on one follows it by
+/// Newton's method, as far as that goes.
 fn reach(
     scene: &Scene,
     work: &mut Workspace,

@@ -7,19 +7,19 @@
 //! | `step` | a step of a drive: what every drive does alike |
 //! | `load_drive`, `path_drive` | steps by load, and by arc length |
 //! | `branch_switch` | from an unstable equilibrium to a stable one |
-//! | `mesh_in_hand` | what is kept of the meshes that stages meet |
+//! | `current_mesh` | what stages keep of the current mesh |
 //! | `step_control`, `path_control` | how far the next step goes |
 //! | `run` | the loop |
 //! | `probes` | readings at an equilibrium |
-//! | `doubts`, `ripple` | when numbers are doubted |
+//! | `doubts`, `ripple` | warnings about numbers; jumps of the mesh alone |
 //! | `stage_error` | why a stage did not end |
 
 mod branch_switch;
+mod current_mesh;
 mod doubts;
 mod evaluation;
 mod load_drive;
 mod measured;
-mod mesh_in_hand;
 mod path_control;
 mod path_drive;
 mod probes;

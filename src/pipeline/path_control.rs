@@ -1,4 +1,4 @@
-//! How long the next step along the path is, and what a step that was made teaches.
+//! How long the next step along the path is, and how the step before it changes that.
 //!
 //! | the last step | the next one |
 //! |---|---|
@@ -6,13 +6,13 @@
 //! | found no equilibrium, turned too sharply or ended too far away | half as long |
 //! | passed a limit point or a bifurcation | half as long, then on with the rest: bisection until the parameter changes by less than the snap tolerance over what is left; then past it |
 //!
-//! Critical points are told by the pivots: at a limit point of the parameter the rate of the parameter along the path
-//! and the determinant of the stiffness change sign; at a bifurcation the pivots change without the rate. Between critical
-//! points the sign of (rate of the parameter) · (−1)^(negative pivots) is therefore constant (Keller 1977), and a step that
-//! ends on its own path turned round, or on another branch, mostly shows as a bifurcation that vanishes when the step is
-//! halved; it is not taken while it can be. Pivots that change and change back within a step leave no trace: a step that
-//! leaves out a loop of the path, or ends on a branch with as many of them, is told by its chord, which does not lie
-//! between the tangents at its ends, or by the energy, which is not the work done.
+//! Critical points are recognised by the pivots: at a limit point of the parameter the rate of the parameter along the
+//! path and the determinant of the stiffness change sign; at a bifurcation the pivots change without the rate. Between
+//! critical points the sign of (rate of the parameter) · (−1)^(negative pivots) is therefore constant (Keller 1977),
+//! and a step that ends on its own path turned round, or on another branch, mostly shows as a bifurcation that vanishes
+//! when the step is halved; it is not taken while it can be. Pivots that change and change back within a step leave no
+//! trace: a step that leaves out a loop of the path, or ends on a branch with as many of them, is recognised by its
+//! chord, which does not lie between the tangents at its ends, or by the energy, which is not the work done.
 //!
 //! Under loads that follow the shell and have no potential the pivots are those of the symmetric part of the tangent, and
 //! pass zero elsewhere than its determinant: a limit point then shows as two critical points close together.
@@ -23,31 +23,31 @@ use crate::record::CriticalPoint;
 use crate::scene::{ArcLength, Scene};
 use crate::state::{CriticalAhead, PathMemory, State};
 
-/// Newton iterations that a step is to take: the hinged roof, 12.7 mm, takes least in all with 4 to 6.
+/// Number of Newton iterations that a step is to take: the hinged roof, 12.7 mm, takes least in all with 4 to 6.
 const AIMED_ITERATIONS: f64 = 5.0;
-/// Angle, in radians, that the tangent is to turn by in a step. What takes fewest iterations leaves sharp turns to chance:
-/// the path of the tape spring's snap turns by a right angle within 0.2 mm.
+/// Angle, in radians, that the tangent is to turn by in a step. The angle with the fewest iterations leaves sharp turns
+/// to chance: the path of the tape spring's snap turns by a right angle within 0.2 mm.
 const AIMED_TURN: f64 = 0.3;
 /// Cosine of the largest turn in a step that is taken.
 const SHARPEST_TURN: f64 = 0.8;
 /// Cosine between the chord of a step and the mean of the tangents at its ends: arcs of circles have 1. A step that leaves
 /// out a loop of the path ends with its tangent anywhere to its chord.
 const STRAIGHTEST_CHORD: f64 = 0.98;
-/// A step that ends farther away than this, relative to its length, has left the path.
+/// Distance of the end of a step, relative to its length, beyond which the step has left the path.
 const FARTHEST: f64 = 1.5;
 
 /// A step along the path to attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathAttempt {
-    /// Its length, mm.
+    /// Length of the step, mm.
     pub length_mm: f64,
-    /// Whether a critical point on the way is located well enough to be passed.
+    /// Whether a critical point within the step is located well enough to be passed.
     pub may_pass: bool,
-    /// Whether half its length is still allowed.
+    /// Whether a step of half the length is still allowed.
     pub can_be_halved: bool,
 }
 
-/// The step that follows a state.
+/// Chooses the step along the path that follows a state.
 pub fn next_path_attempt(scene: &Scene, limits: &ArcLength, path: &PathMemory) -> PathAttempt {
     let shortest = limits.shortest_step * path.first_mm;
     let attempt = |length_mm: f64, may_pass| {
@@ -62,17 +62,17 @@ pub fn next_path_attempt(scene: &Scene, limits: &ArcLength, path: &PathMemory) -
     attempt(if may_pass { ahead.within_mm } else { 0.5 * ahead.within_mm }, may_pass)
 }
 
-/// Critical points are not located more finely than this, relative to the first step: rounding decides there.
+/// Finest location of a critical point, relative to the first step: below it rounding decides.
 const LOCATED: f64 = 1e-7;
 
-/// Whether a point that a step has found is taken.
+/// Judgement of a point that a step has found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Judgement {
-    /// Go on from it.
+    /// The point is accepted, and the path continues from it.
     Taken(Option<CriticalPoint>),
-    /// It lies beyond a critical point that is not located yet.
+    /// The point lies beyond a critical point that is not located yet.
     Past(CriticalAhead),
-    /// It may be on another branch.
+    /// The point may be on another branch.
     TooFar,
 }
 
@@ -91,13 +91,14 @@ impl PathAttempt {
             Some(_) if !self.may_pass => {
                 Judgement::Past(CriticalAhead { within_mm: self.length_mm, rate_beyond: there.0 })
             }
-            // Within the tolerance, but the path turned round: it may have been met again from behind.
+            // Within the tolerance, but the path turned round: the step may have met its own path again in the reverse
+            // direction.
             Some(critical) if critical.turns_back_alone() && self.can_be_halved => Judgement::TooFar,
             passed => Judgement::Taken(passed),
         }
     }
 
-    /// The path's memory at the point that was taken.
+    /// Memory of the path at a point that was accepted.
     pub fn after(
         &self,
         limits: &ArcLength,
@@ -126,12 +127,12 @@ impl PathAttempt {
         }
     }
 
-    /// Memory after a step that found nothing, or nothing that can be taken; `None` where it would have to be shorter than
-    /// the scene allows.
+    /// Memory of the path after a step that found no point, or none that can be accepted; `None` where the next step
+    /// would be shorter than the scene allows.
     pub fn shortened(&self, limits: &ArcLength, path: &PathMemory) -> Option<PathMemory> {
         let half = 0.5 * self.length_mm;
         let critical_ahead = match path.critical_ahead {
-            // What is ahead lies within what was tried, or was an illusion.
+            // The critical point ahead lies within the attempted step, or there is none.
             Some(ahead) if !self.may_pass => Some(CriticalAhead { within_mm: self.length_mm, ..ahead }),
             _ => None,
         };
@@ -140,7 +141,7 @@ impl PathAttempt {
     }
 }
 
-/// The path's memory after its first step.
+/// Memory of the path after its first step.
 pub fn path_begun(limits: &ArcLength, point: &ContinuedPoint) -> PathMemory {
     let by_iterations = (AIMED_ITERATIONS / point.solved.effort.iterations.max(1) as f64).sqrt();
     PathMemory {

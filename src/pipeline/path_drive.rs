@@ -1,4 +1,4 @@
-//! The path of equilibria as drive, followed by arc length.
+//! The drive along the path of equilibria, by arc length.
 
 use crate::equilibrium::{Configuration, Continuation, ContinuedPoint, Direction, Iterate, Sense, SolveError};
 use crate::pipeline::StageError;
@@ -10,18 +10,18 @@ use crate::record::{CriticalPoint, Outcome, Report};
 use crate::scene::{ArcLength, History, Scene};
 use crate::state::{Course, DriveMemory, PathMemory, Rejection, State, StepControl};
 
-/// A parameter this close to the target, relatively, is there.
+/// Relative distance of the parameter from the target below which the target is reached.
 const AT_TARGET: f64 = 1e-9;
 
-/// Follows the path of equilibria.
+/// Drive that follows the path of equilibria.
 pub(super) struct PathDrive<'a> {
     pub step: Step<'a>,
     pub limits: &'a ArcLength,
 }
 
 impl Drives for PathDrive<'_> {
-    /// One step along the path. Where it fails, goes too far or passes a critical point that is not located yet, the state
-    /// stays and only its memory changes.
+    /// Takes a step along the path. Where it fails, leads too far or passes a critical point that is not located yet,
+    /// the state stays and only its memory changes.
     fn solve(&mut self) -> Result<(State, Report), StageError> {
         let state = self.step.state;
         if state.step >= self.limits.most_steps as u64 {
@@ -29,11 +29,11 @@ impl Drives for PathDrive<'_> {
         }
         match state.drive.path() {
             None => self.begin(),
-            Some(path) => self.go_on(path),
+            Some(path) => self.continue_path(path),
         }
     }
 
-    /// On a refined mesh the path is another.
+    /// Finds the equilibrium on the path of the refined mesh, which differs from the path before.
     fn re_equilibrate(&mut self) -> Result<(State, Report), StageError> {
         match self.step.state.drive.path() {
             None => self.step.relax(),
@@ -41,7 +41,7 @@ impl Drives for PathDrive<'_> {
         }
     }
 
-    /// The path continues along the branch.
+    /// Switches to a stable branch, along which the path continues.
     fn switch_branch(&mut self) -> Result<(State, Report), StageError> {
         let state = self.step.state;
         switch_branch(&mut self.step, |step, branch| match state.drive.path() {
@@ -52,7 +52,7 @@ impl Drives for PathDrive<'_> {
 }
 
 impl PathDrive<'_> {
-    /// The first step: an increment of the parameter.
+    /// Takes the first step: an increment of the parameter.
     fn begin(&mut self) -> Result<(State, Report), StageError> {
         let Step { scene, work, state, observer, .. } = &mut self.step;
         let attempt = next_attempt(scene, state);
@@ -74,8 +74,8 @@ impl PathDrive<'_> {
         self.take(&point, path_begun(self.limits, &point), passed)
     }
 
-    /// A step from a point of the path.
-    fn go_on(&mut self, path: &PathMemory) -> Result<(State, Report), StageError> {
+    /// Takes a step from a point of the path.
+    fn continue_path(&mut self, path: &PathMemory) -> Result<(State, Report), StageError> {
         let attempt = next_path_attempt(self.step.scene, self.limits, path);
         let (found, aimed_at) = self.find(path, attempt);
         let point = match found {
@@ -91,7 +91,7 @@ impl PathDrive<'_> {
             Judgement::Past(ahead) => {
                 let memory = PathMemory { critical_ahead: Some(ahead), ..path.clone() };
                 let report = rejected(Outcome::RejectedCriticalPoint);
-                Ok((self.turned_down(Rejection::CriticalPoint, memory), report))
+                Ok((self.reject(Rejection::CriticalPoint, memory), report))
             }
             Judgement::TooFar => {
                 let turned = point.turn.clamp(-1.0, 1.0).acos().to_degrees();
@@ -101,8 +101,8 @@ impl PathDrive<'_> {
         }
     }
 
-    /// The point that a step finds: at the next corner of a history where there is one on the way, and at the target where the
-    /// path leads beyond it. Beside it the parameter that was aimed at.
+    /// Finds the point that a step leads to: at the next corner of a history where the step reaches it, and at the
+    /// target where the path leads beyond it. Also returns the parameter that was aimed at.
     fn find(&mut self, path: &PathMemory, attempt: PathAttempt) -> (Result<ContinuedPoint, SolveError>, f64) {
         let Step { scene, work, state, observer, .. } = &mut self.step;
         let mut watch = |iterate: &Iterate| {
@@ -134,7 +134,7 @@ impl PathDrive<'_> {
         }
     }
 
-    /// The state where it was, with half the step to try.
+    /// Returns the state before the step, with half the step to try.
     fn shorten(
         &self,
         path: &PathMemory,
@@ -147,7 +147,7 @@ impl PathDrive<'_> {
             _ => Rejection::NoEquilibrium,
         };
         match attempt.shortened(self.limits, path) {
-            Some(memory) => Ok((self.turned_down(rejection, memory), report)),
+            Some(memory) => Ok((self.reject(rejection, memory), report)),
             None => Err(StageError::PathLost {
                 step: self.step.state.step + 1,
                 reached: self.step.shown(self.step.state.parameter),
@@ -159,8 +159,8 @@ impl PathDrive<'_> {
         }
     }
 
-    /// The state where it was, with another attempt to make.
-    fn turned_down(&self, rejection: Rejection, path: PathMemory) -> State {
+    /// Returns the state before the step, with the reason of its rejection and the memory for another attempt.
+    fn reject(&self, rejection: Rejection, path: PathMemory) -> State {
         let control = StepControl { rejection: Some(rejection), ..self.step.state.drive.control };
         self.step.stay(control, Course::Path(path))
     }
@@ -174,7 +174,7 @@ impl PathDrive<'_> {
         }
     }
 
-    /// The state at a new point of the path.
+    /// Accepts a point: returns the state at it.
     fn take(
         &mut self,
         point: &ContinuedPoint,
@@ -190,7 +190,7 @@ impl PathDrive<'_> {
         Ok((next, report))
     }
 
-    /// The point of the refined mesh's path that is nearest to where the shell is, or, at the end of the run, the one with that
+    /// Moves to the nearest point of the refined mesh's path or, at the end of the run, to the one with the same
     /// parameter.
     fn correct(&mut self, path: &PathMemory) -> Result<(State, Report), StageError> {
         let heading = Direction { motion: path.heading.clone(), parameter: path.parameter_rate };
@@ -203,7 +203,7 @@ impl PathDrive<'_> {
         let found = Continuation::new(scene, work).correct(Configuration::of(state), &heading, at_end, &mut watch);
         let point = match found {
             Ok(point) => point,
-            Err(_) if state.negative_pivots == 0 => return self.let_down(path),
+            Err(_) if state.negative_pivots == 0 => return self.descend(path),
             Err(cause) => return Err(self.step.not_re_equilibrated(cause)),
         };
         let before = (path.parameter_rate, state.negative_pivots);
@@ -217,13 +217,13 @@ impl PathDrive<'_> {
             ..path.clone()
         });
         let mut report = self.step.arrived(&next, &point.solved)?;
-        // A finer mesh has its critical points elsewhere: the shell may now stand beyond one that lay ahead of it.
+        // On the finer mesh the critical point may already have been passed.
         report.critical_point = CriticalPoint::between(before, after);
         Ok((next, report))
     }
 
-    /// Where the shell is stable it can be let down to the finer mesh's equilibrium at the same load.
-    fn let_down(&mut self, path: &PathMemory) -> Result<(State, Report), StageError> {
+    /// Descends to the finer mesh's equilibrium at the same load, which is possible where the shell is stable.
+    fn descend(&mut self, path: &PathMemory) -> Result<(State, Report), StageError> {
         let (mut relaxed, report) = self.step.relax()?;
         let memory = path_on_branch(&mut self.step, &relaxed, &relaxed, path);
         relaxed.drive.course = Course::Path(memory.map_err(|cause| self.step.not_re_equilibrated(cause))?);
@@ -231,9 +231,9 @@ impl PathDrive<'_> {
     }
 }
 
-/// Memory on the branch that was switched to from `before`: onwards with the parameter as before. What was a long step
-/// before may be nothing here (a column that bends moves much farther than one that is compressed), so that the way from
-/// one branch to the other becomes the unit where it is longer.
+/// Memory of the path on a branch that was switched to from `before`; the parameter continues as before. A long step on
+/// the old branch may be a tiny one here (a column that bends moves much farther than one that is compressed), so that
+/// the distance between the branches becomes the unit of length where it is longer.
 fn path_on_branch(step: &mut Step, before: &State, state: &State, path: &PathMemory) -> Result<PathMemory, SolveError> {
     let sense = Sense::Parameter { grows: path.parameter_rate > 0.0 };
     let mut continuation = Continuation::new(step.scene, step.work);
@@ -250,13 +250,13 @@ fn path_on_branch(step: &mut Step, before: &State, state: &State, path: &PathMem
     })
 }
 
-/// The first load factor on the way at which a history has a corner, up to where the run ends.
+/// Finds the first load factor between two values at which a history has a corner, up to the end of the run.
 fn corner_between(scene: &Scene, from: f64, to: f64) -> Option<f64> {
     let histories =
         scene.actions.iter().map(|action| &action.history).chain(scene.supports.iter().map(|support| &support.history));
     let end = scene.load.target() * (1.0 + AT_TARGET);
-    let way = (to - from).signum();
-    let distance = |corner: &f64| way * (corner - from);
+    let sense = (to - from).signum();
+    let distance = |corner: &f64| sense * (corner - from);
     histories
         .flat_map(History::kinks)
         .filter(|corner| corner.abs() < end && distance(corner) > AT_TARGET * end && distance(corner) <= distance(&to))

@@ -62,9 +62,9 @@ struct Reader<'a> {
     discretization: &'a Discretization,
     at: Configuration<'a>,
     placement: Placement<'a>,
-    /// What supports and joints exert on the control points, N.
+    /// Forces that supports and joints exert on the control points, N.
     forces: &'a [[f64; 3]],
-    /// The same, each apart, once a probe asks for it.
+    /// Forces of each support apart, computed once a probe asks for them.
     exerted: OnceCell<Exerted>,
     energy: f64,
 }
@@ -108,7 +108,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Force and moment that a support exerts.
+    /// Computes the force and moment that a support exerts.
     fn reaction(
         &self,
         support: &str,
@@ -136,7 +136,7 @@ impl Reader<'_> {
         add(self.discretization.mesh.point(point), self.at.displacement[point])
     }
 
-    /// Sum of forces on control points, and of their moments about `pole`.
+    /// Sums forces on control points, and their moments about `pole`.
     fn resultant(&self, forces: impl Iterator<Item = (usize, [f64; 3])>, pole: [f64; 3]) -> [[f64; 3]; 2] {
         forces.fold([[0.0; 3]; 2], |[sum, moment], (point, force)| {
             let arm = sub(self.position(point), pole);
@@ -144,16 +144,17 @@ impl Reader<'_> {
         })
     }
 
-    /// By equilibrium of the side of smaller u or v: what supports, loads and other terms exert there is carried across the line.
-    /// Terms are summed up over just that side. Where supports hold within one element of the line, their forces are shared out
-    /// between the sides as the functions of the control points are.
+    /// Computes the moment of a section by equilibrium of the side of smaller u or v: the forces of supports, loads and
+    /// other terms there are carried across the line. Terms are summed over just that side. Where supports hold within
+    /// one element of the line, their forces are shared out between the sides as the functions of the control points
+    /// are.
     fn section_moment(&self, probe: &str, on: Place, component: Axis) -> Result<f64, ModelError> {
         let Discretization { mesh, shell, terms, .. } = self.discretization;
         let Some(line) = line_place(self.scene, mesh, on) else {
             return Err(ModelError::NotASection { probe: probe.to_owned() });
         };
         let mut limits = [f64::INFINITY; 2];
-        limits[line.way] = line.parameter;
+        limits[line.direction] = line.parameter;
         let terms = terms.below(self.scene, mesh, &shell.tables, limits)?;
         let at = At { mesh, displacement: self.at.displacement, parameter: self.at.parameter };
         let acting = terms.forces(at);
@@ -164,9 +165,9 @@ impl Reader<'_> {
             .flatten()
             .fold([0.0; 3], |sum, (point, factor)| add(sum, scaled(factor / count, self.position(*point))));
         let grid = mesh.grid();
-        let side = (0..grid.len()).filter(|point| grid.place(*point)[line.way] < line.first_beyond);
+        let side = (0..grid.len()).filter(|point| grid.place(*point)[line.direction] < line.first_beyond);
         let Exerted { by_joints, .. } = self.exerted();
-        // A joint across the line pulls on control points of both sides: its part on this one is no push from outside.
+        // A joint across the line acts on control points of both sides: its forces on this side are not external.
         let held = side.map(|point| {
             let joint = by_joints.get(&point).copied().unwrap_or_default();
             (point, sub(self.forces[point], joint))

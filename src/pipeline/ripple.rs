@@ -14,41 +14,43 @@
 use crate::equilibrium::Iterate;
 use crate::state::State;
 
-/// A ripple is at most so many times as large as the one before.
+/// Largest ratio of a ripple to the one before it.
 const IN_TRAIN: f64 = 2.0;
 
-/// Watches a solve for unstable shapes on the way.
+/// Watch over the iterates of a solve for unstable shapes.
 #[derive(Debug)]
 pub(super) struct Watch {
-    /// Negative pivots that the state had: a run that stands on an unstable branch (and says so) follows it; what ends an
-    /// attempt is a further loss of stability.
+    /// Number of negative pivots of the state: a run on an unstable branch follows it (and says so), and only a further
+    /// loss of stability ends an attempt.
     known: u64,
-    /// Energy of the model that a ripple may release, N·mm.
+    /// Energy that a ripple of the model may release, N·mm; `None` where ripples are not known.
     ripple: Option<f64>,
     /// Whether an unstable shape was passed.
     pub unstable: bool,
 }
 
 impl Watch {
-    /// From a state of the whole shell, of which the model is one of `parts`.
+    /// Creates the watch over a solve from a state of the whole shell, of which the model is one of `parts`.
     pub fn new(state: &State, parts: f64) -> Self {
         let ripple = ripple_n_mm(state).map(|size| size / parts);
         Self { known: state.negative_pivots, ripple, unstable: false }
     }
 
-    /// Sees an iterate; returns whether the solve has passed an unstable shape and released more than a ripple.
+    /// Takes an iterate into account; returns whether the solve has passed an unstable shape and released more than a
+    /// ripple.
     pub fn sees_jump(&mut self, iterate: &Iterate) -> bool {
         self.unstable |= iterate.negative_pivots as u64 > self.known;
         self.unstable && self.ripple.is_none_or(|size| iterate.released > size)
     }
 }
 
-/// Whether a jump that released so much is a ripple.
+/// Whether a jump that released this energy, N·mm, is a ripple.
 pub(super) fn is_ripple(state: &State, released: f64) -> bool {
     ripple_n_mm(state).is_some_and(|size| released.abs() <= size)
 }
 
-/// What a ripple may release, N·mm; `None` where refining has not shown it, or the shell stands on an unstable branch.
+/// Energy that a ripple may release, N·mm; `None` where refining has not shown it, or the shell is on an unstable
+/// branch.
 fn ripple_n_mm(state: &State) -> Option<f64> {
     let refinement = state.refinement.filter(|_| state.negative_pivots == 0);
     refinement.map(|last| last.of_all_n_mm().max(IN_TRAIN * last.ripple_n_mm))

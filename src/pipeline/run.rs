@@ -9,8 +9,9 @@ use crate::record::{Commit, Record, Sink, SinkError};
 use crate::scene::Stage;
 use crate::state::{MeshHash, State};
 
-/// Why a run stopped before its target. All stages that the sink took stand.
+/// Reasons why a run stopped before its target. All stages that the sink took remain valid.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RunError {
     /// A stage failed.
     #[error(transparent)]
@@ -20,18 +21,19 @@ pub enum RunError {
     Sink(#[from] SinkError),
 }
 
-/// How a run ended.
+/// The reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Ending {
-    /// The scene's target rotation is reached.
+    /// The scene's target is reached.
     Finished,
-    /// The rotation that the caller asked for is reached.
+    /// The value of the parameter that the caller asked for is reached.
     Until,
-    /// The caller asked to stop; the stage in hand was finished.
+    /// The caller asked to stop; the current stage was finished.
     Interrupted,
 }
 
-/// The loop over stages, between two of them.
+/// A run: the loop over stages, paused between two of them.
 #[derive(Debug)]
 pub struct Run {
     stages: Stages,
@@ -43,7 +45,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// A run that continues from `state`, which the stage of `last` made (`None`: the scene's start).
+    /// Creates a run that continues from `state`, which the stage of `last` made (`None`: the scene's start).
     pub fn new(stages: Stages, state: State, last: Option<Commit>) -> Self {
         let scene_hash = stages.hash();
         let mut mesh_hash = MeshHash::default();
@@ -51,12 +53,12 @@ impl Run {
         Self { state_hash, mesh_hash, scene_hash, stages, state, last }
     }
 
-    /// The present state.
+    /// Current state of the run.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// The stage that comes next; `None` at the target.
+    /// Stage that comes next; `None` at the target.
     pub fn next_stage(&self) -> Option<Stage> {
         next_stage(self.stages.scene(), &self.state)
     }

@@ -1,11 +1,12 @@
-//! Why a stage could not be run to its end, in words.
+//! The errors of stages, in words.
 
 use crate::equilibrium::{FactorError, SolveError};
 use crate::model::{MOST_CONTROL_POINTS, ModelError};
 use crate::scene::Stage;
 
-/// Why a stage could not be run to its end. The state before it stands.
+/// Reasons why a stage could not be run to its end. The state before it remains valid.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StageError {
     /// The increment was cut down to the least one and still no equilibrium was found.
     #[error(
@@ -13,63 +14,63 @@ pub enum StageError {
          {least_key} = {least} would be needed; the last attempt: {cause}"
     )]
     NoEquilibrium {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// Where the last good state stands.
+        /// Parameter of the last good state, with its unit.
         reached: String,
-        /// Where the last attempt would have stood.
+        /// Parameter of the last attempt, with its unit.
         attempted: String,
         /// The key of the scene's least increment.
         least_key: &'static str,
         /// The scene's least increment, in the units of its parameter.
         least: f64,
-        /// Why the last attempt failed.
+        /// Reason why the last attempt failed.
         cause: Box<SolveError>,
     },
     /// Not even the first step has an equilibrium.
     #[error(
         "step {step}, solve: no equilibrium was found near the undeformed shell, at {attempted}, nor at larger increments: \
-         {cause}; look at sizes and units of loads, thickness and geometry, and at what the supports leave free; then take a \
+         {cause}; check sizes and units of loads, thickness and geometry, and what the supports leave free; then take a \
          smaller increment or raise solver.max_iterations"
     )]
     NoStart {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// Where the last attempt would have stood.
+        /// Parameter of the last attempt, with its unit.
         attempted: String,
-        /// Why the last attempt failed.
+        /// Reason why the last attempt failed.
         cause: Box<SolveError>,
     },
-    /// The shell jumps or loses its stability, where is located, and the solver did not reach the shape beyond it.
+    /// The shell jumps or loses its stability at a located point, and the solver did not reach the shape beyond it.
     #[error(
         "step {step}, solve: the shell jumps or loses its stability between {reached} and {attempted}, and no equilibrium \
          beyond was reached: {cause}; raise solver.max_iterations"
     )]
     JumpNotFollowed {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// Where the last good state stands.
+        /// Parameter of the last good state, with its unit.
         reached: String,
-        /// Beyond the jump.
+        /// Parameter beyond the jump, with its unit.
         attempted: String,
-        /// Why the solve failed.
+        /// Reason why the solve failed.
         cause: Box<SolveError>,
     },
     /// The refined mesh has no equilibrium at the load.
     #[error(
         "step {step}, re-equilibrate at {reached} on {} × {} elements: {cause}; raise solver.max_iterations (by arc length: lower continuation.longest_step), or adapt.threshold to \
-         refine less at once, and go on with `foldline run SCENE --resume`",
+         refine less at once, and continue with `foldline run SCENE --resume`",
         elements[0],
         elements[1]
     )]
     NotReEquilibrated {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// Where the state stands.
+        /// Parameter of the state, with its unit.
         reached: String,
-        /// Elements each way.
+        /// Number of elements in each direction.
         elements: [usize; 2],
-        /// Why the solve failed.
+        /// Reason why the solve failed.
         cause: Box<SolveError>,
     },
     /// The path could not be followed.
@@ -78,9 +79,9 @@ pub enum StageError {
          first steps ({first_mm:.3e} mm) would be needed; the last attempt, of {attempted_mm:.3e} mm: {why}"
     )]
     PathLost {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// Where the last good state stands.
+        /// Parameter of the last good state, with its unit.
         reached: String,
         /// The scene's shortest step.
         shortest: f64,
@@ -88,22 +89,22 @@ pub enum StageError {
         first_mm: f64,
         /// Length of the last attempt, mm.
         attempted_mm: f64,
-        /// What became of it.
+        /// Outcome of the last attempt, in words.
         why: String,
     },
     /// The path is longer than the scene allows.
     #[error(
-        "step {step}: the path has not reached {target} after continuation.most_steps = {most} load steps; it stands at \
-         {reached}; raise most_steps, or longest_step for longer steps, and go on with `foldline run SCENE --resume`"
+        "step {step}: the path has not reached {target} after continuation.most_steps = {most} load steps; it is at \
+         {reached}; raise most_steps, or longest_step for longer steps, and continue with `foldline run SCENE --resume`"
     )]
     PathTooLong {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// Where the run was to end.
+        /// Target of the run, with its unit.
         target: String,
-        /// Where the last state stands.
+        /// Parameter of the last state, with its unit.
         reached: String,
-        /// Load steps that are allowed.
+        /// Number of load steps that are allowed.
         most: usize,
     },
     /// The unstable equilibrium could not be left.
@@ -111,48 +112,48 @@ pub enum StageError {
         "step {step}, switch-branch at {reached}: {cause}; raise solver.max_iterations, or take smaller increments"
     )]
     NotSwitched {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// Where the state stands.
+        /// Parameter of the state, with its unit.
         reached: String,
-        /// Why the solve failed.
+        /// Reason why the solve failed.
         cause: Box<SolveError>,
     },
-    /// No stable equilibrium was found beside the unstable one.
+    /// No stable equilibrium was found near the unstable one.
     #[error(
         "step {step}, switch-branch at {reached}: after leaving along {modes} modes the equilibrium still has {negative_pivots} \
-         negative pivot(s); take smaller increments, or take switch-branch out of pipeline.stages"
+         negative pivot(s); take smaller increments, or remove switch-branch from pipeline.stages"
     )]
     StillUnstable {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// Where the state stands.
+        /// Parameter of the state, with its unit.
         reached: String,
-        /// Modes that were left.
+        /// Number of modes along which it was left.
         modes: usize,
-        /// Negative pivots of the last equilibrium.
+        /// Number of negative pivots of the last equilibrium.
         negative_pivots: u64,
     },
     /// The equations do not fit in memory.
     #[error("step {step}, {stage} on {elements:?} elements: {cause}")]
     TooLarge {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// The stage.
+        /// Stage that failed.
         stage: Stage,
-        /// Elements each way.
+        /// Number of elements in each direction.
         elements: [usize; 2],
-        /// What the solver said.
+        /// Error of the sparse solver.
         cause: FactorError,
     },
     /// Supports or loads do not fit the mesh.
     #[error("step {step}, {stage}: {cause}")]
     Model {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// The stage.
+        /// Stage that failed.
         stage: Stage,
-        /// What does not fit.
+        /// Error of the model.
         cause: ModelError,
     },
     /// Refinement asks for more than memory holds.
@@ -163,23 +164,23 @@ pub enum StageError {
         elements[1]
     )]
     RefinedTooFar {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// Elements each way that were asked for.
+        /// Number of elements in each direction that were asked for.
         elements: [usize; 2],
-        /// Control points of that mesh.
+        /// Number of control points of that mesh.
         count: usize,
     },
     /// The stage needs what the stage before it makes.
     #[error("step {step}: {stage} cannot follow {after}: {missing}")]
     OutOfOrder {
-        /// Load step.
+        /// Number of the load step.
         step: u64,
-        /// The stage.
+        /// Stage that failed.
         stage: Stage,
         /// The stage that made the state.
         after: &'static str,
-        /// What is missing, in words.
+        /// What the stage lacks, in words.
         missing: &'static str,
     },
 }

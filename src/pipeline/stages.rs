@@ -8,10 +8,10 @@ use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_e
 use crate::equilibrium::{Configuration, Iterate, Workspace, WorkspaceError};
 use crate::model::{FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, starting_mesh};
 use crate::pipeline::StageError;
+use crate::pipeline::current_mesh::CurrentMesh;
 use crate::pipeline::doubts::{Doubts, doubtful};
 use crate::pipeline::evaluation::Evaluation;
 use crate::pipeline::load_drive::LoadDrive;
-use crate::pipeline::mesh_in_hand::MeshInHand;
 use crate::pipeline::path_drive::PathDrive;
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step::{Drives, Step, out_of_order};
@@ -20,12 +20,13 @@ use crate::scene::{Drive, Scene, Stage};
 use crate::spline::Mesh;
 use crate::state::{DriveMemory, Refinement, State};
 
-/// Runs the stages of one scene; keeps buffers of the mesh in hand, which a new one would fill with the same bits.
+/// Runner of the stages of one scene. It keeps buffers of the current mesh, which new ones would fill with the same
+/// bits.
 #[derive(Debug)]
 pub struct Stages {
     scene: Scene,
     own: Vec<Arc<dyn TermSource>>,
-    in_hand: MeshInHand,
+    current: CurrentMesh,
 }
 
 impl Stages {
@@ -34,36 +35,36 @@ impl Stages {
         Self::with_terms(scene, Vec::new())
     }
 
-    /// Stages of a scene with energies or loads of the caller's own.
+    /// Creates the stages of a scene with energies or loads of the caller's own.
     pub fn with_terms(scene: Scene, own: Vec<Arc<dyn TermSource>>) -> Self {
-        Self { scene, own, in_hand: MeshInHand::default() }
+        Self { scene, own, current: CurrentMesh::default() }
     }
 
-    /// The terms of the caller's own.
+    /// Sources of the terms of the caller's own.
     pub fn own_terms(&self) -> &[Arc<dyn TermSource>] {
         &self.own
     }
 
-    /// Hash of what decides the results: of the scene, and of the terms where there are any of the caller's own.
+    /// Hash of everything that decides the results: of the scene, and of terms of the caller's own where there are any.
     pub fn hash(&self) -> Hash {
         let terms: Vec<(&str, Hash)> = self.own.iter().map(|source| (source.name(), source.hash())).collect();
         run_hash(&self.scene, &terms)
     }
 
-    /// The scene that the stages run.
+    /// Scene that the stages run.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The state that the scene starts from: undeformed, before the first step.
+    /// Makes the state that the scene starts from: undeformed, before the first step.
     ///
     /// # Errors
-    /// Where the scene cannot be made discrete, its supports and terms leave a rigid motion free, or its loads push one that is
-    /// only held so.
+    /// Where the scene cannot be made discrete, its supports and terms leave a rigid motion free, or its loads do work
+    /// on a rigid motion that only a support of rigid motions holds.
     pub fn start(&mut self) -> Result<State, ModelError> {
         let mut state = State::undeformed(starting_mesh(&self.scene)?);
         let mesh = &state.mesh;
-        let unknowns = self.in_hand.unknowns(&self.scene, mesh)?;
+        let unknowns = self.current.unknowns(&self.scene, mesh)?;
         check_held(&self.scene, mesh, unknowns, &self.own)?;
         check_balance(&self.scene, mesh, unknowns, &self.own)?;
         if unknowns.count() == 0 {
@@ -75,12 +76,12 @@ impl Stages {
         Ok(state)
     }
 
-    /// What supports and actions of the scene come to where its words leave it open: a sentence each.
+    /// Remarks on what the scene leaves open or its theory leaves out, a sentence each.
     ///
     /// # Errors
     /// Where supports or loads do not fit the mesh of the state.
     pub fn remarks(&mut self, state: &State) -> Result<Vec<String>, ModelError> {
-        remarks(&self.scene, &state.mesh, self.in_hand.unknowns(&self.scene, &state.mesh)?, &self.own)
+        remarks(&self.scene, &state.mesh, self.current.unknowns(&self.scene, &state.mesh)?, &self.own)
     }
 
     /// Runs a stage. `observer` sees every Newton iterate.
@@ -108,7 +109,7 @@ impl Stages {
         Ok((next, report))
     }
 
-    /// What drives the scene, at a state.
+    /// Creates the drive of the scene at a state.
     fn drive<'a>(
         &'a mut self,
         stage: Stage,
@@ -125,16 +126,16 @@ impl Stages {
     }
 
     fn workspace(&mut self, mesh: &Arc<Mesh>, step: u64, stage: Stage) -> Result<(&Scene, &mut Workspace), StageError> {
-        let work = self.in_hand.workspace(&self.scene, &self.own, mesh);
+        let work = self.current.workspace(&self.scene, &self.own, mesh);
         Ok((&self.scene, work.map_err(|cause| no_workspace(cause, mesh, step, stage))?))
     }
 
     fn evaluate(&mut self, state: &State) -> Result<(State, Report), StageError> {
-        let Self { scene, own, in_hand } = self;
+        let Self { scene, own, current } = self;
         let Some(adapt) = &scene.adapt else {
             return Err(out_of_order(state, Stage::EvaluateIndicators, "the scene has no [adapt]"));
         };
-        let evaluated = Evaluation { scene, adapt, own, in_hand, state }.run();
+        let evaluated = Evaluation { scene, adapt, own, current, state }.run();
         evaluated.map_err(|cause| no_workspace(cause, &state.mesh, state.step, Stage::EvaluateIndicators))
     }
 
@@ -176,13 +177,13 @@ impl Stages {
             let (step, elements, count) = (state.step, finer.element_counts(), finer.control_points.len());
             return Err(StageError::RefinedTooFar { step, elements, count });
         }
-        // Integrated where the finer mesh is: what the energy changes here is the error of the coarser quadrature, and
+        // The energy is integrated on the finer elements: its change here is the error of the coarser quadrature, and
         // projecting then changes nothing.
         let tables = Tables::on_elements_of(&self.scene, &state.mesh, &finer);
         let natural = FreeStrains::new(&self.scene, &state.mesh).at(state.parameter);
         let parts = self.scene.symmetry.copies() as f64;
         let energy = parts * (strain_energy(&tables, &state.displacement, natural) + self.stored_by_terms(state)?);
-        let unknowns = match self.in_hand.unknowns(&self.scene, &finer) {
+        let unknowns = match self.current.unknowns(&self.scene, &finer) {
             Ok(unknowns) => unknowns.count(),
             Err(cause) => return Err(StageError::Model { step: state.step, stage: Stage::RefineKnots, cause }),
         };
@@ -193,7 +194,7 @@ impl Stages {
             ..Report::of(&self.scene, state, unknowns)
         };
         let [before, after] = [&state.mesh, &finer].map(|mesh| mesh.element_counts().iter().product::<usize>() as f64);
-        // Along a path every critical point is located: nothing asks what refining changed.
+        // Along a path every critical point is located: the change by refining is not needed.
         let refinement = (!Drive::of(&self.scene).follows_path()).then(|| Refinement {
             changed_n_mm: (energy - state.strain_energy_n_mm).abs(),
             growth: after / before - 1.0,
@@ -210,7 +211,7 @@ impl Stages {
         Ok((next, report))
     }
 
-    /// Energy that terms of the caller's own store in the model, N·mm.
+    /// Computes the energy that terms of the caller's own store in the model, N·mm.
     fn stored_by_terms(&mut self, state: &State) -> Result<f64, StageError> {
         if self.own.is_empty() {
             return Ok(0.0);
@@ -267,14 +268,14 @@ impl Stages {
         Ok((next, report))
     }
 
-    /// Adds what is to be said of the state that a stage made, or of the one before it.
+    /// Adds the warnings about the state that a stage made, or about the one before it.
     fn warn(&mut self, before: &State, after: &State, report: &mut Report) -> Result<(), StageError> {
         let refined = matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
         report.warnings.extend(refined.then(|| Warning::of_refining(before, after, report.elements)).flatten());
-        for (state, looked) in doubtful(&self.scene, before, after, report) {
-            let work = self.in_hand.workspace(&self.scene, &self.own, &state.mesh);
+        for (state, read_at) in doubtful(&self.scene, before, after, report) {
+            let work = self.current.workspace(&self.scene, &self.own, &state.mesh);
             let work = work.map_err(|cause| no_workspace(cause, &state.mesh, report.step, report.stage))?;
-            report.warnings.extend(Doubts { scene: &self.scene, own: &self.own, work, state }.all(looked));
+            report.warnings.extend(Doubts { scene: &self.scene, own: &self.own, work, state }.all(read_at));
         }
         Ok(())
     }
@@ -282,7 +283,7 @@ impl Stages {
     /// Reads every probe of the scene at an equilibrium.
     ///
     /// # Errors
-    /// Where the scene cannot be made discrete on the state's mesh, or a probe asks for what there is not.
+    /// Where the scene cannot be made discrete on the state's mesh, or a probe asks for what the scene does not have.
     pub fn read_probes(&mut self, state: &State) -> Result<Vec<Reading>, StageError> {
         let made_by = state.stage.unwrap_or(Stage::Solve);
         let (scene, work) = self.workspace(&state.mesh, state.step, made_by)?;

@@ -1,4 +1,4 @@
-//! A step of a drive under way, and what every drive does alike.
+//! A step of a drive in progress, and what every drive does alike.
 
 use crate::equilibrium::{Configuration, Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
 use crate::pipeline::StageError;
@@ -8,37 +8,37 @@ use crate::record::{Outcome, Report};
 use crate::scene::{Parameter, Scene, Stage};
 use crate::state::{Course, DriveMemory, State, StepControl};
 
-/// A drive at a state: how it moves the structure on, and how it meets its course again on a finer mesh or another branch.
+/// A drive at a state: how it moves the structure on, and how it continues on a finer mesh or another branch.
 pub(super) trait Drives {
-    /// One step on. Where that fails or leads too far, the state stays and only the memory of the drive changes.
+    /// Takes a step. Where that fails or leads too far, the state stays and only the memory of the drive changes.
     fn solve(&mut self) -> Result<(State, Report), StageError>;
 
-    /// Equilibrium on the refined mesh of the state.
+    /// Finds the equilibrium on the refined mesh of the state.
     fn re_equilibrate(&mut self) -> Result<(State, Report), StageError>;
 
-    /// From an unstable equilibrium to a stable one at the same load.
+    /// Moves from an unstable equilibrium to a stable one at the same load.
     fn switch_branch(&mut self) -> Result<(State, Report), StageError>;
 }
 
-/// What a stage that looks for an equilibrium works with.
+/// A stage that looks for an equilibrium, with what it works on.
 pub(super) struct Step<'a> {
     pub stage: Stage,
     pub scene: &'a Scene,
-    /// Of the state's mesh.
+    /// Workspace of the state's mesh.
     pub work: &'a mut Workspace,
-    /// Where the stage starts.
+    /// State that the stage starts from.
     pub state: &'a State,
-    /// Sees every Newton iterate.
+    /// Callback that sees every Newton iterate.
     pub observer: &'a mut dyn FnMut(&Iterate),
 }
 
 impl Step<'_> {
-    /// The state's parameter, or another, with its unit.
+    /// Formats a value of the scene's parameter with its unit.
     pub fn shown(&self, parameter: f64) -> String {
         Parameter::of(self.scene).shown(parameter)
     }
 
-    /// The state where it was, with another attempt to make.
+    /// Returns the state before the step, with the drive's memory changed for another attempt.
     pub fn stay(&self, control: StepControl, course: Course) -> State {
         State {
             drive: DriveMemory { control, course },
@@ -48,7 +48,7 @@ impl Step<'_> {
         }
     }
 
-    /// Report of a solve that was rejected.
+    /// Makes the report of a solve that was rejected.
     pub fn rejected(&self, outcome: Outcome, attempted_parameter: f64, effort: Effort) -> Report {
         Report {
             step: self.state.step + 1,
@@ -60,13 +60,13 @@ impl Step<'_> {
         }
     }
 
-    /// Report of a solve that found no equilibrium.
+    /// Makes the report of a solve that found no equilibrium.
     pub fn failed(&self, outcome: Outcome, attempted_parameter: f64, cause: &SolveError) -> Report {
         let residual = cause.last().map_or(f64::NAN, Iterate::relative_residual);
         Report { residual, ..self.rejected(outcome, attempted_parameter, cause.effort()) }
     }
 
-    /// Report of the state at a new equilibrium, with its probes.
+    /// Makes the report of the state at a new equilibrium, with its probes.
     pub fn arrived(&mut self, next: &State, solved: &Solved) -> Result<Report, StageError> {
         let Self { stage, scene, work, .. } = self;
         let probes = read_probes(scene, work, Configuration::of(next), next.strain_energy_n_mm)
@@ -82,7 +82,7 @@ impl Step<'_> {
         })
     }
 
-    /// After an increment of the parameter that found no equilibrium: a smaller one comes next, if there may be one.
+    /// Ends a step whose increment of the parameter found no equilibrium: a smaller one follows, if it is allowed.
     pub fn cut(&self, attempt: Attempt, cause: SolveError) -> Result<(State, Report), StageError> {
         match attempt.control_after_failure(self.scene, self.state) {
             Some(control) => {
@@ -93,7 +93,7 @@ impl Step<'_> {
         }
     }
 
-    /// The error of a solve that cannot be tried with a smaller increment.
+    /// Makes the error of a solve that cannot be tried with a smaller increment.
     fn stopped(&self, attempt: Attempt, cause: SolveError) -> StageError {
         let state = self.state;
         let (reached, attempted) = (self.shown(state.parameter), self.shown(attempt.target));
@@ -126,7 +126,7 @@ impl Step<'_> {
         let released = energy_released(self.state, &solved);
         let mut next = settle(self.state, &solved);
         let mut report = self.arrived(&next, &solved)?;
-        // A finer mesh lowers the energy a little by itself; a jump passes over an unstable shape.
+        // A finer mesh alone lowers the energy a little; a jump also passes over an unstable shape.
         report.jumped = unstable_on_the_way && is_jump_on_refinement(self.state, released);
         if report.jumped {
             report.energy_released_n_mm = known_release(released);
@@ -138,7 +138,7 @@ impl Step<'_> {
         Ok((next, report))
     }
 
-    /// The error of a refined mesh on which no equilibrium was found.
+    /// Makes the error of a refined mesh on which no equilibrium was found.
     pub fn not_re_equilibrated(&self, cause: SolveError) -> StageError {
         StageError::NotReEquilibrated {
             step: self.state.step,
@@ -149,7 +149,7 @@ impl Step<'_> {
     }
 }
 
-/// The state at a new equilibrium.
+/// Makes the state at a new equilibrium.
 pub(super) fn settle(state: &State, solved: &Solved) -> State {
     State {
         displacement: solved.displacement.clone(),
@@ -164,7 +164,7 @@ pub(super) fn settle(state: &State, solved: &Solved) -> State {
     }
 }
 
-/// The error of a stage that came before what it takes.
+/// Makes the error of a stage that lacks what another stage provides.
 pub(super) fn out_of_order(state: &State, stage: Stage, missing: &'static str) -> StageError {
     StageError::OutOfOrder { step: state.step, stage, after: state.stage.map_or("the start", Stage::name), missing }
 }

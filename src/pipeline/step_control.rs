@@ -1,4 +1,4 @@
-//! Which rotation the next solve tries, and what a failed or jumping one teaches.
+//! Which value of the parameter the next solve attempts, and how a failure or a jump changes that.
 //!
 //! Steps lie on the multiples of the scene's increment, so that runs can be compared point by point. Increments that have
 //! grown end at the points of histories, too.
@@ -21,38 +21,40 @@ use crate::equilibrium::Solved;
 use crate::scene::{Drive, Scene, Stage};
 use crate::state::{Rejection, State, StepControl};
 
-/// Energy that leaves the balance of a step, relative to the strain energy, above which the step jumped. The baseline's
-/// snap releases half of the energy; the trapezoidal rule, by which given motions do work, is off by less than 1e-4 over its
-/// smooth steps of 0.4°. Loads take their strokes from the way of the solve, and only their factors from means. Steps so large
-/// that this is off by more are cut, until it is not.
+/// Relative energy released in a step (not balanced by work, relative to the strain energy) above which the shell
+/// jumped. The baseline's snap releases half of the energy; the trapezoidal rule, by which given motions do work, is
+/// off by less than 1e-4 over its smooth steps of 0.4°. Loads take their strokes from the steps of the solve, and only
+/// their factors from means. Steps so large that this is off by more are cut, until it is not.
 const JUMP_SHARE: f64 = 0.01;
 
-/// The same for re-equilibrating, where a finer mesh lowers the energy by itself: degree 2 on coarse meshes by up to 3
-/// %, the baseline's fold, when the snap continues during refinement, by 6 to 17 %.
+/// Relative energy released in re-equilibrating above which the shell jumped; a finer mesh alone lowers the energy:
+/// degree 2 on coarse meshes by up to 3 %, the baseline's fold, when the snap continues during refinement, by 6 to 17
+/// %.
 const REFINEMENT_JUMP_SHARE: f64 = 0.05;
 
-/// Increments grow after a solve that took no more iterations than this, where the scene says how far. The baseline's quarter
-/// takes 511 factorizations at 0.4° throughout, and 325 and 329 with increments up to 1.6° and 3.2°: `foldline study
-/// pipelines/baseline-quarter.toml --against pipelines/baseline-reference.toml --vary 'load.longest_increment_deg=[0.4, 1.6,
-/// 3.2]'`.
+/// Largest number of iterations after which increments grow, up to the limit that the scene sets. The baseline's
+/// quarter takes 511 factorizations at 0.4° throughout, and 325 and 329 with increments up to 1.6° and 3.2°: `foldline
+/// study pipelines/baseline-quarter.toml --against pipelines/baseline-reference.toml --vary
+/// 'load.longest_increment_deg=[0.4, 1.6, 3.2]'`.
 const EASY: usize = 3;
-/// An increment that has grown is halved after a solve that took more than this: steps of 1.6° up to the baseline's limit point
-/// take 7 iterations and end in a jump, where steps of 3.2° along its fold take 5.
+/// Number of iterations above which an increment that has grown is halved: steps of 1.6° up to the baseline's limit
+/// point take 7 iterations and end in a jump, where steps of 3.2° along its fold take 5.
 const HARD: usize = 6;
 
-/// Rotations closer than this, relative to the increment, are one: multiples of decimal numbers are not exact.
+/// Distance of two values of the parameter, relative to the increment, below which they are equal: multiples of decimal
+/// numbers are not exact.
 const SAME: f64 = 1e-6;
 
 /// A solve to attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attempt {
-    /// Rotation to reach, degrees.
+    /// Value of the scene's parameter to reach.
     pub target: f64,
-    /// Whether a jump on the way is accepted: it is located well enough.
+    /// Whether a jump on the way is accepted because it is located well enough.
     pub may_jump: bool,
 }
 
-/// The solve that follows a state.
+/// Chooses the solve that follows a state.
 pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
     let here = state.parameter;
     let tolerance = scene.snap_tolerance();
@@ -65,7 +67,7 @@ pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
     let multiple = ((here / increment + SAME).floor() + 1.0) * increment;
     let last = scene.load.target();
     let mut target = if multiple > last - SAME * increment { last } else { multiple };
-    // An increment that has grown does not pass over what a history asks for.
+    // An increment that has grown stops at the points of histories.
     if state.drive.control.halvings < 0 {
         let point = scene.next_history_point(here + SAME * scene.load.increment());
         target = point.map_or(target, |point| point.min(target));
@@ -73,17 +75,17 @@ pub fn next_attempt(scene: &Scene, state: &State) -> Attempt {
     Attempt { target, may_jump: target - here <= tolerance }
 }
 
-/// The scene's increment, halved (or where negative, doubled) so many times.
+/// Increment of the scene, halved this many times (or doubled, where negative).
 fn increment_of(scene: &Scene, halvings: i32) -> f64 {
     scene.load.increment() / 2.0_f64.powi(halvings)
 }
 
-/// Whether a rotation is reached, to the rounding of its steps.
+/// Whether a value of the parameter is reached, up to the rounding of steps.
 pub fn has_reached(scene: &Scene, state: &State, parameter: f64) -> bool {
     Drive::of(scene).way_of(state.parameter) >= parameter - SAME * scene.load.increment()
 }
 
-/// The stage that follows a state; `None` where the run has reached its target.
+/// Chooses the stage that follows a state; `None` where the run has reached its target.
 pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
     let has = |stage| scene.pipeline.contains(&stage);
     let evaluated = match state.stage {
@@ -109,8 +111,8 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
     (!has_reached(scene, state, scene.load.target())).then_some(Stage::Solve)
 }
 
-/// Whether an unstable equilibrium is one that a run does not stay on. Along a path only those on a branch that has just
-/// become unstable are: behind a limit point the path itself is what is asked for.
+/// Whether a run leaves the unstable equilibrium of a state. Along a path it leaves only a branch that has just become
+/// unstable: behind a limit point the path itself is asked for.
 fn is_to_be_left(scene: &Scene, state: &State) -> bool {
     let along_path = Drive::of(scene).follows_path();
     let bifurcated = state.drive.path().is_some_and(|path| path.at_bifurcation);
@@ -123,12 +125,12 @@ impl Attempt {
         self.target - state.parameter
     }
 
-    /// Step control after the attempt was taken, in so many iterations.
+    /// Step control after the attempt succeeded in this many iterations.
     pub fn control_after_success(&self, scene: &Scene, before: &StepControl, iterations: usize) -> StepControl {
         let twice = increment_of(scene, before.halvings.saturating_sub(1));
         let may_grow = iterations <= EASY && twice <= scene.load.longest_increment() * (1.0 + SAME);
         let change = if before.jump_beyond.is_some() {
-            // Behind a jump, or a turn that looked like one, an increment that had grown was too large.
+            // After a jump, or a turn that looked like one, an increment that had grown was too large.
             before.halvings.min(0).saturating_neg()
         } else if before.halvings > 0 || may_grow {
             -1
@@ -161,25 +163,25 @@ impl Attempt {
     }
 }
 
-/// Work of loads, given motions and changes of the natural state, from a state to an equilibrium, that did not go into strain
-/// energy, N·mm.
+/// Energy released from a state to an equilibrium, N·mm: work of loads, given motions and changes of the natural state
+/// that did not go into strain energy.
 pub fn energy_released(state: &State, solved: &Solved) -> f64 {
     solved.balance.dissipated(state.strain_energy_n_mm)
 }
 
-/// Energy that left the balance, where it can be right: what a shell releases is never negative, so that what is comes from the
-/// means that work is formed with, or from loads whose work depends on a way that the solve did not take.
+/// Energy released, N·mm, where it is known: a shell never releases a negative energy, and a negative value comes from
+/// the means that work is formed with, or from loads whose work depends on the path of the shell.
 pub fn known_release(released: f64) -> Option<f64> {
     (released >= 0.0).then_some(released)
 }
 
-/// Whether energy that left the balance says that the shell jumped.
+/// Whether the energy released shows that the shell jumped.
 pub fn is_jump(released: f64, before: f64, after: f64) -> bool {
     released.abs() > JUMP_SHARE * before.max(after)
 }
 
-/// The same for energy that re-equilibrating on a finer mesh took out: more than any mesh does, or than this one was expected
-/// to.
+/// Whether the energy released in re-equilibrating on a finer mesh shows that the shell jumped: it is more than
+/// refining any mesh releases, or than this one was expected to.
 pub fn is_jump_on_refinement(state: &State, released: f64) -> bool {
     let share = |expected: f64| expected.max(JUMP_SHARE * state.strain_energy_n_mm);
     let expected = state.refinement.and_then(|refinement| refinement.expected_n_mm).map(share);
@@ -318,7 +320,7 @@ mod tests {
         for iterations in [3, 3, 3, 3, 3, 4, 6, 7, 7, 7, 7] {
             let attempt = next_attempt(&scene, &state);
             let multiple = attempt.target / 0.2;
-            assert!((multiple - multiple.round()).abs() < 1e-9, "steps are multiples of the increment in hand");
+            assert!((multiple - multiple.round()).abs() < 1e-9, "steps are multiples of the current increment");
             state = at(attempt.target, attempt.control_after_success(&scene, &state.drive.control, iterations));
             sizes.push(0.4 / 2.0_f64.powi(state.drive.control.halvings));
         }

@@ -1,11 +1,11 @@
-//! What batches of four points share, whatever their energy depends on: numbers of four points in and out of vectors.
+//! What all batches of four points share: moving the numbers of four points into vectors and back.
 
 use super::free_strain::FreeStrain;
 use super::lane_vector::dot;
 use super::lanes::FourLanes;
 use super::point::PointReference;
 
-/// Numbers of the four points.
+/// One number for each of the four points.
 pub(crate) type Four = [f64; 4];
 
 /// Gradients: `[k][c][point]`, k over the vectors that the energy depends on, c over x, y, z.
@@ -16,10 +16,10 @@ pub(crate) type BatchHessian<const SIZE: usize> = [[Four; SIZE]; SIZE];
 
 /// Four points whose energy depends on the first `ROWS` of u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂; `SIZE` is 3 `ROWS`.
 pub(crate) trait PointKernel<const ROWS: usize, const SIZE: usize> {
-    /// Energies for derivatives of the displacement, where the shell has a free strain if there is one.
+    /// Computes the energies for derivatives of the displacement, under a free strain if there is one.
     fn energy<V: FourLanes>(&self, proof: V::Proof, u: &[[V; 3]; ROWS], free: Option<&FreeStrain>) -> V;
 
-    /// Energies, and their gradients.
+    /// Computes the energies and their gradients.
     fn gradient<V: FourLanes>(
         &self,
         proof: V::Proof,
@@ -28,7 +28,7 @@ pub(crate) trait PointKernel<const ROWS: usize, const SIZE: usize> {
         gradient: &mut BatchGradient<ROWS>,
     ) -> V;
 
-    /// Energies, gradients and Hessians.
+    /// Computes the energies, gradients and Hessians.
     fn hessian<V: FourLanes>(
         &self,
         proof: V::Proof,
@@ -39,23 +39,23 @@ pub(crate) trait PointKernel<const ROWS: usize, const SIZE: usize> {
     ) -> V;
 }
 
-/// A number of each point; the last stands for those that are missing.
+/// Collects one number of each point; the last point is repeated for those that are missing.
 pub(super) fn lanes_of(points: &[PointReference], number: impl Fn(&PointReference) -> f64) -> Four {
     std::array::from_fn(|lane| number(&points[lane.min(points.len() - 1)]))
 }
 
-/// A stiffness of each point; those that are missing have none.
+/// Collects one stiffness of each point; it is 0 for those that are missing.
 pub(super) fn stiffness_of(points: &[PointReference], number: impl Fn(&PointReference) -> f64) -> Four {
     std::array::from_fn(|lane| points.get(lane).map_or(0.0, &number))
 }
 
-/// Strains (11, 22, 12 with engineering shear) by A₁ = l e₁ and A₂ = m e₁ + n e₂ from those by e₁ and e₂.
+/// Converts strains (11, 22, 12 with engineering shear) to those by A₁ = l e₁ and A₂ = m e₁ + n e₂ from those by e₁ and e₂.
 #[inline(always)]
 pub(super) fn covariant<V: FourLanes>([l, m, n]: [V; 3], two: V, [x, y, z]: [V; 3]) -> [V; 3] {
     [l * l * x, m * m * x + n * n * y + m * n * z, two * l * m * x + l * n * z]
 }
 
-/// a_i·a_j − A_i·A_j.
+/// Computes a_i·a_j − A_i·A_j.
 #[inline(always)]
 pub(super) fn stretch<V: FourLanes, const ROWS: usize>(
     reference: &[[V; 3]; ROWS],
@@ -66,7 +66,7 @@ pub(super) fn stretch<V: FourLanes, const ROWS: usize>(
     dot(reference[i], u[j]) + dot(u[i], reference[j]) + dot(u[i], u[j])
 }
 
-/// Stores a block and its mirror image.
+/// Stores a block and its transpose.
 #[inline(always)]
 pub(super) fn put<V: FourLanes, const SIZE: usize>(
     hessian: &mut BatchHessian<SIZE>,

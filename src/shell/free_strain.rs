@@ -6,9 +6,9 @@
 //!
 //! w = ½ ∫ (ε + z κ − e)·Q (ε + z κ − e) dz = ½ x·S x − x·(N, M) + ½ ∫ e·Q e dz
 //!
-//! for x = (ε, κ), S made of A, B and D, N = ∫ Q e dz and M = ∫ Q e z dz. It is formed as
-//! ½ (x − x̂)·S (x − x̂) + ½ (∫ e·Q e dz − x̂·S x̂) with the free strain x̂ = S⁻¹ (N, M), in which nothing cancels where the
-//! shell is free of stress. The last part is the energy that layers of different expansion keep in each other.
+//! for x = (ε, κ), S made of A, B and D, N = ∫ Q e dz and M = ∫ Q e z dz. It is formed as ½ (x − x̂)·S (x − x̂) + ½ (∫ e·Q
+//! e dz − x̂·S x̂) with the free strain x̂ = S⁻¹ (N, M), in which nothing cancels where the shell is free of stress. The
+//! last part is the energy that layers of different expansion lock in each other.
 //!
 //! Over a curved surface a free strain ε̂ changes the curvature as well: equal expansion makes a cylinder of radius R one
 //! of (1 + ε̂) R with the same angle. b grows as a length and κ = B − b is −ε̂ B. It is taken here as κ̂ = −½ (ε̂ B + B ε̂) for
@@ -23,12 +23,12 @@ use crate::shell::material::{heights, ply_stiffness, shell_stiffness};
 pub struct FreeStrain {
     /// ε₁₁, ε₂₂, 2ε₁₂.
     pub membrane: [f64; 3],
-    /// κ₁₁, κ₂₂, 2κ₁₂ beside what follows from `membrane` on a curved surface, 1/mm.
+    /// κ₁₁, κ₂₂, 2κ₁₂ in addition to what follows from `membrane` on a curved surface, 1/mm.
     pub bending: [f64; 3],
 }
 
-/// Free strain by one kelvin, and the energy that layers keep in each other by it, N·mm per mm², which grows as the square
-/// of the temperature. `None` where the material says nothing of its expansion.
+/// Computes the free strain per kelvin, and the energy that layers of different expansion lock in each other at one kelvin,
+/// N·mm per mm², which grows with the square of the temperature. Returns `None` where the material has no expansion.
 pub fn thermal_strain(material: &Material) -> Option<(FreeStrain, f64)> {
     let even = |membrane: [f64; 3]| (FreeStrain { membrane, bending: [0.0; 3] }, 0.0);
     match material {
@@ -67,12 +67,12 @@ fn of_layers(material: &Material, plies: &[Ply], offset_mm: f64) -> Option<(Free
     let strain = solve(whole, forces);
     let free = 0.5 * strain.iter().zip(&forces).map(|(x, force)| x * force).sum::<f64>();
     let [e1, e2, shear, k1, k2, twist] = strain;
-    // Layers that expand alike keep nothing but rounding.
+    // Between layers that expand alike only rounding is left.
     let locked = if energy - free > 1e-12 * energy { energy - free } else { 0.0 };
     Some((FreeStrain { membrane: [e1, e2, shear], bending: [k1, k2, twist] }, locked))
 }
 
-/// Strains (11, 22, 12 with engineering shear) of a free layer by one kelvin in the surface's axes (Reddy, eq. 2.3.23).
+/// Strains (11, 22, 12 with engineering shear) of a free layer per kelvin in the surface's axes (Reddy, eq. 2.3.23).
 fn expansion(law: &OrthotropicLaw, angle_deg: f64) -> Option<[f64; 3]> {
     let [along, across] = law.expansion_per_k()?;
     let (s, c) = angle_deg.to_radians().sin_cos();

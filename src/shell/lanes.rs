@@ -1,4 +1,4 @@
-//! Several numbers that are worked on at once: one per quadrature point, or one per basis function.
+//! Vectors of several numbers that a processor works on at once: one per quadrature point, or one per basis function.
 //!
 //! Kernels are written once, for any [`Lanes`]; a build of them is the choice of two types. Every operation rounds
 //! lane by lane as IEEE 754 says, so that builds with the same [`Lanes::mul_add`] give the same bits whatever their
@@ -12,32 +12,32 @@ use std::ops::{Add, Div, Mul, Sub};
 pub(crate) trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// That the processor has the instructions.
+    /// A proof that the processor has the instructions.
     type Proof: Copy;
-    /// The same numbers in memory.
+    /// The array that holds the numbers in memory.
     type Array: Copy + AsRef<[f64]>;
-    /// How many.
+    /// Number of lanes.
     const WIDTH: usize;
 
-    /// All lanes alike.
+    /// Creates a vector with the same value in every lane.
     fn splat(proof: Self::Proof, value: f64) -> Self;
-    /// From memory.
+    /// Loads a vector from memory.
     fn load(proof: Self::Proof, from: &Self::Array) -> Self;
-    /// To memory.
+    /// Stores the vector in memory.
     fn store(self, to: &mut Self::Array);
-    /// `self · b + c`, rounded once where the build has such an instruction, twice otherwise.
+    /// Computes `self · b + c`, rounded once where the build has such an instruction, twice otherwise.
     fn mul_add(self, b: Self, c: Self) -> Self;
-    /// Square roots.
+    /// Computes the square root of every lane.
     fn sqrt(self) -> Self;
-    /// A slice as whole vectors, without the rest.
+    /// Splits a slice into whole vectors; a remainder is left out.
     fn chunks(slice: &[f64]) -> &[Self::Array];
-    /// The same, to be written.
+    /// Splits a mutable slice into whole vectors; a remainder is left out.
     fn chunks_mut(slice: &mut [f64]) -> &mut [Self::Array];
 }
 
-/// Four lanes.
+/// Vectors of four lanes.
 pub(crate) trait FourLanes: Lanes<Array = [f64; 4]> {
-    /// Sum over each of four vectors, (x₀ + x₁) + (x₂ + x₃), as one.
+    /// Sums the lanes of each of four vectors, (x₀ + x₁) + (x₂ + x₃), into one vector of the four sums.
     fn sums(vectors: [Self; 4]) -> Self;
 }
 

@@ -5,29 +5,29 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use super::lanes::{FourLanes, Lanes};
 
-/// That the processor has AVX2 and FMA.
+/// A proof that the processor has AVX2 and FMA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct HasFma(());
 
-/// That the processor has AVX-512F, AVX-512VL and what [`HasFma`] says.
+/// A proof that the processor has AVX-512F and AVX-512VL, in addition to what [`HasFma`] proves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct HasAvx512(HasFma);
 
 impl HasFma {
-    /// Asks the processor.
+    /// Asks the processor; returns `None` where it lacks the instructions.
     pub(crate) fn detect() -> Option<Self> {
         (is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")).then_some(Self(()))
     }
 }
 
 impl HasAvx512 {
-    /// Asks the processor.
+    /// Asks the processor; returns `None` where it lacks the instructions.
     pub(crate) fn detect() -> Option<Self> {
         let fma = HasFma::detect()?;
         (is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl")).then_some(Self(fma))
     }
 
-    /// The smaller set.
+    /// Returns the proof for the smaller set of instructions.
     pub(crate) fn fma(self) -> HasFma {
         self.0
     }

@@ -7,15 +7,16 @@ use crate::shell::{cross, dot};
 /// (2ε₁₂, 2κ₁₂): w = ½ ε·membrane·ε + ½ κ·bending·κ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShellStiffness {
-    /// N/mm times parameter units.
+    /// Membrane stiffness, N/mm times parameter units.
     pub membrane: [[f64; 3]; 3],
-    /// N·mm times parameter units.
+    /// Bending stiffness, N·mm times parameter units.
     pub bending: [[f64; 3]; 3],
-    /// ε·coupling·κ is part of the energy as well, N times parameter units; `None` where the layers are symmetric.
+    /// Stiffness that couples both, by the energy ε·coupling·κ, N times parameter units; `None` where the layers are
+    /// symmetric.
     pub coupling: Option<[[f64; 3]; 3]>,
 }
 
-/// Stiffness at a point with reference tangents A₁, A₂.
+/// Computes the stiffness of a material at a point with reference tangents A₁, A₂.
 pub fn shell_stiffness(material: &Material, tangents: [[f64; 3]; 2]) -> ShellStiffness {
     match material {
         Material::Isotropic { youngs_modulus_mpa, poissons_ratio, thickness_mm, offset_mm, .. } => {
@@ -30,8 +31,8 @@ pub fn shell_stiffness(material: &Material, tangents: [[f64; 3]; 2]) -> ShellSti
 }
 
 impl ShellStiffness {
-    /// Of a shell without coupling, from a surface at an offset from the one that it was formed for: at the old one the
-    /// strain is ε − offset κ.
+    /// Refers the stiffness of a shell without coupling to a surface at an offset from the one that it was formed for, at
+    /// which the strain is ε − offset κ.
     fn seen_from(self, offset: f64) -> Self {
         if offset == 0.0 {
             return self;
@@ -79,7 +80,7 @@ fn layered(plies: &[Ply], offset: f64, tangents: [[f64; 3]; 2]) -> ShellStiffnes
         largest = largest.max(stiffness[0][0].max(stiffness[1][1]));
     }
     let map = cartesian_strains(tangents);
-    // Symmetric layers cancel to rounding.
+    // The couplings of symmetric layers cancel, up to rounding.
     let coupled = coupling.iter().flatten().any(|value| value.abs() > 1e-12 * largest * total * total);
     ShellStiffness {
         membrane: turned(&membrane, &map),
@@ -125,7 +126,7 @@ fn cartesian_strains(tangents: [[f64; 3]; 2]) -> [[f64; 3]; 3] {
     ]
 }
 
-/// Mapᵀ · stiffness · map.
+/// Computes mapᵀ · stiffness · map.
 fn turned(stiffness: &[[f64; 3]; 3], map: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|i| {
         [0, 1, 2].map(|j| (0..3).map(|k| (0..3).map(|l| map[k][i] * stiffness[k][l] * map[l][j]).sum::<f64>()).sum())

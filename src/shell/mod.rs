@@ -2,13 +2,13 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `vector` | three numbers |
+//! | `vector` | vectors of three components |
 //! | `material` | from a material to a quadratic form of the strains |
 //! | `free_strain` | strains without forces |
 //! | `quadrature` | Gauss–Legendre rules |
 //! | `point` | a point: energy, gradient, Hessian |
 //! | `lanes`, `lanes_x86` | several numbers at once |
-//! | `lane_vector` | vectors of them |
+//! | `lane_vector` | vectors whose components are such lanes |
 //! | `batch` | four points at once: what both kinds share |
 //! | `point_batch`, `stretching_batch` | bending and stretching; stretching alone |
 

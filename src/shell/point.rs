@@ -25,30 +25,30 @@ pub type Hessian = [[f64; 16]; 15];
 /// The undeformed shell at a quadrature point.
 #[derive(Clone, Copy, Debug)]
 pub struct PointReference {
-    /// A₁, A₂, A₁₁, A₂₂, A₁₂.
+    /// Derivatives A₁, A₂, A₁₁, A₂₂, A₁₂ of the undeformed surface.
     pub(super) derivatives: [[f64; 3]; 5],
-    /// A₁ × A₂.
+    /// Cross product A₁ × A₂.
     pub(super) cross: [f64; 3],
-    /// |A₁ × A₂|: area per parameter area.
+    /// Area per parameter area, |A₁ × A₂|.
     pub(super) area: f64,
-    /// Membrane stiffness times the area that the point stands for.
+    /// Membrane stiffness times the area of the point.
     pub(super) membrane: [[f64; 3]; 3],
-    /// Bending stiffness times the area that the point stands for.
+    /// Bending stiffness times the area of the point.
     pub(super) bending: [[f64; 3]; 3],
-    /// Coupling stiffness times that area; zero unless `coupled`.
+    /// Coupling stiffness times the area of the point; zero unless `coupled`.
     pub(super) coupling: [[f64; 3]; 3],
     /// Whether the layers are not symmetric, so that membrane and bending strains act on each other.
     pub(super) coupled: bool,
-    /// Strains without energy.
+    /// Strains that have no energy.
     free: Strains,
 }
 
 /// Strains at a point in the parameter basis, order (11, 22, 12), engineering shear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strains {
-    /// ε₁₁, ε₂₂, 2ε₁₂.
+    /// Membrane strains ε₁₁, ε₂₂, 2ε₁₂.
     pub membrane: [f64; 3],
-    /// κ₁₁, κ₂₂, 2κ₁₂.
+    /// Changes of curvature κ₁₁, κ₂₂, 2κ₁₂.
     pub bending: [f64; 3],
 }
 
@@ -61,7 +61,7 @@ struct Deformed {
 }
 
 impl PointReference {
-    /// Reference point; `weight` is the quadrature weight in parameter area.
+    /// Creates a point from the derivatives A₁, A₂, A₁₁, A₂₂, A₁₂; `weight` is the quadrature weight in parameter area.
     pub fn new(derivatives: [[f64; 3]; 5], material: &Material, weight: f64) -> Self {
         let stiffness = shell_stiffness(material, [derivatives[0], derivatives[1]]);
         let normal = cross(derivatives[0], derivatives[1]);
@@ -79,7 +79,7 @@ impl PointReference {
         }
     }
 
-    /// The same point where the shell has a free strain; the energy that layers keep in each other is left out.
+    /// Returns the point of a shell that has a free strain; the energy that layers lock in each other is left out.
     pub fn under(self, free: &FreeStrain) -> Self {
         let [a1, a2, ..] = self.derivatives;
         let unit = scaled(1.0 / self.area, self.cross);
@@ -104,17 +104,17 @@ impl PointReference {
         Self { free: Strains { membrane: covariant(free.membrane), bending: covariant(bending) }, ..self }
     }
 
-    /// The same point without stiffness against stretching.
+    /// Returns the point without its stiffness against stretching.
     pub fn bending_alone(self) -> Self {
         Self { membrane: [[0.0; 3]; 3], ..self }
     }
 
-    /// The same point without stiffness against bending.
+    /// Returns the point without its stiffness against bending.
     pub fn stretching_alone(self) -> Self {
         Self { bending: [[0.0; 3]; 3], ..self }
     }
 
-    /// |A₁|, |A₂|: lengths per parameter.
+    /// Lengths per parameter, |A₁| and |A₂|.
     pub fn tangent_lengths(&self) -> [f64; 2] {
         [norm(self.derivatives[0]), norm(self.derivatives[1])]
     }
@@ -130,25 +130,25 @@ impl PointReference {
         mean.abs() + (mean * mean - gauss).max(0.0).sqrt()
     }
 
-    /// Strains for derivatives u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂ of the displacement.
+    /// Computes the strains for derivatives u,₁ u,₂ u,₁₁ u,₂₂ u,₁₂ of the displacement.
     pub fn strains(&self, u: &[[f64; 3]; 5]) -> Strains {
         self.deform(u).strains
     }
 
-    /// Strain energy of the point.
+    /// Computes the strain energy of the point, N·mm.
     pub fn energy(&self, u: &[[f64; 3]; 5]) -> f64 {
         let (energy, _, _) = self.resultants(&self.deform(u).strains);
         energy
     }
 
-    /// Strain energy and its gradient.
+    /// Computes the strain energy of the point and its gradient.
     pub fn gradient(&self, u: &[[f64; 3]; 5]) -> (f64, Gradient) {
         let deformed = self.deform(u);
         let (energy, forces, moments) = self.resultants(&deformed.strains);
         (energy, gradient_of(&deformed, forces, moments))
     }
 
-    /// Strain energy, gradient and Hessian (into `hessian`).
+    /// Computes the strain energy of the point and its gradient, and writes the Hessian into `hessian`.
     pub fn hessian(&self, u: &[[f64; 3]; 5], hessian: &mut Hessian) -> (f64, Gradient) {
         let deformed = self.deform(u);
         let (energy, forces, moments) = self.resultants(&deformed.strains);
@@ -195,7 +195,7 @@ impl PointReference {
     }
 }
 
-/// Moments times the vectors that they multiply in Σ m b: (m₁₁, m₂₂, 2 m₁₂).
+/// Moments as they multiply b in Σ m b: (m₁₁, m₂₂, 2 m₁₂).
 fn weighted_moments(moments: [f64; 3]) -> [f64; 3] {
     [moments[0], moments[1], 2.0 * moments[2]]
 }

@@ -1,5 +1,5 @@
-//! Energy, gradient and Hessian of four points at once: the formulas of [`PointReference`], which is the slow way that
-//! this one is compared with, with the products of the Hessian's blocks written out.
+//! Energy, gradient and Hessian of four points at once: the formulas of [`PointReference`], the slow path that this one is
+//! compared with, with the products of the Hessian's blocks written out.
 //!
 //! With x_αi = ∂b_i/∂a_α (x_1i = a₂ × v_i, x_2i = v_i × a₁, v_i = (a_i − (a_i·n) n)/J, i over 11, 22, 12), D the bending
 //! stiffness with its shear rows and columns doubled, z_m = Σ_i D_im v_i, m the moments (the last doubled), M = Σ m a_i,
@@ -19,22 +19,21 @@ use super::lane_vector::{accumulate, add, combination, cross, dot, outer, scaled
 use super::lanes::FourLanes;
 use super::point::PointReference;
 
-/// The undeformed shell at four quadrature points; where fewer are left, the last stands for the rest, without
-/// stiffness.
+/// The undeformed shell at four quadrature points; where there are fewer, the last is repeated without stiffness.
 #[derive(Clone, Debug)]
 pub struct PointBatch {
     derivatives: [[Four; 3]; 5],
     cross: [Four; 3],
     area: Four,
     membrane: [[Four; 3]; 3],
-    /// With the shear row and column doubled: on b₁₁, b₂₂, b₁₂.
+    /// Bending stiffness with the shear row and column doubled: it acts on b₁₁, b₂₂, b₁₂.
     bending: [[Four; 3]; 3],
-    /// With the shear column doubled; `None` where bending and stretching do not act on each other.
+    /// Coupling stiffness with the shear column doubled; `None` where bending and stretching do not act on each other.
     coupling: Option<Box<[[Four; 3]; 3]>>,
 }
 
 impl PointBatch {
-    /// Packs one to four points.
+    /// Packs one to four points into a batch.
     pub fn new(points: &[PointReference]) -> Self {
         let gather = |number: &dyn Fn(&PointReference) -> f64| lanes_of(points, number);
         let stiffness = |number: &dyn Fn(&PointReference) -> f64| stiffness_of(points, number);
@@ -304,9 +303,9 @@ impl<V: FourLanes> Deformed<V> {
 /// Energy and its derivatives by the strains, times the areas of the points.
 struct Resultants<V> {
     energy: V,
-    /// By ε₁₁, ε₂₂, 2ε₁₂.
+    /// Derivatives of the energy by ε₁₁, ε₂₂, 2ε₁₂.
     forces: [V; 3],
-    /// By κ₁₁, κ₂₂, κ₁₂.
+    /// Derivatives of the energy by κ₁₁, κ₂₂, κ₁₂.
     moments: [V; 3],
     /// M = Σ m a_αβ.
     sum: [V; 3],
@@ -326,7 +325,7 @@ fn gradient_of<V: FourLanes>(proof: V::Proof, d: &Deformed<V>, r: &Resultants<V>
     }
 }
 
-/// Σ ∂ε B ∂κ and its mirror image, where ∂κ_j/∂a_α = −x_αj and ∂κ_j/∂a_j = −n.
+/// Adds Σ ∂ε B ∂κ and its transpose, where ∂κ_j/∂a_α = −x_αj and ∂κ_j/∂a_j = −n.
 #[inline(always)]
 fn add_coupling<V: FourLanes>(
     proof: V::Proof,
@@ -356,7 +355,7 @@ fn add_coupling<V: FourLanes>(
     }
 }
 
-/// Adds a block and its mirror image.
+/// Adds a block and its transpose.
 #[inline(always)]
 fn add_both<V: FourLanes>(proof: V::Proof, hessian: &mut BatchHessian<15>, k: usize, l: usize, block: &[[V; 3]; 3]) {
     for c in 0..3 {

@@ -1,6 +1,7 @@
 //! Gauss–Legendre quadrature on [−1, 1].
 
-/// Nodes and weights of the rule with `count` points, ascending; exact for polynomials of degree 2 count − 1.
+/// Computes nodes (ascending) and weights of the Gauss–Legendre rule with `count` points, exact for polynomials of degree 2
+/// count − 1.
 pub fn gauss_legendre(count: usize) -> Vec<[f64; 2]> {
     let mut rule: Vec<[f64; 2]> = (0..count)
         .map(|i| {
@@ -18,7 +19,7 @@ pub fn gauss_legendre(count: usize) -> Vec<[f64; 2]> {
     rule
 }
 
-/// Legendre polynomial and its derivative by the three-term recurrence.
+/// Computes a Legendre polynomial and its derivative by the three-term recurrence.
 fn legendre(degree: usize, x: f64) -> (f64, f64) {
     let (mut before, mut value) = (1.0, x);
     for k in 2..=degree {

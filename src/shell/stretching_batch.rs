@@ -9,8 +9,7 @@ use super::lane_vector::{accumulate, add, cross, dot, outer, scaled, sub};
 use super::lanes::FourLanes;
 use super::point::PointReference;
 
-/// The undeformed shell at four quadrature points; where fewer are left, the last stands for the rest, without
-/// stiffness.
+/// The undeformed shell at four quadrature points; where there are fewer, the last is repeated without stiffness.
 #[derive(Clone, Debug)]
 pub struct StretchingBatch {
     tangents: [[Four; 3]; 2],
@@ -18,7 +17,7 @@ pub struct StretchingBatch {
 }
 
 impl StretchingBatch {
-    /// Packs one to four points.
+    /// Packs one to four points into a batch.
     pub fn new(points: &[PointReference]) -> Self {
         Self {
             tangents: std::array::from_fn(|k| {
@@ -53,7 +52,7 @@ impl StretchingBatch {
 
 /// The deformed points.
 struct Stretched<V> {
-    /// a₁, a₂.
+    /// Tangents a₁, a₂ of the deformed surface.
     tangents: [[V; 3]; 2],
     /// Derivatives of the energy by ε₁₁, ε₂₂, 2ε₁₂.
     forces: [V; 3],

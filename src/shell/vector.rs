@@ -1,4 +1,4 @@
-//! Three numbers as a vector: what kernels need, and nothing more.
+//! Algebra of vectors of three components, as far as kernels need it.
 
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

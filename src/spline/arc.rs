@@ -12,7 +12,7 @@ pub const WIDEST_SEGMENT: f64 = 150.0 * std::f64::consts::PI / 180.0;
 /// A rational curve in a plane: open knots and homogeneous control points (u w, v w, w).
 #[derive(Clone, Debug, PartialEq)]
 pub struct HomogeneousCurve {
-    /// Degree.
+    /// Polynomial degree.
     pub degree: usize,
     /// Open knot vector on [0, 1].
     pub knots: Vec<f64>,
@@ -20,13 +20,13 @@ pub struct HomogeneousCurve {
     pub points: Vec<[f64; 3]>,
 }
 
-/// Line from (0, 0) to (length, 0), parametrised by arc length.
+/// Builds the line from (0, 0) to (length, 0), parametrised by arc length.
 pub fn straight_line(length: f64, degree: usize) -> HomogeneousCurve {
     let points = raise(&[[0.0, 0.0, 1.0], [length, 0.0, 1.0]], degree);
     HomogeneousCurve { degree, knots: joint_knots(1, degree), points }
 }
 
-/// Arc of the circle about the origin from angle `from` to `to` (radians, measured from the v axis towards u):
+/// Builds the arc of the circle about the origin from angle `from` to `to` (radians, measured from the v axis towards u):
 /// the point at angle φ is (R sin φ, R cos φ).
 pub fn circular_arc(radius: f64, from: f64, to: f64, degree: usize) -> HomogeneousCurve {
     let segments = segment_count(to - from);
@@ -46,7 +46,7 @@ pub fn circular_arc(radius: f64, from: f64, to: f64, degree: usize) -> Homogeneo
     HomogeneousCurve { degree, knots: joint_knots(segments, degree), points }
 }
 
-/// Segments that an arc of this sweep (radians) is built from.
+/// Number of segments that an arc of this sweep (radians) is built from.
 pub fn segment_count(sweep: f64) -> usize {
     if sweep <= WIDEST_SEGMENT { 1 } else { (sweep / (WIDEST_SEGMENT * 0.8)).ceil() as usize }
 }

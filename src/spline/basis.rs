@@ -1,10 +1,10 @@
 //! B-spline basis functions and their first two derivatives (NURBS Book, A2.1 and A2.3).
 
-/// Polynomial degrees that the program handles: C¹ needs 2, and kernels are built up to 5.
+/// Polynomial degrees that the program handles: at least 2, for C¹ continuity, and at most 5, for which kernels are built.
 pub const DEGREES: std::ops::RangeInclusive<usize> = 2..=MAX_DEGREE;
 const MAX_DEGREE: usize = 5;
 
-/// Index s of the knot span with `knots[s] ≤ parameter < knots[s + 1]`; the last non-empty span at the end.
+/// Finds the index s of the knot span with `knots[s] ≤ parameter < knots[s + 1]`, or of the last non-empty span at the end.
 /// `knots` is open, of degree `degree`, and `parameter` lies within it.
 pub fn find_span(knots: &[f64], degree: usize, parameter: f64) -> usize {
     let last = knots.len() - degree - 2;
@@ -19,7 +19,7 @@ pub fn find_span(knots: &[f64], degree: usize, parameter: f64) -> usize {
 pub struct Spans {
     /// Span index s of each element; its basis functions are s − degree ..= s.
     pub index: Vec<usize>,
-    /// Ends of each element in the parameter.
+    /// Parameters at both ends of each element.
     pub bounds: Vec<[f64; 2]>,
 }
 
@@ -42,7 +42,7 @@ pub fn basis_derivatives_len(degree: usize) -> usize {
     3 * (degree + 1)
 }
 
-/// Values, first and second derivatives of the degree + 1 basis functions that live on knot span `span`.
+/// Computes values, first and second derivatives of the degree + 1 basis functions that do not vanish on knot span `span`.
 /// `out[k * (degree + 1) + a]` is the k-th derivative of function span − degree + a.
 pub fn basis_derivatives(knots: &[f64], degree: usize, span: usize, parameter: f64, out: &mut [f64]) {
     let count = degree + 1;

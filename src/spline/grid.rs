@@ -1,9 +1,9 @@
-//! Numbers of what stands in rows and columns: the control points and the elements of a tensor-product surface.
+//! Numbering of what is arranged in rows and columns: the control points and the elements of a tensor-product surface.
 
 /// A grid that is numbered with the second direction fastest: place (i₁, i₂) has the number i₁ n₂ + i₂.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
-    /// How many each way.
+    /// Number of places in each direction.
     pub counts: [usize; 2],
 }
 
@@ -23,27 +23,27 @@ impl Grid {
         self.len() == 0
     }
 
-    /// The number of a place.
+    /// Number of the place (i₁, i₂).
     pub fn index(self, [i1, i2]: [usize; 2]) -> usize {
         i1 * self.counts[1] + i2
     }
 
-    /// The place of a number.
+    /// Place (i₁, i₂) that has a number.
     pub fn place(self, index: usize) -> [usize; 2] {
         [index / self.counts[1], index % self.counts[1]]
     }
 
-    /// The number of the place `along` in `direction`, and `across` in the other.
+    /// Number of the place with index `along` in `direction` and `across` in the other one.
     pub fn index_along(self, direction: usize, along: usize, across: usize) -> usize {
         self.index(if direction == 0 { [along, across] } else { [across, along] })
     }
 
-    /// The numbers of all places that stand `along` in `direction`, in the order of the other.
+    /// Numbers of all places with index `along` in `direction`, in the order of the other direction.
     pub fn line(self, direction: usize, along: usize) -> impl DoubleEndedIterator<Item = usize> + ExactSizeIterator {
         (0..self.counts[1 - direction]).map(move |across| self.index_along(direction, along, across))
     }
 
-    /// The numbers of `size` places each way from `first` on, with the second direction fastest.
+    /// Numbers of the block of `size` places that begins at `first`, with the second direction fastest.
     pub fn window(self, first: [usize; 2], size: [usize; 2]) -> impl Iterator<Item = usize> {
         let inner = Self::new(size);
         (0..inner.len()).map(move |k| {
@@ -52,7 +52,7 @@ impl Grid {
         })
     }
 
-    /// All numbers with the first direction fastest.
+    /// All numbers, ordered with the first direction fastest.
     pub fn first_fastest(self) -> impl Iterator<Item = usize> {
         (0..self.counts[1]).flat_map(move |i2| self.line(1, i2))
     }

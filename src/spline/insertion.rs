@@ -26,8 +26,8 @@ pub fn insert_knots(knots: &[f64], degree: usize, data: &[f64], width: usize, ne
     (knots, rows)
 }
 
-/// [`insert_knots`] for control points of `N` numbers each on a tensor-product net of `counts` points (second
-/// direction fastest), along `direction` 0 or 1.
+/// Inserts knots, as [`insert_knots`] does, for control points of `N` numbers each on a tensor-product net of `counts`
+/// points (second direction fastest), along `direction` 0 or 1.
 pub fn insert_knots_into_net<const N: usize>(
     knots: &[f64],
     degree: usize,

@@ -1,52 +1,53 @@
 //! Whether a sequence of numbers is a knot vector that a surface can have.
 
-/// Why numbers are not a knot vector.
+/// Reasons why a sequence of numbers is not a knot vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum KnotFlaw {
-    /// Fewer than two times degree + 1.
+    /// There are fewer than 2 (degree + 1) knots.
     Few {
-        /// Knots that the degree takes at least.
+        /// Smallest number of knots for the degree.
         least: usize,
     },
-    /// NaN or an infinity.
+    /// A knot is NaN or infinite.
     NotFinite {
-        /// Place in the sequence.
+        /// Index of the knot in the sequence.
         index: usize,
     },
-    /// A knot smaller than the one before it.
+    /// A knot is smaller than the one before it.
     Descending {
-        /// Place of the second in the sequence.
+        /// Index of the smaller knot in the sequence.
         index: usize,
     },
-    /// Two neighbours that differ by less than they may.
+    /// Two successive knots differ by less than they may.
     TooNear {
-        /// The knots.
+        /// The two knots.
         pair: [f64; 2],
-        /// Their difference as a share of the range.
+        /// Difference of the two, relative to the range of all knots.
         share: f64,
     },
-    /// The first or the last knot does not stand degree + 1 times: the vector is not open (clamped).
+    /// The first or the last knot is not repeated degree + 1 times: the vector is not open (clamped).
     NotClamped {
-        /// The knot.
+        /// Value of the knot.
         knot: f64,
-        /// How often it stands.
+        /// Multiplicity of the knot.
         times: usize,
     },
-    /// A knot inside stands more often than the degree, so that the surface is torn.
+    /// An interior knot has a multiplicity above the degree, so that the surface is torn.
     Tears {
-        /// The knot.
+        /// Value of the knot.
         knot: f64,
-        /// How often it stands.
+        /// Multiplicity of the knot.
         times: usize,
     },
 }
 
-/// Checks that knots are finite, ascend, stand degree + 1 times at both ends and no more often than the degree inside, and that
-/// neighbours are equal or differ by `least_gap` of the range.
+/// Checks that knots are finite and ascend, have multiplicity degree + 1 at both ends and at most the degree inside, and
+/// that successive ones are equal or differ by at least `least_gap` of the range.
 ///
 /// # Errors
-/// The first flaw, in that order but for the last, which comes before multiplicities: knots that are nearly equal are most
-/// likely meant to be so.
+/// The first flaw, in that order, except that gaps are checked before multiplicities: knots that are nearly equal are most
+/// likely meant to be equal.
 pub fn check_knots(knots: &[f64], degree: usize, least_gap: f64) -> Result<(), KnotFlaw> {
     let least = 2 * (degree + 1);
     if knots.len() < least {
@@ -77,7 +78,7 @@ pub fn check_knots(knots: &[f64], degree: usize, least_gap: f64) -> Result<(), K
     Ok(())
 }
 
-/// Control points in a direction with these knots, which must be more than the degree.
+/// Number of control points in a direction with these knots; there must be more knots than the degree.
 pub fn control_count(knots: &[f64], degree: usize) -> usize {
     knots.len() - degree - 1
 }

@@ -6,9 +6,9 @@ use crate::spline::{Grid, control_count, insert_knots_into_net};
 /// Tensor-product NURBS mid-surface; its control points are numbered as a [`Grid`], the second direction (arc) fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Polynomial degree each way.
+    /// Polynomial degree in each direction.
     pub degree: [usize; 2],
-    /// Open knot vectors each way; nᵢ = knots.len() − degree − 1 control points.
+    /// Open knot vector of each direction; nᵢ = knots.len() − degree − 1 control points.
     pub knots: [Vec<f64>; 2],
     /// Homogeneous control points (w x, w y, w z, w), mm; length n₁ · n₂.
     pub control_points: Vec<[f64; 4]>,
@@ -17,47 +17,47 @@ pub struct Mesh {
 impl Mesh {
     /// Number of control points in each direction.
     pub fn control_counts(&self) -> [usize; 2] {
-        [0, 1].map(|k| control_count(&self.knots[k], self.degree[k]))
+        [0, 1].map(|direction| control_count(&self.knots[direction], self.degree[direction]))
     }
 
-    /// The numbering of the control points.
+    /// Grid that numbers the control points.
     pub fn grid(&self) -> Grid {
         Grid::new(self.control_counts())
     }
 
-    /// Place of a control point, mm.
+    /// Position of a control point, mm.
     pub fn point(&self, index: usize) -> [f64; 3] {
         cartesian(self.control_points[index])
     }
 
-    /// Places of all control points, mm.
+    /// Positions of all control points, mm.
     pub fn points(&self) -> impl Iterator<Item = [f64; 3]> {
         self.control_points.iter().copied().map(cartesian)
     }
 
-    /// Control points whose functions do not vanish where the first of them are `first`, in the order of the functions.
+    /// Control points of an element, in the order of its functions, where `first` are the indices of the first of them.
     pub fn window(&self, first: [usize; 2]) -> impl Iterator<Item = usize> + use<> {
         self.grid().window(first, self.degree.map(|p| p + 1))
     }
 
     /// Number of non-empty knot spans (elements) in each direction.
     pub fn element_counts(&self) -> [usize; 2] {
-        [0, 1].map(|k| self.knots[k].windows(2).filter(|pair| pair[0] < pair[1]).count())
+        [0, 1].map(|direction| self.knots[direction].windows(2).filter(|pair| pair[0] < pair[1]).count())
     }
 
-    /// Integrals of the B-splines of the control points over the parameters, as shares of the whole: without the weights, so
-    /// that they sum up to 1. ∫N_i dξ = (ξ_{i+p+1} − ξ_i)/(p + 1): de Boor, *A Practical Guide to Splines*, chapter X.
+    /// Integrals of the B-splines (without the weights) of all control points over the parameter domain, relative to its
+    /// area: they sum to 1. ∫N_i dξ = (ξ_{i+p+1} − ξ_i)/(p + 1): de Boor, *A Practical Guide to Splines*, chapter X.
     pub fn basis_integrals(&self) -> Vec<f64> {
-        let ways = [0, 1].map(|way| {
-            let (knots, degree) = (&self.knots[way], self.degree[way]);
+        let integrals = [0, 1].map(|direction| {
+            let (knots, degree) = (&self.knots[direction], self.degree[direction]);
             let total = knots[knots.len() - 1] - knots[0];
             let integral = |i: usize| (knots[i + degree + 1] - knots[i]) / ((degree + 1) as f64 * total);
             (0..control_count(knots, degree)).map(integral).collect::<Vec<f64>>()
         });
-        ways[0].iter().flat_map(|along| ways[1].iter().map(move |across| along * across)).collect()
+        integrals[0].iter().flat_map(|along| integrals[1].iter().map(move |across| along * across)).collect()
     }
 
-    /// The same surface with `new` knots (ascending, each way) inserted.
+    /// Returns the same surface with the knots `new` of each direction (ascending) inserted.
     pub fn with_knots(&self, new: &[Vec<f64>; 2]) -> Self {
         let mut finer = self.clone();
         for direction in 0..2 {
@@ -76,12 +76,12 @@ impl Mesh {
         finer
     }
 
-    /// Content hash; independent of how a log encodes the mesh.
+    /// Content hash of the mesh; independent of how a log encodes it.
     pub fn hash(&self) -> Hash {
         let mut feed = Feed::new("foldline mesh");
-        for k in 0..2 {
-            feed.integer(self.degree[k] as u64);
-            feed.numbers(&self.knots[k]);
+        for direction in 0..2 {
+            feed.integer(self.degree[direction] as u64);
+            feed.numbers(&self.knots[direction]);
         }
         feed.integer(self.control_points.len() as u64);
         feed.each(self.control_points.as_flattened());
@@ -89,7 +89,7 @@ impl Mesh {
     }
 }
 
-/// The point with homogeneous coordinates (w x, w y, w z, w), mm.
+/// Cartesian coordinates, mm, of the point with homogeneous coordinates (w x, w y, w z, w).
 pub fn cartesian([x, y, z, w]: [f64; 4]) -> [f64; 3] {
     [x / w, y / w, z / w]
 }

@@ -7,9 +7,9 @@
 //! | `basis` | basis functions and spans |
 //! | `knots` | whether knots make a spline space |
 //! | `arc` | exact curves |
-//! | `insertion` | knots inserted |
-//! | `coarsening` | knots taken out: the best approximation |
-//! | `grid` | numbers of rows and columns |
+//! | `insertion` | knot insertion |
+//! | `coarsening` | best approximation on fewer knots |
+//! | `grid` | numbering of rows and columns |
 //! | `mesh` | the spline space with its geometry |
 //! | `surface` | points and derivatives |
 

@@ -3,21 +3,21 @@
 
 use crate::spline::{Mesh, basis_derivatives, basis_derivatives_len, find_span};
 
-/// Position and the five derivatives that a Kirchhoff–Love shell needs.
+/// A point of a surface: position and the five derivatives that a Kirchhoff–Love shell needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// Position, mm.
     pub position: [f64; 3],
-    /// a₁, a₂, a₁₁, a₂₂, a₁₂ with respect to the parameters.
+    /// Derivatives a₁, a₂, a₁₁, a₂₂, a₁₂ with respect to the parameters.
     pub derivatives: [[f64; 3]; 5],
 }
 
-/// Rational basis functions at a point: `(first control indices each way, values and five derivatives)`.
-/// `functions[k][a₁ (p₂ + 1) + a₂]`, k = value, ,1 ,2 ,11 ,22 ,12.
+/// Evaluates the rational basis functions at a point: `(first control index in each direction, values and five
+/// derivatives)`. `functions[k][a₁ (p₂ + 1) + a₂]`, k = value, ,1 ,2 ,11 ,22 ,12.
 pub fn evaluate_surface(mesh: &Mesh, parameters: [f64; 2]) -> ([usize; 2], [Vec<f64>; 6]) {
     let [p1, p2] = mesh.degree;
     let grid = mesh.grid();
-    let span = [0, 1].map(|k| find_span(&mesh.knots[k], mesh.degree[k], parameters[k]));
+    let span = [0, 1].map(|direction| find_span(&mesh.knots[direction], mesh.degree[direction], parameters[direction]));
     let mut along = vec![0.0; basis_derivatives_len(p1)];
     let mut across = vec![0.0; basis_derivatives_len(p2)];
     basis_derivatives(&mesh.knots[0], p1, span[0], parameters[0], &mut along);
@@ -44,14 +44,14 @@ pub fn evaluate_surface(mesh: &Mesh, parameters: [f64; 2]) -> ([usize; 2], [Vec<
     (first, weighted)
 }
 
-/// N₁N₂ and its derivatives ,1 ,2 ,11 ,22 ,12.
+/// Computes a product N₁N₂ of basis functions and its derivatives ,1 ,2 ,11 ,22 ,12.
 pub fn tensor_derivatives(along: &[f64], across: &[f64], degree: [usize; 2], a: [usize; 2]) -> [f64; 6] {
     let u = |k: usize| along[k * (degree[0] + 1) + a[0]];
     let v = |k: usize| across[k * (degree[1] + 1) + a[1]];
     [u(0) * v(0), u(1) * v(0), u(0) * v(1), u(2) * v(0), u(0) * v(2), u(1) * v(1)]
 }
 
-/// Derivatives of f / w from those of f and w (value, ,1 ,2 ,11 ,22 ,12), by the quotient rule.
+/// Computes the derivatives of f / w from those of f and w (value, ,1 ,2 ,11 ,22 ,12), by the quotient rule.
 pub fn quotient_derivatives(f: [f64; 6], w: [f64; 6]) -> [f64; 6] {
     let value = f[0] / w[0];
     let d1 = (f[1] - value * w[1]) / w[0];
@@ -62,7 +62,8 @@ pub fn quotient_derivatives(f: [f64; 6], w: [f64; 6]) -> [f64; 6] {
     [value, d1, d2, d11, d22, d12]
 }
 
-/// Point of the surface with control points moved by `displacement` (same order; empty for the undeformed one).
+/// Evaluates a point of the surface whose control points are moved by `displacement` (in their order; empty for the
+/// undeformed surface).
 pub fn mid_surface_point(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) -> SurfacePoint {
     let (first, functions) = evaluate_surface(mesh, parameters);
     let mut sums = [[0.0; 3]; 6];

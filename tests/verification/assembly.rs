@@ -53,8 +53,8 @@ fn residual_and_stiffness_are_derivatives_of_the_energy() {
         let discretization = Discretization::new(&scene, &mesh).unwrap();
         let count = discretization.unknowns.count();
         let point: Vec<f64> = noise(count).iter().map(|x| 0.05 * x).collect();
-        let placement = discretization.unknowns.place(&point, 8.5);
-        let moved = |q: &[f64]| discretization.unknowns.place(q, 8.5).displacement();
+        let placement = discretization.unknowns.configure(&point, 8.5);
+        let moved = |q: &[f64]| discretization.unknowns.configure(q, 8.5).displacement();
         let direction = &noise(2 * count)[count..];
         let at = |step: f64| -> Vec<f64> { point.iter().zip(direction).map(|(q, d)| q + step * d).collect() };
         let energy = |step: f64| strain_energy(&discretization.shell.tables, &moved(&at(step)), None);

@@ -1,6 +1,6 @@
 //! Patches that share control points, assembled into one matrix.
 
-use foldline::energy::{Discretization, Part, Want};
+use foldline::energy::{Discretization, ShellElements, Want};
 use foldline::equilibrium::Assembled;
 use foldline::model::{BlockPattern, Blocks, Tables, starting_mesh};
 use foldline::scene::{Quadrature, Scene};
@@ -60,7 +60,7 @@ fn two_patches_that_share_a_row_are_one() {
         let moved = numbered(&|k| displacement[k]);
         let (mut residual, mut stiffness) = (vec![[0.0; 3]; count], Blocks::zeros(&blocks));
         let sums = [0, 1].map(|part| {
-            let part = Part { tables: &tables[part], blocks: &blocks, part, natural: None };
+            let part = ShellElements { tables: &tables[part], blocks: &blocks, part, natural: None };
             part.add(&moved, Want::Stiffness, &mut residual, &mut stiffness)
         });
         let energy = sums[0].energy + sums[1].energy;

@@ -98,9 +98,9 @@ fn gradient_and_stiffness_are_derivatives_under_free_strain() {
     let (point, direction) = (noise(count, 1), noise(count, 2));
     let at = |step: f64| {
         let free: Vec<f64> = point.iter().zip(&direction).map(|(q, d)| 0.1 * q + step * d).collect();
-        discretization.unknowns.place(&free, parameter).displacement()
+        discretization.unknowns.configure(&free, parameter).displacement()
     };
-    let placement = discretization.unknowns.place(&point, parameter);
+    let placement = discretization.unknowns.configure(&point, parameter);
     let natural = discretization.shell.free_strains.at(parameter);
     let energy = |step: f64| strain_energy(&discretization.shell.tables, &at(step), natural);
     let mut assembled = Assembled::new(&discretization);

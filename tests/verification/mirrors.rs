@@ -206,7 +206,7 @@ fn what_the_image_of_a_pull_does_is_said() {
     };
     assert_eq!(
         said("[0.0, -0.5, 0.1]"),
-        "action \"pull\" has 0.5 N/mm across the plane of symmetry of support \"side\": its image behind that pulls the other way"
+        "action \"pull\" has 0.5 N/mm across the plane of symmetry of support \"side\": its image behind that pulls in the opposite direction"
     );
     assert_eq!(said("[0.0, 0.0, 0.1]"), "");
 }

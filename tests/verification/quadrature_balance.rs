@@ -202,7 +202,7 @@ fn linear(scene: &Scene, mesh: &Arc<Mesh>, forces: &[[f64; 3]]) -> Vec<[f64; 3]>
     let still = vec![[0.0; 3]; mesh.control_points.len()];
     assembled.assemble(&discretization, &still, 0.0, Want::Stiffness);
     let count = discretization.unknowns.count();
-    let placement = discretization.unknowns.place(&vec![0.0; count], 0.0);
+    let placement = discretization.unknowns.configure(&vec![0.0; count], 0.0);
     let mut matrix = DMatrix::zeros(count, count);
     for column in 0..count {
         let mut unit = vec![0.0; count];

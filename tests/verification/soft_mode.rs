@@ -53,7 +53,7 @@ fn dense(scene: &Scene, state: &State) -> Vec<f64> {
     let discretization = Discretization::new(scene, &state.mesh).unwrap();
     let unknowns = &discretization.unknowns;
     let free = unknowns.of_displacement(&state.displacement, &state.turns, state.parameter);
-    let placement = unknowns.place(&free, state.parameter);
+    let placement = unknowns.configure(&free, state.parameter);
     let mut assembled = Assembled::new(&discretization);
     assembled.assemble(&discretization, &state.displacement, state.parameter, Want::Stiffness);
     let Mesh { knots, degree, .. } = &*state.mesh;

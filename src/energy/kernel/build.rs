@@ -1,23 +1,24 @@
-//! The builds of the kernel, and which of them this machine runs.
+//! The builds of the kernel for different processors, and which of them this machine runs.
 
 #[cfg(target_arch = "x86_64")]
 use crate::shell::lanes_x86::{HasAvx512, HasFma};
 
-/// The builds of the kernel. Those for AVX2 and AVX-512 give the same bits; the portable one rounds differently.
+/// Build of the kernel for a kind of processor. Those for AVX2 and AVX-512 give the same bits; the portable one rounds
+/// differently.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Build {
-    /// For any processor.
+    /// Runs on any processor.
     Portable,
-    /// Four lanes, fused multiply-add.
+    /// Uses AVX2: four lanes, fused multiply-add.
     #[cfg(target_arch = "x86_64")]
     Fma(HasFma),
-    /// Rows of the stiffness in eight lanes, the rest as for AVX2.
+    /// Uses AVX-512: rows of the stiffness in eight lanes, the rest as for AVX2.
     #[cfg(target_arch = "x86_64")]
     Avx512(HasAvx512),
 }
 
 impl Build {
-    /// The fastest that this machine runs.
+    /// Finds the fastest build that this machine runs.
     pub(crate) fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
@@ -30,7 +31,7 @@ impl Build {
         }
     }
 
-    /// Its name in manifests.
+    /// Name of the build in manifests.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",

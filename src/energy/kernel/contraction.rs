@@ -8,31 +8,31 @@ use crate::model::BATCH;
 use crate::shell::lanes::Lanes;
 use crate::shell::{BatchGradient, BatchHessian};
 
-/// Batches of points that the stiffness takes before it is stored: 16 points, all of a cubic element.
+/// Number of batches of points that the stiffness sums before it is stored: 16 points, all of a cubic element.
 pub(super) const BLOCK: usize = 4;
 
 /// A block of points, which adds to the sums of an element; `ROWS` derivatives of the functions at each.
 pub(super) struct Block<'a, W: Lanes, const ROWS: usize> {
-    /// For the vectors.
+    /// Proof that the processor has the vector instructions.
     pub proof: W::Proof,
-    /// Functions at the points of the block.
+    /// Derivatives of the functions at the points of the block.
     pub functions: &'a [f64],
-    /// Functions of the element.
+    /// Number of functions of the element.
     pub used: usize,
-    /// The same with the padding.
+    /// Number of functions of the element, with the padding.
     pub padded: usize,
     /// Whether the sums begin with this block.
     pub first: bool,
 }
 
 impl<W: Lanes, const ROWS: usize> Block<'_, W, ROWS> {
-    /// Whole vectors in a table row.
+    /// Number of whole vectors in a row of the table.
     #[inline(always)]
     fn stride(&self) -> usize {
         self.padded / W::WIDTH
     }
 
-    /// Functions at each point: `ROWS` rows of `padded`.
+    /// Derivatives of the functions at each point: `ROWS` rows of `padded` numbers.
     #[inline(always)]
     fn points(&self) -> std::slice::ChunksExact<'_, f64> {
         self.functions.chunks_exact(ROWS * self.padded)
@@ -59,7 +59,7 @@ pub(super) fn add_residual<W: Lanes, const ROWS: usize>(
     }
 }
 
-/// `WIDTH` vectors of functions from vector `m` on.
+/// Adds to the residual of `WIDTH` vectors of functions, from vector `m` on.
 #[inline(always)]
 fn residual_tile<W: Lanes, const ROWS: usize, const WIDTH: usize>(
     block: &Block<W, ROWS>,
@@ -129,7 +129,7 @@ pub(super) fn contract<W: Lanes, const ROWS: usize, const SIZE: usize>(
     }
 }
 
-/// Rows (b, d) for `WIDTH` functions from b on, columns (a, c) for the functions of a vector.
+/// Adds to the rows (b, d) of `WIDTH` functions from b on and the columns (a, c) of one vector of functions.
 #[inline(always)]
 fn stiffness_tile<W: Lanes, const ROWS: usize, const SIZE: usize, const WIDTH: usize>(
     block: &Block<W, ROWS>,
@@ -170,7 +170,7 @@ fn stiffness_tile<W: Lanes, const ROWS: usize, const SIZE: usize, const WIDTH: u
     }
 }
 
-/// P of the functions of a vector, component c and a lane of the Hessians.
+/// Computes P for one vector of functions, component c and one lane of the Hessians.
 #[inline(always)]
 fn half_product<W: Lanes, const ROWS: usize, const SIZE: usize>(
     block: &Block<W, ROWS>,

@@ -14,7 +14,7 @@ pub(super) struct DeadLoads(pub Vec<Dead>);
 #[derive(Debug)]
 pub(super) struct Dead {
     pub history: History,
-    /// (control point, force at factor 1).
+    /// Control points, with their forces at factor 1, N.
     pub forces: Vec<(usize, [f64; 3])>,
 }
 
@@ -38,7 +38,7 @@ impl Term for DeadLoads {
         self.add(|history| history.rate(at.parameter), rates);
     }
 
-    /// Force times motion.
+    /// Computes force times motion for each load.
     fn strokes(&self, _: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
         let stroke = |dead: &Dead| {
             let motion = |(point, force): &(usize, [f64; 3])| dot(*force, sub(to[*point], from[*point]));
@@ -52,7 +52,7 @@ impl Term for DeadLoads {
     }
 }
 
-/// Forces of a load whose force per weight at a point is `force`.
+/// Computes the forces of a load whose force per weight at a point is `force`.
 pub(super) fn dead_forces(
     mesh: &Mesh,
     points: &[LoadPoint],

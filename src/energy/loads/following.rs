@@ -1,4 +1,4 @@
-//! Loads that turn with the shell: their forces, and the tangent of those.
+//! Loads that turn with the shell: their forces, and the tangent of these forces.
 //!
 //! The virtual work of a load at a point of the surface is Σ_a δu_a · (N_a h₀ + N_a,₁ h₁ + N_a,₂ h₂), where h depends on
 //! the deformed tangents a₁, a₂ alone:
@@ -30,15 +30,15 @@ pub(super) struct FollowingLoads(pub Vec<Following>);
 #[derive(Debug)]
 pub(super) struct Following {
     pub history: History,
-    pub kind: Kind,
+    pub kind: FollowerKind,
     pub points: Vec<LoadPoint>,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Kind {
-    /// Along a₁ × a₂.
+pub(super) enum FollowerKind {
+    /// A pressure along a₁ × a₂.
     Pressure,
-    /// About a₁ or a₂ (0 or 1).
+    /// A moment about a₁ or a₂ (0 or 1).
     Moment(usize),
 }
 
@@ -109,7 +109,7 @@ impl Term for FollowingLoads {
     }
 }
 
-/// ∂f_a/∂u_b of one element: `numbers[((b · 3 + c) · 3 + d) · functions + a]`, c of the force and d of the motion.
+/// Tangent ∂f_a/∂u_b of one element: `numbers[((b · 3 + c) · 3 + d) · functions + a]`, c of the force and d of the motion.
 struct ElementTangent {
     functions: usize,
     numbers: Vec<f64>,
@@ -120,7 +120,7 @@ impl ElementTangent {
         Self { functions, numbers: vec![0.0; 9 * functions * functions] }
     }
 
-    /// Σ_k N_k(a) [Σ_l N_l(b) ∂h_k/∂a_l] at a point.
+    /// Adds Σ_k N_k(a) [Σ_l N_l(b) ∂h_k/∂a_l] of a point.
     fn add(&mut self, factor: f64, point: &LoadPoint, slopes: &WorkSlopes) {
         for b in 0..self.functions {
             for (k, slopes) in slopes.iter().enumerate() {
@@ -145,20 +145,20 @@ impl ElementTangent {
     }
 }
 
-/// h₀, h₁, h₂.
+/// The vectors h₀, h₁, h₂ of a load.
 type Work = [[f64; 3]; 3];
-/// ∂h_k/∂a_l: `[k][l][component of h][component of a]`.
+/// Derivatives ∂h_k/∂a_l: `[k][l][component of h][component of a]`.
 type WorkSlopes = [[[[f64; 3]; 3]; 2]; 3];
 
-impl Kind {
-    /// What multiplies N, N,₁ and N,₂ at factor and weight 1, and its derivatives.
+impl FollowerKind {
+    /// Computes the vectors that multiply N, N,₁ and N,₂ at factor and weight 1, and their derivatives.
     fn work(self, [a1, a2]: [[f64; 3]; 2]) -> (Work, WorkSlopes) {
         let mut h = [[0.0; 3]; 3];
         let mut slopes = [[[[0.0; 3]; 3]; 2]; 3];
         let w = cross(a1, a2);
         let unit = |c: usize| [0, 1, 2].map(|i| f64::from(u8::from(i == c)));
         match self {
-            Kind::Pressure => {
+            FollowerKind::Pressure => {
                 h[0] = w;
                 for e in 0..3 {
                     let columns = [cross(unit(e), a2), cross(a1, unit(e))];
@@ -167,7 +167,7 @@ impl Kind {
                     }
                 }
             }
-            Kind::Moment(running) => {
+            FollowerKind::Moment(running) => {
                 let along = [a1, a2][running];
                 let length = norm(along);
                 let tangent = scaled(1.0 / length, along);
@@ -235,7 +235,7 @@ mod tests {
         let discretization = Discretization::new(&scene, &mesh).unwrap();
         let free: Vec<f64> =
             (0..discretization.unknowns.count()).map(|i| 0.3 * ((i * 37 % 19) as f64 / 19.0 - 0.5)).collect();
-        let displacement = discretization.unknowns.place(&free, 1.0).displacement();
+        let displacement = discretization.unknowns.configure(&free, 1.0).displacement();
         (discretization, displacement)
     }
 
@@ -277,7 +277,7 @@ mod tests {
             let (discretization, displacement) = loaded(clamped);
             let count = discretization.unknowns.count();
             let free = discretization.unknowns.of_displacement(&displacement, &[], 1.0);
-            let placement = discretization.unknowns.place(&free, 1.0);
+            let placement = discretization.unknowns.configure(&free, 1.0);
             let field = |seed: usize| {
                 let q: Vec<f64> = (0..count).map(|i| ((i * 7919 + seed) % 1013) as f64 / 1013.0 - 0.5).collect();
                 placement.velocity(&q, &[])

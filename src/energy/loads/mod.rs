@@ -13,7 +13,7 @@ mod points;
 mod strokes;
 
 use self::dead::{Dead, DeadLoads, dead_forces};
-use self::following::{Following, FollowingLoads, Kind};
+use self::following::{FollowerKind, Following, FollowingLoads};
 use self::points::{LoadPoint, area_points, edge_points, line_points};
 use crate::energy::Terms;
 use crate::model::{ModelError, direction_at, parameters_of};
@@ -21,11 +21,11 @@ use crate::scene::{Action, ActionKind, ForceVector, History, LoadedArea, Place, 
 use crate::shell::{cross, scaled};
 use crate::spline::Mesh;
 
-/// No limit to the part of the surface.
+/// Limits of the parameters that leave no part of the surface out.
 const EVERYWHERE: [f64; 2] = [f64::INFINITY; 2];
 
 impl Terms {
-    /// The actions of a scene on a mesh.
+    /// Builds the terms of a scene's actions on a mesh.
     ///
     /// # Errors
     /// Where an action does not fit the surface.
@@ -33,7 +33,7 @@ impl Terms {
         Self::of_actions_below(scene, mesh, EVERYWHERE)
     }
 
-    /// Those on the part of the surface where both parameters are below `limits`.
+    /// Builds the terms of a scene's actions on the part of the surface where both parameters are below `limits`.
     ///
     /// # Errors
     /// Where an action does not fit the surface.
@@ -53,7 +53,7 @@ impl Terms {
     }
 }
 
-/// Loads of both kinds.
+/// Dead and following loads while they are collected.
 #[derive(Debug, Default)]
 struct Loads {
     dead: DeadLoads,
@@ -74,8 +74,8 @@ impl Loads {
                 let points = match on {
                     Place::Edge(edge) => edge_points(mesh, *edge, limits),
                     Place::Line(direction, fraction) => {
-                        let way = direction.index();
-                        line_points(mesh, way, parameters_of(&scene.geometry, [*fraction; 2])[way], limits)
+                        let direction = direction.index();
+                        line_points(mesh, direction, parameters_of(&scene.geometry, [*fraction; 2])[direction], limits)
                     }
                     Place::Point(_) | Place::Whole => {
                         return Err(ModelError::NotALine { action: action.name.clone() });
@@ -100,19 +100,19 @@ impl Loads {
                 let mut points = edge_points(mesh, *on, limits);
                 points.iter_mut().for_each(|point| point.weight *= moment_n);
                 let running = 1 - on.side().0.index();
-                self.following.0.push(Following { history, kind: Kind::Moment(running), points });
+                self.following.0.push(Following { history, kind: FollowerKind::Moment(running), points });
             }
             ActionKind::Pressure { pressure_mpa, follower } => {
                 let mut points = area_points(scene, mesh, limits);
                 points.iter_mut().for_each(|point| point.weight *= pressure_mpa);
                 if *follower {
-                    self.following.0.push(Following { history, kind: Kind::Pressure, points });
+                    self.following.0.push(Following { history, kind: FollowerKind::Pressure, points });
                 } else {
                     let along_normal = |point: &LoadPoint| cross(point.site.tangents[0], point.site.tangents[1]);
                     self.dead.0.push(Dead { history, forces: dead_forces(mesh, &points, along_normal) });
                 }
             }
-            // These change the shell's free strain.
+            // Such actions change the shell's free strain and exert no forces of their own.
             ActionKind::Temperature { .. } | ActionKind::NaturalCurvature { .. } => {}
         }
         Ok(())

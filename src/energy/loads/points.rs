@@ -8,17 +8,18 @@ use crate::spline::{Mesh, Spans, evaluate_surface, mid_surface_point};
 /// A quadrature point of a load.
 #[derive(Debug)]
 pub(super) struct LoadPoint {
-    /// First control indices each way.
+    /// First control index in each direction.
     pub first: [usize; 2],
-    /// Values, derivatives ,1 and ,2 of the functions.
+    /// Values of the functions, and their derivatives ,1 and ,2.
     pub functions: [Vec<f64>; 3],
-    /// Where it is.
+    /// Position of the point on the undeformed surface, with its tangents.
     pub site: Site,
     /// Load times quadrature weight at factor 1.
     pub weight: f64,
 }
 
 impl LoadPoint {
+    /// Creates a point of the surface at some parameters.
     pub fn new(mesh: &Mesh, at: [f64; 2], weight: f64) -> Self {
         let (first, [value, one, two, ..]) = evaluate_surface(mesh, at);
         let surface = mid_surface_point(mesh, &[], at);
@@ -27,7 +28,7 @@ impl LoadPoint {
         Self { first, functions: [value, one, two], site, weight }
     }
 
-    /// Area per parameter area, that of the surface or of its projection along a force.
+    /// Area per parameter area, of the surface or of its projection along a force.
     pub fn area(&self, per: LoadedArea, force: ForceVector) -> f64 {
         let normal = cross(self.site.tangents[0], self.site.tangents[1]);
         match (per, force) {
@@ -38,6 +39,7 @@ impl LoadPoint {
         }
     }
 
+    /// Control points whose functions do not vanish there, in the order of the functions.
     pub fn controls(&self, mesh: &Mesh) -> impl Iterator<Item = usize> + use<> {
         mesh.window(self.first)
     }
@@ -53,14 +55,14 @@ impl LoadPoint {
         tangents
     }
 
-    /// Motion of the surface there, mm.
+    /// Motion of the surface at the point from one displacement to another, mm.
     pub fn motion(&self, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> [f64; 3] {
         let shares = self.controls(mesh).zip(&self.functions[0]);
         shares.fold([0.0; 3], |sum, (control, share)| add(sum, scaled(*share, sub(to[control], from[control]))))
     }
 }
 
-/// Gauss points of an edge; weights are undeformed lengths, mm.
+/// Finds the Gauss points of an edge; weights are undeformed lengths, mm.
 pub(super) fn edge_points(mesh: &Mesh, edge: Edge, limits: [f64; 2]) -> Vec<LoadPoint> {
     let (direction, at_end) = edge.side();
     let mut points = line_points(mesh, direction.index(), if at_end { 1.0 } else { 0.0 }, limits);
@@ -68,16 +70,17 @@ pub(super) fn edge_points(mesh: &Mesh, edge: Edge, limits: [f64; 2]) -> Vec<Load
     points
 }
 
-/// Gauss points of a line on which parameter `way` is `at`; weights are undeformed lengths, mm.
-pub(super) fn line_points(mesh: &Mesh, way: usize, at: f64, limits: [f64; 2]) -> Vec<LoadPoint> {
-    let running = 1 - way;
+/// Finds the Gauss points of the line on which the parameter of `direction` is `at`; weights are undeformed lengths,
+/// mm.
+pub(super) fn line_points(mesh: &Mesh, direction: usize, at: f64, limits: [f64; 2]) -> Vec<LoadPoint> {
+    let running = 1 - direction;
     let mut points = Vec::new();
-    if at >= limits[way] {
+    if at >= limits[direction] {
         return points;
     }
     let spans = mesh.element_counts()[running];
     for [parameter, weight] in load_points(mesh, running, &vec![0; spans], limits[running]) {
-        let place = if way == 0 { [at, parameter] } else { [parameter, at] };
+        let place = if direction == 0 { [at, parameter] } else { [parameter, at] };
         let mut point = LoadPoint::new(mesh, place, weight);
         point.weight *= norm(point.site.tangents[running]);
         points.push(point);
@@ -85,25 +88,26 @@ pub(super) fn line_points(mesh: &Mesh, way: usize, at: f64, limits: [f64; 2]) ->
     points
 }
 
-/// Gauss points of the surface, element by element; weights are parameter areas. Each way they are at least as many as
-/// stretching has: membrane forces carry a pressure, and where its forces are summed up less exactly than theirs, bending
-/// takes the difference (at R/t = 3000, on eight cubic elements a quarter turn and p + 2 points for stretching, a pressure on
-/// p − 1 points inside is 32 % off).
+/// Finds the Gauss points of the surface, element by element; weights are parameter areas. In each direction there are
+/// at least as many as stretching has: membrane forces carry a pressure, and where its forces are summed up less
+/// exactly than theirs, bending takes the difference (at R/t = 3000, on eight cubic elements a quarter turn and p + 2
+/// points for stretching, a pressure on p − 1 points inside is 32 % off).
 pub(super) fn area_points(scene: &Scene, mesh: &Mesh, limits: [f64; 2]) -> Vec<LoadPoint> {
     let least = PointCounts::of(scene, mesh);
-    let [along, across] = [0, 1].map(|way| load_points(mesh, way, &least.most()[way], limits[way]));
+    let [along, across] =
+        [0, 1].map(|direction| load_points(mesh, direction, &least.most()[direction], limits[direction]));
     let pairs = along.iter().flat_map(|one| across.iter().map(move |two| (one, two)));
     let mut points: Vec<_> = pairs.map(|([u, wu], [v, wv])| LoadPoint::new(mesh, [*u, *v], wu * wv)).collect();
     points.sort_by_key(|point| point.first);
     points
 }
 
-/// Gauss points in every span or the part of it below `limit`, at least `least` in each. A pressure integrates N x,₁ × x,₂, of
-/// degree 3p − 1 each way: so many points are exact where the weights are equal, and only then is its tangent symmetric to
-/// rounding.
-fn load_points(mesh: &Mesh, way: usize, least: &[usize], limit: f64) -> Vec<[f64; 2]> {
-    let count = (3 * mesh.degree[way]).div_ceil(2);
-    let spans = Spans::of(&mesh.knots[way], mesh.degree[way]);
+/// Finds the Gauss points in every span, or in the part of it below `limit`, at least `least` in each. A pressure
+/// integrates N x,₁ × x,₂, of degree 3p − 1 in each direction: so many points are exact where the weights are equal,
+/// and only then is its tangent symmetric to rounding.
+fn load_points(mesh: &Mesh, direction: usize, least: &[usize], limit: f64) -> Vec<[f64; 2]> {
+    let count = (3 * mesh.degree[direction]).div_ceil(2);
+    let spans = Spans::of(&mesh.knots[direction], mesh.degree[direction]);
     let in_part = |([from, to], least): (&[f64; 2], &usize)| gauss_points([*from, to.min(limit)], count.max(*least));
     spans.bounds.iter().zip(least).filter(|([from, _], _)| *from < limit).flat_map(in_part).collect()
 }

@@ -9,35 +9,36 @@
 //! | follower pressure p | p times the volume that the surface sweeps: ∫ (a₁ × a₂)·Δx, quadratic on the way, so Simpson's rule is exact |
 //! | edge moment m | m times the angle by which the normal turns about the tangent of the edge |
 //!
-//! Strokes add up along a way of many straight pieces, so that a pressure's is the volume between the ends and an angle is
-//! unwrapped: where an edge stays straight or plane, a moment's is m Δφ however far it turns. Where it does not, or where
-//! the edges of the pressed surface are free, the load has no potential, and the strokes are integrals along the very way
-//! that they were summed on.
+//! Strokes add up along a path of many straight pieces, so that a pressure's is the volume between the ends and an
+//! angle is unwrapped: where an edge stays straight or plane, a moment's is m Δφ however far it turns. Where it does
+//! not, or where the edges of the pressed surface are free, the load has no potential, and the strokes are integrals
+//! along the very path that they were summed on.
 
-use crate::energy::loads::following::Kind;
+use crate::energy::loads::following::FollowerKind;
 use crate::energy::loads::points::LoadPoint;
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
-/// Sums of two unit tangents shorter than this have no direction but rounding.
+/// Length of a sum of two unit tangents below which its direction is rounding.
 const TURNED_ROUND: f64 = 1e-9;
 
-impl Kind {
-    /// Stroke of the load at a point of weight 1, N·mm.
+impl FollowerKind {
+    /// Computes the stroke of the load at a point of weight 1, N·mm.
     pub fn stroke(self, point: &LoadPoint, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
         let ends = [from, to].map(|displacement| point.deformed(mesh, displacement));
         let normals = ends.map(|[a1, a2]| cross(a1, a2));
         match self {
-            Kind::Pressure => {
+            FollowerKind::Pressure => {
                 let middle = [0, 1].map(|k| scaled(0.5, add(ends[0][k], ends[1][k])));
                 let mean = add(add(normals[0], normals[1]), scaled(4.0, cross(middle[0], middle[1])));
                 dot(scaled(1.0 / 6.0, mean), point.motion(mesh, from, to))
             }
-            Kind::Moment(running) => {
+            FollowerKind::Moment(running) => {
                 let unit = |vector: [f64; 3]| scaled(1.0 / norm(vector), vector);
                 let [tangent, after] = ends.map(|tangents| unit(tangents[running]));
                 let sum = add(tangent, after);
-                // Where the tangent turns round there is no mean: about the one before it, the normal's half turn counts.
+                // Where the tangent reverses there is no mean: the half turn of the normal about the tangent before
+                // counts.
                 let axis = if norm(sum) > TURNED_ROUND { unit(sum) } else { tangent };
                 let [before, after] = normals.map(|normal| sub(normal, scaled(dot(normal, axis), axis)));
                 dot(cross(before, after), axis).atan2(dot(before, after))
@@ -130,7 +131,7 @@ mod tests {
         assert!(work(&about_x).is_finite());
     }
 
-    /// Between two shapes with the same edges a pressure sweeps one volume, on whatever way.
+    /// Between two shapes with the same edges a pressure sweeps one volume, on any path.
     #[test]
     fn a_pressure_does_work_by_the_volume_between() {
         let plate = plate(ActionKind::Pressure { pressure_mpa: 0.7, follower: true });
@@ -138,7 +139,8 @@ mod tests {
         let grid = mesh.grid();
         let held = |size: f64, seed: usize| -> Vec<[f64; 3]> {
             let mut field = field(&plate, size, seed);
-            let edge = |i: usize| (0..2).any(|way| [0, grid.counts[way] - 1].contains(&grid.place(i)[way]));
+            let edge =
+                |i: usize| (0..2).any(|direction| [0, grid.counts[direction] - 1].contains(&grid.place(i)[direction]));
             field.iter_mut().enumerate().filter(|(i, _)| edge(*i)).for_each(|(_, u)| *u = [0.0; 3]);
             field
         };

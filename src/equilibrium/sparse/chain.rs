@@ -1,18 +1,18 @@
-//! Where rows that are eliminated one after the other stand in strips.
+//! The arrangement in strips of rows that are eliminated one after the other.
 
-/// Rows of a strip.
+/// Number of rows of a strip.
 pub(super) const HEIGHT: usize = 12;
 
-/// Rows in the order in which they are eliminated: its own, and then those of the separator.
+/// Rows in the order in which they are eliminated: the chain's own, and then those of the separator.
 #[derive(Debug, Default)]
 pub(super) struct Chain {
-    /// Own unknowns.
+    /// Number of own unknowns.
     pub own: usize,
-    /// Strips that they take.
+    /// Number of strips of the own unknowns.
     pub own_strips: usize,
     /// First block of columns of each strip; of the separator's, at most `own_strips`.
     pub first: Vec<usize>,
-    /// First column of each strip in the storage, and behind the last.
+    /// First column of each strip in the storage, and the end of the last one.
     pub start: Vec<usize>,
 }
 
@@ -55,8 +55,8 @@ impl Chain {
         self.start.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or(0)
     }
 
-    /// Where the storage holds an entry of the lower triangle.
-    pub fn place(&self, row: usize, column: usize) -> Option<usize> {
+    /// Offset in the storage of an entry of the lower triangle; `None` outside the strips.
+    pub fn offset_of(&self, row: usize, column: usize) -> Option<usize> {
         let strip = row / HEIGHT;
         let from_first = column.checked_sub(HEIGHT * self.first[strip])?;
         Some((self.start[strip] + from_first) * HEIGHT + row % HEIGHT)

@@ -1,11 +1,11 @@
-//! How far the rows of a symmetric structure reach, what that costs, and where to cut it.
+//! The envelope of a symmetric structure: how far its rows reach, what factoring it costs, and where to cut it.
 
 use crate::equilibrium::sparse::structure::Couplings;
 
-/// A cut must leave the longer side with at most this share of the operations.
+/// Share of the operations that a cut may leave to the longer side at most.
 const CUT_PAYS: f64 = 0.8;
 
-/// The first and the last unknown that each one meets.
+/// First and last unknown that each unknown meets.
 pub(super) struct Envelope {
     pub first: Vec<usize>,
     pub last: Vec<usize>,
@@ -32,7 +32,8 @@ impl Envelope {
         }
     }
 
-    /// The cut with the least work for the longer side, or none: an empty separator behind all unknowns.
+    /// Finds the cut with the least work for the longer side; where no cut pays, an empty separator behind all
+    /// unknowns.
     pub fn best_cut(&self) -> std::ops::Range<usize> {
         let count = self.first.len();
         let none = count..count;
@@ -44,7 +45,7 @@ impl Envelope {
         }
         let (mut before, mut reach) = (0.0, 0);
         for begin in 0..count {
-            // As far as the unknowns before it reach.
+            // The separator reaches as far as the unknowns before it do.
             let cut = begin..reach.max(begin);
             let width = cut.len() as f64;
             let work = f64::max(before, behind[cut.end]) + width.powi(3);
@@ -57,8 +58,9 @@ impl Envelope {
         best.1
     }
 
-    /// Operations for a cut, at most: a row of n numbers takes n² where none before it begins later than it does, and less
-    /// otherwise. Rows of the separator are counted with head and tail, and what is left of them as a full matrix.
+    /// Bound on the operations of a factorization with a cut: a row of n numbers takes n² where none before it begins
+    /// later than it does, and less otherwise. Rows of the separator are counted with head and tail, and what is left
+    /// of them as a full matrix.
     pub fn flops(&self, cut: &std::ops::Range<usize>) -> f64 {
         let head = (0..cut.start).map(|row| ((row + 1 - self.first[row]) as f64).powi(2)).sum::<f64>();
         let tail = (cut.end..self.last.len()).map(|row| ((self.last[row] + 1 - row) as f64).powi(2)).sum::<f64>();

@@ -6,9 +6,9 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `structure` | which unknowns meet; what a factorization tells |
+//! | `structure` | which unknowns meet; what a factorization returns |
 //! | `envelope` | how far rows reach, and where to cut |
-//! | `chain`, `strips`, `strip_kernel` | rows in strips: where they stand, the solver, its loops |
+//! | `chain`, `strips`, `strip_kernel` | rows in strips: their arrangement, the solver, its loops |
 //! | `supernodal` | any structure |
 
 mod chain;
@@ -25,20 +25,20 @@ use crate::energy::Build;
 use strips::StripSolver;
 use supernodal::SupernodalSolver;
 
-/// Operations beyond which it is worth while to ask whether another order of elimination takes fewer: 1e9 of them take
-/// as long as the question (some 40 ms).
+/// Number of operations from which on it pays to analyse whether another order of elimination takes fewer: 1e9 of them
+/// take as long as the analysis (some 40 ms).
 const WORTH_ASKING_FLOPS: f64 = 1e9;
-/// How many times faster than faer's supernodes strips do an operation, on one thread: on 128 × 16 cubic elements the
-/// strips take 14 ms and the supernodes 20.
+/// Ratio of the speeds of strips and of faer's supernodes on one thread: on 128 × 16 cubic elements the strips take 14
+/// ms and the supernodes 20.
 const STRIPS_PAY: f64 = 1.5;
 
-/// A matrix structure with room for one matrix, in place of which comes its factor. [`Self::place`] says where among the
-/// [`Self::value_count`] numbers of a matrix each entry is.
+/// Solver for symmetric matrices of one structure, with room for one matrix, which its factor replaces.
+/// [`Self::offset_of`] gives the index of each entry among the [`Self::value_count`] numbers of a matrix.
 #[derive(Debug)]
 pub enum SparseSolver {
-    /// Rows of the envelope, from both ends.
+    /// Stores rows of the envelope in strips, eliminated from both ends.
     Strips(StripSolver),
-    /// Any structure.
+    /// Stores a factor in supernodes, for any structure.
     Supernodal(SupernodalSolver),
 }
 
@@ -54,7 +54,7 @@ impl SparseSolver {
             true => Self::Strips(strips.with_room()?),
             false => match SupernodalSolver::structure(couplings) {
                 Ok(other) if strips.flops() > STRIPS_PAY * other.flops() => Self::Supernodal(other.with_room()?),
-                // Where the question itself does not fit in memory, strips may.
+                // Where the analysis itself does not fit in memory, strips may.
                 _ => Self::Strips(strips.with_room()?),
             },
         };
@@ -64,13 +64,13 @@ impl SparseSolver {
         }
     }
 
-    /// The storage for any structure, whatever the structure.
+    /// Creates the solver for any structure, whatever this one would be best served by.
     #[cfg(test)]
     pub fn supernodal(couplings: &Couplings) -> Result<Self, FactorError> {
         SupernodalSolver::structure(couplings)?.with_room().map(Self::Supernodal)
     }
 
-    /// Numbers that the values of a matrix take: fewer than 2³².
+    /// Number of values that a matrix takes: fewer than 2³².
     pub fn value_count(&self) -> usize {
         match self {
             Self::Strips(solver) => solver.value_count(),
@@ -78,28 +78,29 @@ impl SparseSolver {
         }
     }
 
-    /// Where the values hold the entry of two unknowns, which is the same both ways round. Of unknowns that do not meet, but lie
-    /// within the envelope, it is a place that nothing else uses.
+    /// Offset among the values of the entry of two unknowns, in either order. For unknowns that do not meet but lie
+    /// within the envelope, it is an offset that nothing else uses.
     ///
     /// # Panics
-    /// Where there is no such place: what is filled in and the structure come from one pattern, and nothing is left out in silence.
-    pub fn place(&self, a: usize, b: usize) -> usize {
+    /// Where there is no such entry: what is filled in and the structure come from one pattern, and nothing is left out
+    /// in silence.
+    pub fn offset_of(&self, a: usize, b: usize) -> usize {
         let place = match self {
-            Self::Strips(solver) => solver.place(a, b),
-            Self::Supernodal(solver) => solver.place(a, b),
+            Self::Strips(solver) => solver.offset_of(a, b),
+            Self::Supernodal(solver) => solver.offset_of(a, b),
         };
         place.unwrap_or_else(|| unreachable!("unknowns {a} and {b} do not meet in the matrix"))
     }
 
-    /// Adds terms (unknown, unknown, value) to the matrix, each pair one way round.
+    /// Adds terms (unknown, unknown, value) to the matrix, each pair in one order only.
     pub fn add(&mut self, terms: &[(usize, usize, f64)]) {
         for (a, b, value) in terms {
-            let place = self.place(*a, *b);
+            let place = self.offset_of(*a, *b);
             self.matrix_mut()[place] += value;
         }
     }
 
-    /// The matrix with these values times a vector.
+    /// Multiplies the matrix with these values by a vector.
     pub fn multiply(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
         match self {
             Self::Strips(solver) => solver.multiply(values, vector),
@@ -107,7 +108,7 @@ impl SparseSolver {
         }
     }
 
-    /// The matrix, to be filled before [`Self::factorize`]; what stands there is of no use.
+    /// Values of the matrix, to be filled in before [`Self::factorize`]; what they hold before is of no use.
     pub fn matrix_mut(&mut self) -> &mut [f64] {
         match self {
             Self::Strips(solver) => solver.matrix_mut(),
@@ -115,7 +116,7 @@ impl SparseSolver {
         }
     }
 
-    /// Numeric L D Lᵀ of the matrix that was filled in, which is lost; returns its negative pivots.
+    /// Computes the numeric factor L D Lᵀ of the matrix that was filled in, which is lost; returns its negative pivots.
     ///
     /// # Errors
     /// Where a pivot is zero or not a number; the factor is then of no use.
@@ -143,7 +144,7 @@ impl SparseSolver {
         }
     }
 
-    /// Numbers in the factor.
+    /// Number of values in the factor.
     pub fn factor_len(&self) -> usize {
         match self {
             Self::Strips(solver) => solver.factor_len(),
@@ -151,7 +152,7 @@ impl SparseSolver {
         }
     }
 
-    /// Threads that can share a factorization.
+    /// Largest number of threads that can share a factorization.
     pub fn most_threads(&self) -> usize {
         match self {
             Self::Strips(solver) => solver.most_threads(),
@@ -159,7 +160,8 @@ impl SparseSolver {
         }
     }
 
-    /// Floating-point operations of a factorization: the sum of the squares of the column counts, or a bound near it.
+    /// Number of floating-point operations of a factorization: the sum of the squares of the column counts, or a bound
+    /// near it.
     pub fn flops(&self) -> f64 {
         match self {
             Self::Strips(solver) => solver.flops(),

@@ -15,35 +15,35 @@ use crate::shell::lanes::{FourLanes, Portable};
 #[cfg(target_arch = "x86_64")]
 use crate::shell::lanes_x86::{Fma, HasFma};
 
-/// Columns of a tile.
+/// Number of columns of a tile.
 const WIDTH: usize = 4;
-/// Tiles of a square block.
+/// Number of tiles of a square block.
 const TILES: usize = HEIGHT / WIDTH;
-/// Columns that a sum takes before it continues to the next tile: those of both strips, 2 × 9 kB, stay in the first cache
-/// (32 kB) for all three tiles. With the whole depth at once a factorization for 128 × 16
-/// cubic elements took 16 ms in place of 14.
+/// Number of columns that a sum takes before it continues to the next tile: those of both strips, 2 × 9 kB, stay in the
+/// first cache (32 kB) for all three tiles. With the whole depth at once a factorization for 128 × 16 cubic elements
+/// took 16 ms in place of 14.
 const STRETCH: usize = 96;
-/// Column of a strip.
+/// One column of a strip.
 pub(super) type Column = [[f64; WIDTH]; TILES];
 
-/// What a chain is factored in.
+/// Storage that a chain is factored in.
 pub(super) struct ChainData<'a> {
     /// The matrix, which becomes L without the ones of its diagonal; on the separator, what is left of the matrix.
     pub factor: &'a mut [Column],
-    /// 1/D of the chain's own rows.
+    /// Inverses of the pivots, 1/D, of the chain's own rows.
     pub inverses: &'a mut [f64],
-    /// Room for N of one strip.
+    /// Buffer for N of one strip.
     pub row: &'a mut [Column],
 }
 
-/// What is done with a chain, in whatever vectors the machine has.
+/// A computation on a chain, written for whatever vectors the machine has.
 trait ChainWork {
     type Output;
 
     fn run<V: FourLanes>(self, proof: V::Proof) -> Self::Output;
 }
 
-/// Does it with the instructions of a build.
+/// Runs a computation with the instructions of a build.
 fn on<W: ChainWork>(build: Build, work: W) -> W::Output {
     match build {
         Build::Portable => work.run::<Portable>(()),
@@ -62,7 +62,7 @@ fn on_fma<W: ChainWork>(proof: HasFma, work: W) -> W::Output {
     work.run::<Fma>(proof)
 }
 
-/// Factors a chain; an error is the place of a pivot that has no inverse.
+/// Factors a chain; the error is the row of a pivot that has no inverse.
 pub(super) fn eliminate(build: Build, chain: &Chain, data: &mut ChainData) -> Result<(), usize> {
     on(build, Eliminate { chain, data })
 }
@@ -118,13 +118,13 @@ fn eliminate_with<V: FourLanes>(proof: V::Proof, chain: &Chain, data: &mut Chain
     Ok(())
 }
 
-/// Where a block's sum begins in its strip, and over how many columns it goes before the block.
+/// The columns of a block's sum: where they begin in its strip, and how many lie before the block.
 struct Block {
     begin: usize,
     depth: usize,
 }
 
-/// A block of the matrix and Σ_k N(i, k) L(j, k) for the columns k of a stretch before it.
+/// Adds Σ_k N(i, k) L(j, k), for the columns k before it, to a block of the matrix.
 #[inline(always)]
 fn sum<V: FourLanes>(proof: V::Proof, values: &[Column], negative: &[Column], lower: &[Column]) -> [Column; HEIGHT] {
     let mut block = [[[0.0; WIDTH]; TILES]; HEIGHT];
@@ -183,7 +183,8 @@ fn store<V: FourLanes>(vectors: [V; TILES], to: &mut Column) {
     }
 }
 
-/// A block left of the diagonal: `lower` are the rows of the other strip, from the first column that both have.
+/// Computes a block left of the diagonal: `lower` are the rows of the other strip, from the first column that both
+/// have.
 #[inline(always)]
 fn off_diagonal_block<V: FourLanes>(
     proof: V::Proof,
@@ -222,8 +223,8 @@ fn off_diagonal_block<V: FourLanes>(
     }
 }
 
-/// The block on the diagonal, `depth` columns after the first; rows from `used` on are none of the matrix's, and their
-/// pivots are 1.
+/// Factors the block on the diagonal, `depth` columns after the first; rows from `used` on do not belong to the matrix,
+/// and their pivots are 1.
 #[inline(always)]
 fn diagonal_block<V: FourLanes>(
     proof: V::Proof,
@@ -245,7 +246,7 @@ fn diagonal_block<V: FourLanes>(
             store(sums[s], &mut numbers);
             let pivot = if place < used { numbers[tile][s] } else { 1.0 };
             inverses[place] = 1.0 / pivot;
-            // Neither zero, nor so small that it has no inverse, nor infinite, nor not a number.
+            // The pivot must not be zero, too small to have an inverse, infinite or NaN.
             if !inverses[place].is_finite() || inverses[place] == 0.0 {
                 return Err(place);
             }
@@ -271,15 +272,16 @@ fn diagonal_block<V: FourLanes>(
     Ok(())
 }
 
-/// What a chain is solved with.
+/// Factor that a chain is solved with.
 pub(super) struct SolveData<'a> {
-    /// L.
+    /// The factor L.
     pub factor: &'a [Column],
-    /// 1/D.
+    /// Inverses of the pivots, 1/D.
     pub inverses: &'a [f64],
 }
 
-/// Forward: in the chain's own rows x becomes L⁻¹ x, and the separator's rows lose what these take from them.
+/// Substitutes forward: in the chain's own rows x becomes L⁻¹ x, whose contributions are subtracted from the
+/// separator's rows.
 pub(super) fn forward(build: Build, chain: &Chain, data: &SolveData, x: &mut [f64]) {
     on(build, Forward { chain, data, x })
 }
@@ -330,7 +332,7 @@ fn forward_with<V: FourLanes>(proof: V::Proof, chain: &Chain, data: &SolveData, 
     }
 }
 
-/// Backward: x = L⁻ᵀ D⁻¹ x in the chain's own rows; those of the separator are known.
+/// Substitutes backward: x becomes L⁻ᵀ D⁻¹ x in the chain's own rows; those of the separator are known.
 pub(super) fn backward(build: Build, chain: &Chain, data: &SolveData, x: &mut [f64]) {
     on(build, Backward { chain, data, x })
 }

@@ -8,7 +8,7 @@
 //! pay, all unknowns are head.
 //!
 //! Each chain holds its rows of the matrix, and of L, as strips; see [`super::strip_kernel`]. Entries of the matrix
-//! between two unknowns of the separator stand with the head.
+//! between two unknowns of the separator are stored with the head.
 
 use crate::energy::Build;
 use crate::equilibrium::sparse::chain::{Chain, HEIGHT};
@@ -16,34 +16,34 @@ use crate::equilibrium::sparse::envelope::Envelope;
 use crate::equilibrium::sparse::strip_kernel::{ChainData, Column, SolveData, backward, eliminate, forward};
 use crate::equilibrium::sparse::structure::{Couplings, FactorError, NegativePivots, room};
 
-/// Which part of a structure an unknown belongs to, and its row there.
+/// Location of an unknown: the part of the structure that it belongs to, and its row there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Part {
+enum Location {
     Head(usize),
     Separator(usize),
     Tail(usize),
 }
 
-/// Structure, and room for one factor.
+/// Solver for long and narrow structures, with room for one factor.
 #[derive(Debug)]
 pub struct StripSolver {
-    /// Instructions that it computes with.
+    /// Build whose instructions it computes with.
     build: Build,
     unknowns: usize,
-    /// The separator's unknowns.
+    /// Unknowns of the separator.
     cut: std::ops::Range<usize>,
     head: Chain,
     tail: Chain,
     middle: Chain,
     flops: f64,
-    /// The matrix and then its factor: head, tail and separator.
+    /// Values of the matrix and then of its factor: head, tail and separator.
     numbers: Vec<f64>,
     inverses: [Vec<f64>; 3],
     scratch: [Vec<f64>; 2],
 }
 
 impl StripSolver {
-    /// Chooses the cut; there is no room for numbers yet.
+    /// Chooses the cut, without allocating room for numbers.
     pub(super) fn structure(couplings: &Couplings, build: Build) -> Self {
         let envelope = Envelope::new(couplings);
         let count = couplings.unknowns;
@@ -56,7 +56,7 @@ impl StripSolver {
             true => reversed(envelope.last[reversed(row)]),
             false => match envelope.last[begin + row - tail_own] {
                 last if last >= end => reversed(last),
-                // Nothing of the tail: the row begins with the separator.
+                // A row that meets nothing of the tail begins with the separator.
                 _ => tail_own,
             },
         });
@@ -76,7 +76,7 @@ impl StripSolver {
         }
     }
 
-    /// Takes the memory.
+    /// Allocates the room for numbers.
     pub(super) fn with_room(mut self) -> Result<Self, FactorError> {
         let entries = self.value_count();
         let too_large = FactorError::TooLarge { size: self.unknowns, entries };
@@ -90,67 +90,68 @@ impl StripSolver {
         Ok(self)
     }
 
-    /// Numbers that the values of a matrix take.
+    /// Number of values that a matrix takes.
     pub(super) fn value_count(&self) -> usize {
         HEIGHT * (self.head.columns() + self.tail.columns())
     }
 
-    /// Operations of a factorization, at most.
+    /// Bound on the number of operations of a factorization.
     pub(super) fn flops(&self) -> f64 {
         self.flops
     }
 
-    /// Numbers in the factor, with the zeros that the envelope holds.
+    /// Number of values in the factor, including the zeros within the envelope.
     pub(super) fn factor_len(&self) -> usize {
         HEIGHT * (self.head.own_columns() + self.tail.own_columns() + self.middle.columns())
     }
 
-    /// Threads that can share a factorization.
+    /// Largest number of threads that can share a factorization.
     pub(super) fn most_threads(&self) -> usize {
         1 + usize::from(self.tail.own > 0)
     }
 
-    /// The unknowns of the separator.
+    /// Unknowns of the separator.
     #[cfg(test)]
     pub(super) fn cut(&self) -> std::ops::Range<usize> {
         self.cut.clone()
     }
 
-    fn part(&self, unknown: usize) -> Part {
+    fn locate(&self, unknown: usize) -> Location {
         if unknown < self.cut.start {
-            Part::Head(unknown)
+            Location::Head(unknown)
         } else if unknown < self.cut.end {
-            Part::Separator(unknown - self.cut.start)
+            Location::Separator(unknown - self.cut.start)
         } else {
-            Part::Tail(self.unknowns - 1 - unknown)
+            Location::Tail(self.unknowns - 1 - unknown)
         }
     }
 
-    /// Where the values hold an entry.
-    pub(super) fn place(&self, a: usize, b: usize) -> Option<usize> {
-        let in_head = |row: usize, column: usize| self.head.place(row.max(column), row.min(column));
+    /// Offset among the values of an entry; `None` where head and tail do not meet.
+    pub(super) fn offset_of(&self, a: usize, b: usize) -> Option<usize> {
+        let in_head = |row: usize, column: usize| self.head.offset_of(row.max(column), row.min(column));
         let in_tail = |row: usize, column: usize| {
-            let place = self.tail.place(row.max(column), row.min(column))?;
+            let place = self.tail.offset_of(row.max(column), row.min(column))?;
             Some(HEIGHT * self.head.columns() + place)
         };
         let separator_in = |chain: &Chain, row: usize| HEIGHT * chain.own_strips + row;
-        match (self.part(a), self.part(b)) {
-            (Part::Head(a), Part::Head(b)) => in_head(a, b),
-            (Part::Head(a), Part::Separator(b)) | (Part::Separator(b), Part::Head(a)) => {
+        match (self.locate(a), self.locate(b)) {
+            (Location::Head(a), Location::Head(b)) => in_head(a, b),
+            (Location::Head(a), Location::Separator(b)) | (Location::Separator(b), Location::Head(a)) => {
                 in_head(a, separator_in(&self.head, b))
             }
-            (Part::Separator(a), Part::Separator(b)) => {
+            (Location::Separator(a), Location::Separator(b)) => {
                 in_head(separator_in(&self.head, a), separator_in(&self.head, b))
             }
-            (Part::Tail(a), Part::Separator(b)) | (Part::Separator(b), Part::Tail(a)) => {
+            (Location::Tail(a), Location::Separator(b)) | (Location::Separator(b), Location::Tail(a)) => {
                 in_tail(a, separator_in(&self.tail, b))
             }
-            (Part::Tail(a), Part::Tail(b)) => in_tail(a, b),
-            (Part::Head(_), Part::Tail(_)) | (Part::Tail(_), Part::Head(_)) => None,
+            (Location::Tail(a), Location::Tail(b)) => in_tail(a, b),
+            (Location::Head(_), Location::Tail(_)) | (Location::Tail(_), Location::Head(_)) => None,
         }
     }
 
-    /// Places on head and separator, and on tail and separator, of what stands at the unknowns.
+    /// Distributes a vector over the rows of head and separator, and of tail and separator; the latter's rows are 0 on
+    /// the tail.
     fn spread(&self, vector: &[f64]) -> [Vec<f64>; 2] {
         let mut parts = [vec![0.0; self.head.rows()], vec![0.0; self.tail.rows()]];
         parts[0][..self.cut.start].copy_from_slice(&vector[..self.cut.start]);
@@ -161,7 +162,7 @@ impl StripSolver {
         parts
     }
 
-    /// The matrix with these values times a vector.
+    /// Multiplies the matrix with these values by a vector.
     pub(super) fn multiply(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
         let (of_head, of_tail) = columns(values).split_at(self.head.columns());
         let [head, mut tail] = self.spread(vector);
@@ -177,7 +178,7 @@ impl StripSolver {
         product
     }
 
-    /// Back to the order of the unknowns; the separator's from the head.
+    /// Collects a vector in the order of the unknowns; the separator's rows come from the head.
     fn gather(&self, [head, tail]: [&[f64]; 2], vector: &mut [f64]) {
         vector[..self.cut.start].copy_from_slice(&head[..self.cut.start]);
         vector[self.cut.clone()].copy_from_slice(&head[HEIGHT * self.head.own_strips..][..self.cut.len()]);
@@ -186,13 +187,13 @@ impl StripSolver {
         }
     }
 
-    /// The matrix, to be filled.
+    /// Values of the matrix, to be filled in.
     pub(super) fn matrix_mut(&mut self) -> &mut [f64] {
         let entries = self.value_count();
         &mut self.numbers[..entries]
     }
 
-    /// Numeric L D Lᵀ in place of the matrix; returns its negative pivots.
+    /// Replaces the matrix by its numeric factor L D Lᵀ; returns its negative pivots.
     pub(super) fn factorize(&mut self) -> Result<NegativePivots, FactorError> {
         let Self { build, head, tail, middle, numbers, inverses, scratch, .. } = self;
         let build = *build;
@@ -259,7 +260,7 @@ impl StripSolver {
     }
 }
 
-/// A chain's rows of the matrix, mirrored, times a vector.
+/// Multiplies a chain's rows of the matrix, with their transposes, by a vector.
 fn multiply_chain(chain: &Chain, values: &[Column], vector: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; vector.len()];
     for strip in 0..chain.first.len() {

@@ -1,37 +1,38 @@
-//! What a factorization takes and tells: which unknowns meet, why there is none, its negative pivots.
+//! What a factorization takes and returns: which unknowns meet, its negative pivots, or why there is no factor.
 
-/// Why a matrix has no usable factor.
+/// Reasons why a matrix has no usable factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FactorError {
     /// A pivot is exactly zero or not a number.
     #[error("the pivot of unknown {index} of {size} is zero or not a number")]
     BadPivot {
-        /// The unknown.
+        /// Index of the unknown.
         index: usize,
-        /// Size of the matrix.
+        /// Number of unknowns of the matrix.
         size: usize,
     },
-    /// Out of memory, or 2³² entries and more.
+    /// The matrix does not fit in memory, or has 2³² entries or more.
     #[error("a matrix of {size} unknowns and {entries} entries is too large for this machine")]
     TooLarge {
-        /// Size of the matrix.
+        /// Number of unknowns of the matrix.
         size: usize,
-        /// Stored entries.
+        /// Number of stored entries.
         entries: usize,
     },
 }
 
-/// The negative part of D.
+/// Negative pivots of a factor L D Lᵀ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NegativePivots {
-    /// How many.
+    /// Number of negative pivots.
     pub count: usize,
-    /// Largest magnitude among them; 0 where there are none.
+    /// Largest magnitude of a negative pivot; 0 where there are none.
     pub largest: f64,
 }
 
 impl NegativePivots {
-    /// Takes one more pivot.
+    /// Takes one more pivot into account.
     pub(super) fn see(&mut self, pivot: f64) {
         if pivot < 0.0 {
             self.count += 1;
@@ -40,7 +41,7 @@ impl NegativePivots {
     }
 }
 
-/// Which unknowns meet in the matrix.
+/// Structure of a matrix: which unknowns meet in it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Couplings {
     /// Number of unknowns.
@@ -58,7 +59,7 @@ impl Couplings {
     }
 }
 
-/// Zeros; `None` where memory does not hold so many.
+/// Allocates zeros; `None` where memory does not hold so many.
 pub(super) fn room(length: usize) -> Option<Vec<f64>> {
     let mut numbers = Vec::new();
     numbers.try_reserve_exact(length).ok()?;

@@ -1,7 +1,7 @@
 //! Factorization of any symmetric structure by faer's supernodes: the only file that names faer.
 //!
-//! In the order that faer finds (approximate minimum degree). Factor and solve with `Par::Seq`: other settings may differ
-//! in bits between thread counts.
+//! Unknowns are eliminated in the order that faer finds (approximate minimum degree). Factor and solve use `Par::Seq`:
+//! other settings may differ in bits between thread counts.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::ldlt::factor::LdltError;
@@ -15,7 +15,7 @@ use faer::{Conj, MatMut, Par, Side};
 
 use crate::equilibrium::sparse::structure::{Couplings, FactorError, NegativePivots, room};
 
-/// Symbolic factor of one structure with room for the numeric one.
+/// Solver for any structure: its symbolic factor with room for the numeric one.
 pub struct SupernodalSolver {
     symbolic: SymbolicCholesky<usize>,
     column_starts: Vec<usize>,
@@ -37,7 +37,7 @@ impl std::fmt::Debug for SupernodalSolver {
 }
 
 impl SupernodalSolver {
-    /// Analyses the structure; there is no room for numbers yet.
+    /// Analyses the structure, without allocating room for numbers.
     ///
     /// # Errors
     /// Where the analysis does not fit in memory.
@@ -56,7 +56,7 @@ impl SupernodalSolver {
         Ok(Self { symbolic, column_starts, rows, values: Vec::new(), factor: Vec::new(), scratch })
     }
 
-    /// Takes the memory.
+    /// Allocates the room for numbers.
     ///
     /// # Errors
     /// Where the factor does not fit in it.
@@ -69,24 +69,24 @@ impl SupernodalSolver {
         Ok(self)
     }
 
-    /// Numbers that the values of a matrix take.
+    /// Number of values that a matrix takes.
     pub(super) fn value_count(&self) -> usize {
         self.rows.len()
     }
 
-    /// The matrix, to be filled.
+    /// Values of the matrix, to be filled in.
     pub(super) fn matrix_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }
 
-    /// Where the values hold an entry.
-    pub(super) fn place(&self, a: usize, b: usize) -> Option<usize> {
+    /// Offset among the values of an entry; `None` where there is none.
+    pub(super) fn offset_of(&self, a: usize, b: usize) -> Option<usize> {
         let (column, row) = (a.min(b), a.max(b));
         let start = self.column_starts[column];
         self.rows[start..self.column_starts[column + 1]].binary_search(&row).ok().map(|offset| start + offset)
     }
 
-    /// The matrix with these values times a vector.
+    /// Multiplies the matrix with these values by a vector.
     pub(super) fn multiply(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; vector.len()];
         for column in 0..vector.len() {
@@ -101,7 +101,7 @@ impl SupernodalSolver {
         product
     }
 
-    /// Numeric L D Lᵀ; returns its negative pivots.
+    /// Computes the numeric factor L D Lᵀ; returns its negative pivots.
     ///
     /// # Errors
     /// Where a pivot is zero or not a number; the factor is then of no use.
@@ -119,7 +119,7 @@ impl SupernodalSolver {
             Default::default(),
         );
         if let Some(LdltError::ZeroPivot { index }) = done.err() {
-            // Counted from one.
+            // faer counts pivots from one.
             return Err(FactorError::BadPivot { index: self.unknown(index.saturating_sub(1)), size });
         }
         let mut negative = NegativePivots::default();
@@ -155,12 +155,12 @@ impl SupernodalSolver {
         );
     }
 
-    /// Numbers in the factor.
+    /// Number of values in the factor.
     pub(super) fn factor_len(&self) -> usize {
         self.factor.len()
     }
 
-    /// Floating-point operations of a factorization: the sum of the squares of the column counts.
+    /// Number of floating-point operations of a factorization: the sum of the squares of the column counts.
     pub(super) fn flops(&self) -> f64 {
         let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else { return 0.0 };
         let of_supernode = |s: usize| {
@@ -189,7 +189,7 @@ impl SupernodalSolver {
     }
 }
 
-/// The lower triangle by columns: starts, and ascending rows.
+/// Lists the lower triangle by columns: starts, and ascending rows.
 fn lower_triangle(couplings: &Couplings) -> (Vec<usize>, Vec<usize>) {
     let mut columns: Vec<Vec<usize>> = (0..couplings.unknowns).map(|unknown| vec![unknown]).collect();
     for [i, j] in couplings.meetings() {
@@ -210,7 +210,7 @@ fn lower_triangle(couplings: &Couplings) -> (Vec<usize>, Vec<usize>) {
     (column_starts, rows)
 }
 
-/// A dense product of two square matrices on one thread: what the processor can do at best.
+/// A dense product of two square matrices on one thread, as a measure of what the processor can do at best.
 pub struct DenseProduct {
     matrix: faer::Mat<f64>,
     product: faer::Mat<f64>,

@@ -33,7 +33,7 @@ fn memory(parameter_rate: f64) -> PathMemory {
     }
 }
 
-fn standing(negative_pivots: u64) -> State {
+fn state_with(negative_pivots: u64) -> State {
     let mesh = Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] };
     State { step: 1, stage: Some(Stage::Solve), negative_pivots, ..State::undeformed(mesh) }
 }
@@ -64,14 +64,14 @@ fn length_after(iterations: usize, turn: f64, length_mm: f64) -> f64 {
     let attempt = PathAttempt { length_mm, may_pass: false, can_be_halved: true };
     let found = point(length_mm, turn, 1.0, 0, iterations);
     let path = PathMemory { next_mm: length_mm, ..memory(1.0) };
-    assert_eq!(attempt.judge(&standing(0), &path, &found), Judgement::Taken(None));
+    assert_eq!(attempt.judge(&state_with(0), &path, &found), Judgement::Taken(None));
     let next = attempt.after(&LIMITS, &path, &found, None);
     assert_eq!((next.travelled_mm, next.critical_ahead), (10.0 + length_mm, None));
     next_path_attempt(&scene(0.01), &LIMITS, &next).length_mm
 }
 
 #[test]
-fn a_step_that_went_on_says_how_long_the_next_one_is() {
+fn a_step_that_continued_says_how_long_the_next_one_is() {
     assert!(length_after(2, GENTLE, 2.0) > 2.0, "few iterations: longer");
     assert!(length_after(11, GENTLE, 2.0) < 2.0, "many: shorter");
     assert!(length_after(2, 0.85, 2.0) < 2.0, "a sharp turn: shorter, however few the iterations");
@@ -90,7 +90,7 @@ fn a_step_that_failed_or_went_too_far_is_halved_until_it_is_too_short() {
         assert_eq!(attempt.length_mm, FIRST_MM / 2.0_f64.powi(tries));
         assert!(attempt.length_mm >= SHORTEST_MM, "{} mm is tried", attempt.length_mm);
         for found in [point(attempt.length_mm, 0.5, 1.0, 0, 3), point(1.6 * attempt.length_mm, 0.99, 1.0, 0, 3)] {
-            assert_eq!(attempt.judge(&standing(0), &path, &found), Judgement::TooFar);
+            assert_eq!(attempt.judge(&state_with(0), &path, &found), Judgement::TooFar);
         }
         match attempt.shortened(&LIMITS, &path) {
             Some(shorter) => path = shorter,
@@ -112,7 +112,7 @@ fn a_failure_inside_a_bracket_keeps_the_bracket() {
     assert_eq!((attempt.length_mm, attempt.may_pass), (0.5, false));
     let shorter = attempt.shortened(&LIMITS, &path).unwrap();
     assert_eq!(next_path_attempt(&scene(0.01), &LIMITS, &shorter).length_mm, 0.25);
-    assert_eq!(shorter.next_mm, path.next_mm, "beyond it the path goes on as before");
+    assert_eq!(shorter.next_mm, path.next_mm, "beyond it the path continues as before");
     let finest = LOCATED * FIRST_MM;
     let last = PathMemory { critical_ahead: Some(CriticalAhead { within_mm: finest, ..ahead }), ..memory(1.0) };
     let attempt = next_path_attempt(&scene(1e-9), &LIMITS, &last);
@@ -155,7 +155,7 @@ impl Track {
             assert!(attempt.length_mm > 0.0);
             let there = s + attempt.length_mm;
             let found = point(attempt.length_mm, GENTLE, self.rate(there), self.pivots(there) as usize, 3);
-            match attempt.judge(&standing(self.pivots(s)), &path, &found) {
+            match attempt.judge(&state_with(self.pivots(s)), &path, &found) {
                 Judgement::Taken(passed) => {
                     let known = path.critical_ahead.map(|ahead| s + ahead.within_mm);
                     path = attempt.after(&LIMITS, &path, &found, passed);
@@ -226,7 +226,7 @@ fn a_reflected_step_is_never_taken_while_it_can_be_halved() {
                 let attempt = next_path_attempt(&scene, &LIMITS, &path);
                 // What looks like a step onwards: straight ahead, and as far as it should be.
                 let found = point(attempt.length_mm, GENTLE, -rate, 1, 3);
-                match attempt.judge(&standing(1), &path, &found) {
+                match attempt.judge(&state_with(1), &path, &found) {
                     Judgement::Taken(_) => {
                         let length = attempt.length_mm;
                         let can_be_halved = 0.5 * length >= SHORTEST_MM * (1.0 + 1e-12);

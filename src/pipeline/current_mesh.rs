@@ -1,4 +1,4 @@
-//! What stages keep of the meshes that they meet.
+//! What stages keep of the current mesh, so that it is built once.
 
 use std::sync::Arc;
 
@@ -9,16 +9,17 @@ use crate::model::{ModelError, Unknowns};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
-/// The workspace of the mesh in hand, and the unknowns of a mesh that has no workspace yet. Both are made once a mesh.
+/// The workspace of the current mesh, and the unknowns of a mesh that has no workspace yet. Both are made once for each
+/// mesh.
 #[derive(Debug, Default)]
-pub(super) struct MeshInHand {
+pub(super) struct CurrentMesh {
     work: Option<Workspace>,
     ahead: Option<(Arc<Mesh>, Unknowns)>,
     enriched: Option<(Arc<Mesh>, [Enriched; 2])>,
 }
 
-impl MeshInHand {
-    /// The unknowns of a mesh.
+impl CurrentMesh {
+    /// Returns the unknowns of a mesh, which are made if they are not kept.
     pub fn unknowns(&mut self, scene: &Scene, mesh: &Arc<Mesh>) -> Result<&Unknowns, ModelError> {
         match &self.work {
             Some(work) if is_same(&work.discretization().mesh, mesh) => Ok(&work.discretization().unknowns),
@@ -29,7 +30,7 @@ impl MeshInHand {
         }
     }
 
-    /// The workspace of a mesh.
+    /// Returns the workspace of a mesh, which is made if it is not kept.
     pub fn workspace(
         &mut self,
         scene: &Scene,
@@ -47,7 +48,7 @@ impl MeshInHand {
     }
 }
 
-impl MeshInHand {
+impl CurrentMesh {
     /// The shell on a mesh with the spans of one direction halved, for either direction.
     pub fn enriched(
         &mut self,
@@ -63,7 +64,7 @@ impl MeshInHand {
     }
 }
 
-/// The unknowns that are kept, where they are of this mesh, or new ones.
+/// Takes the kept unknowns where they belong to this mesh, or makes new ones.
 fn taken(kept: &mut Option<(Arc<Mesh>, Unknowns)>, scene: &Scene, mesh: &Arc<Mesh>) -> Result<Unknowns, ModelError> {
     match kept.take() {
         Some((known, unknowns)) if is_same(&known, mesh) => Ok(unknowns),

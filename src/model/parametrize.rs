@@ -1,4 +1,4 @@
-//! Fractions of length and angle to NURBS parameters.
+//! Conversion of fractions of length and angle to NURBS parameters.
 //!
 //! A rational quadratic segment of sweep s reaches the angle s/2 + 2 atan((2t − 1) tan(s/4)) at its parameter t: with
 //! the weights (1, cos(s/2), 1), the half-angle tangent about its middle is linear in t.
@@ -6,7 +6,7 @@
 use crate::scene::{Geometry, Place, Scene};
 use crate::spline::{Mesh, Spans, segment_count};
 
-/// Parameters of a point at fractions of the length or the angle in u and v.
+/// Finds the parameters of a point at fractions of the length or the angle in u and v.
 pub fn parameters_of(geometry: &Geometry, fractions: [f64; 2]) -> [f64; 2] {
     let [u, v] = fractions;
     match geometry {
@@ -18,7 +18,7 @@ pub fn parameters_of(geometry: &Geometry, fractions: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// Parameter at a fraction of the angle of an arc.
+/// Finds the parameter at a fraction of the angle of an arc.
 fn on_arc(arc_deg: f64, fraction: f64) -> f64 {
     let sweep = arc_deg.to_radians();
     let segments = segment_count(sweep) as f64;
@@ -32,31 +32,31 @@ fn on_arc(arc_deg: f64, fraction: f64) -> f64 {
     (segment + t) / segments
 }
 
-/// Parameters of points spread over a direction: the ends and the middles of its spans.
-pub(super) fn sample_parameters(mesh: &Mesh, way: usize) -> Vec<f64> {
-    let bounds = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
+/// Lists sample parameters of a direction: the ends and the middles of its spans.
+pub(super) fn sample_parameters(mesh: &Mesh, direction: usize) -> Vec<f64> {
+    let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
     bounds.iter().flat_map(|[from, to]| [*from, 0.5 * (from + to)]).chain([1.0]).collect()
 }
 
-/// A line across the surface, or an edge.
+/// A line across the surface, or an edge, in parameters of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct LinePlace {
     /// Direction (0 or 1) whose parameter is constant on it.
-    pub way: usize,
-    /// That parameter.
+    pub direction: usize,
+    /// Value of that parameter.
     pub parameter: f64,
-    /// The first control index of that direction whose function stands beyond it.
+    /// First control index in that direction whose function lies beyond the line.
     pub first_beyond: usize,
 }
 
-/// Where a line or an edge lies; `None` for other places.
+/// Finds where a line or an edge lies; `None` for other places.
 pub fn line_place(scene: &Scene, mesh: &Mesh, on: Place) -> Option<LinePlace> {
     let Place::Line(direction, fraction) = on else { return None };
-    let way = direction.index();
-    let parameter = parameters_of(&scene.geometry, [fraction; 2])[way];
-    let degree = mesh.degree[way];
-    let greville = |k: usize| mesh.knots[way][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;
-    let count = mesh.control_counts()[way];
+    let direction = direction.index();
+    let parameter = parameters_of(&scene.geometry, [fraction; 2])[direction];
+    let degree = mesh.degree[direction];
+    let greville = |k: usize| mesh.knots[direction][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;
+    let count = mesh.control_counts()[direction];
     let first_beyond = (0..count).find(|k| greville(*k) > parameter).unwrap_or(count);
-    Some(LinePlace { way, parameter, first_beyond })
+    Some(LinePlace { direction, parameter, first_beyond })
 }

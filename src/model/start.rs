@@ -14,9 +14,9 @@ use crate::spline::{Grid, Mesh};
 /// Builds the starting mesh.
 ///
 /// # Errors
-/// Where the ends of a tape spring leave no free control points between them, the mesh is too large, the surface is none
-/// that a shell can have, or too curved or small for its thickness or offset, something is not its own mirror image at a plane of symmetry, or a load by the projected area
-/// meets both sides.
+/// Where the ends of a tape spring leave no free control points between them, the mesh is too large, the surface is not
+/// one that a shell can have or too curved or small for its thickness or offset, something is not its own mirror image
+/// at a plane of symmetry, or a load by the projected area meets both sides.
 pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     let shape = shape(scene)?;
     if scene.end_rotation().is_some() {
@@ -27,7 +27,7 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
         }
     }
     check_rows(scene, &shape)?;
-    let count = Grid::new([0, 1].map(|way| shape.elements[way] + shape.mesh.degree[way])).len();
+    let count = Grid::new([0, 1].map(|direction| shape.elements[direction] + shape.mesh.degree[direction])).len();
     if count > MOST_CONTROL_POINTS {
         return Err(ModelError::TooManyControlPoints { elements: shape.elements, count });
     }
@@ -38,20 +38,20 @@ pub fn starting_mesh(scene: &Scene) -> Result<Mesh, ModelError> {
     Ok(mesh)
 }
 
-/// An edge that a section holds, turning the normal with it, takes two rows of control points; where that across takes two of
-/// three as well, one of the sections loses its hold.
+/// Refuses meshes with too few rows of control points. An edge that a section holds, turning the normal with it, takes
+/// two rows; where the opposite edge takes two of three as well, one of the sections loses its hold.
 fn check_rows(scene: &Scene, shape: &Shape) -> Result<(), ModelError> {
-    let is_held = |way: usize, at_end: bool| {
+    let is_held = |direction: usize, at_end: bool| {
         scene.supports.iter().any(|support| {
             let turns = matches!(support.hold, Hold::Rigid { normals_turn: true, .. });
-            turns && matches!(support.on, Place::Edge(edge) if side(edge) == (way, at_end))
+            turns && matches!(support.on, Place::Edge(edge) if side(edge) == (direction, at_end))
         })
     };
-    for way in 0..2 {
-        let (elements, degree) = (shape.elements[way], scene.mesh.degree[way]);
+    for direction in 0..2 {
+        let (elements, degree) = (shape.elements[direction], scene.mesh.degree[direction]);
         let rows = elements + degree;
-        if rows < 4 && is_held(way, false) && is_held(way, true) {
-            let along = ["u", "v"][way];
+        if rows < 4 && is_held(direction, false) && is_held(direction, true) {
+            let along = ["u", "v"][direction];
             return Err(ModelError::TooFewRows { along, elements, degree, rows, least: 4 - degree });
         }
     }
