@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{print, print_json, say};
+use super::output::{eprint, print, print_json};
 use super::scene_file::read_scene;
 use super::session::use_threads;
 use crate::scene::Scene;
@@ -84,7 +84,7 @@ impl Arguments {
             0 => "all as stated".to_owned(),
             some => format!("{some} not as stated"),
         };
-        say(&format!("{}, {verdict}, {}", count(names.len(), "scene"), duration(begin.elapsed().as_secs_f64())));
+        eprint(&format!("{}, {verdict}, {}", count(names.len(), "scene"), duration(begin.elapsed().as_secs_f64())));
         Ok(u8::from(failed > 0))
     }
 

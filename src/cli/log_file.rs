@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::failure::Failure;
-use super::output::{path_in_line, say};
+use super::output::{eprint, path_in_line};
 use super::scene_file::rendered;
 use crate::history::{LoggedSceneError, logged_scene, read_probes, redefined_probes};
 use crate::journal::{
@@ -183,7 +183,7 @@ pub(super) fn end_scene(log: &Log, path: &Path) -> Result<(Scene, bool), Failure
 /// Says what of a log is lost.
 pub(super) fn say_warnings(log: &Log, path: &Path) {
     for warning in ReadLog::warnings_of(log) {
-        say(&format!("foldline: {}: {warning}", path_in_line(path)));
+        eprint(&format!("foldline: {}: {warning}", path_in_line(path)));
     }
 }
 
@@ -226,7 +226,7 @@ pub(super) fn say_other_numerics(log: &Log) {
     let here = Manifest::here(Path::new(""), "", 0);
     for manifest in log.manifests() {
         if let Some(otherwise) = here.rounds_otherwise(manifest) {
-            say(&format!("stages from {} on: {otherwise}", manifest.first_ordinal));
+            eprint(&format!("stages from {} on: {otherwise}", manifest.first_ordinal));
         }
     }
 }

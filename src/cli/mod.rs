@@ -53,7 +53,7 @@ use failure::{EXIT_CODES, Failure};
 
 pub use extremes::ExtremesTable;
 pub use json_line::json_line;
-pub use progress::{Manner, Shown};
+pub use progress::{ProgressSink, ProgressStyle};
 pub use stage_table::{stage_table, step_in_full};
 
 /// Thin shells that fold, simulated as a pipeline of restartable stages
@@ -130,8 +130,8 @@ pub fn main() -> ExitCode {
         Err(failure) => {
             match &failure {
                 // Its lines are rendered for a terminal where there is one, and what stands in them is made printable there.
-                Failure::WrongScene { .. } => output::say_rendered(&failure.in_full()),
-                _ => output::say(&failure.in_full()),
+                Failure::WrongScene { .. } => output::eprint_rendered(&failure.in_full()),
+                _ => output::eprint(&failure.in_full()),
             }
             ExitCode::from(failure.exit_code())
         }

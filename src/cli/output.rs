@@ -38,12 +38,12 @@ pub(super) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
 }
 
 /// Says something beside the output; nobody has to listen.
-pub(super) fn say(text: &str) {
-    say_rendered(&printable(text));
+pub(super) fn eprint(text: &str) {
+    eprint_rendered(&printable(text));
 }
 
 /// The same for text that was made for a terminal, colours and all.
-pub(super) fn say_rendered(text: &str) {
+pub(super) fn eprint_rendered(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 

@@ -4,7 +4,7 @@
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget};
 
 use super::json_line::json_line;
 use super::load_step::Gatherer;
@@ -16,7 +16,7 @@ use crate::units::{count, rounded};
 
 /// How a run is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manner {
+pub enum ProgressStyle {
     /// Nothing.
     Quiet,
     /// A line that changes in place, on standard error.
@@ -27,20 +27,20 @@ pub enum Manner {
     Json,
 }
 
-impl Manner {
+impl ProgressStyle {
     /// What the arguments ask for; a live line only where standard error is a terminal.
     pub fn of(quiet: bool, json: bool) -> Self {
         match (quiet, json) {
-            (_, true) => Manner::Json,
-            (true, _) => Manner::Quiet,
-            _ if io::stderr().is_terminal() => Manner::Live,
-            _ => Manner::Lines,
+            (_, true) => ProgressStyle::Json,
+            (true, _) => ProgressStyle::Quiet,
+            _ if io::stderr().is_terminal() => ProgressStyle::Live,
+            _ => ProgressStyle::Lines,
         }
     }
 }
 
 /// A sink that shows every stage after the sink within has taken it, so that what is shown is also kept.
-pub struct Shown<'a, S> {
+pub struct ProgressSink<'a, S> {
     inner: S,
     display: Display<'a>,
     records: Vec<Record>,
@@ -63,27 +63,29 @@ enum Display<'a> {
     Json(Option<Box<dyn Write + 'a>>),
 }
 
-impl<'a, S: Sink> Shown<'a, S> {
+impl<'a, S: Sink> ProgressSink<'a, S> {
     /// Shows a run of `scene` from a rotation (0, or where it is taken up again) to another, degrees, to the streams
     /// of this process.
-    pub fn new(inner: S, manner: Manner, scene: &Scene, [start, target]: [f64; 2]) -> Self {
+    pub fn new(inner: S, style: ProgressStyle, scene: &Scene, [start, target]: [f64; 2]) -> Self {
         let gatherer = Gatherer::new(scene);
-        let display = match manner {
-            Manner::Quiet => Display::Quiet,
-            Manner::Live => Display::Live { bar: live_bar(Parameter::of(scene), target, start), target, gatherer },
-            Manner::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
-            Manner::Json => Display::Json(Some(Box::new(io::stdout()))),
+        let display = match style {
+            ProgressStyle::Quiet => Display::Quiet,
+            ProgressStyle::Live => {
+                Display::Live { bar: live_bar(Parameter::of(scene), target, start), target, gatherer }
+            }
+            ProgressStyle::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
+            ProgressStyle::Json => Display::Json(Some(Box::new(io::stdout()))),
         };
         Self { inner, display, records: Vec::new(), warned: Vec::new() }
     }
 
-    /// Writes lines as [`Manner::Lines`] to `out`.
+    /// Writes lines as [`ProgressStyle::Lines`] to `out`.
     pub fn lines(inner: S, scene: &Scene, out: impl Write + 'a) -> Self {
         let display = Display::Lines { out: Box::new(out), gatherer: Gatherer::new(scene) };
         Self { inner, display, records: Vec::new(), warned: Vec::new() }
     }
 
-    /// Writes lines as [`Manner::Json`] to `out`.
+    /// Writes lines as [`ProgressStyle::Json`] to `out`.
     pub fn json(inner: S, out: impl Write + 'a) -> Self {
         Self { inner, display: Display::Json(Some(Box::new(out))), records: Vec::new(), warned: Vec::new() }
     }
@@ -146,7 +148,7 @@ impl<'a, S: Sink> Shown<'a, S> {
     }
 }
 
-impl<S> Shown<'_, S> {
+impl<S> ProgressSink<'_, S> {
     /// Lines for warnings of kinds that were not shown yet; how often each was said stands in the summary.
     fn new_warnings(&mut self, record: &Record) -> Vec<String> {
         let mut lines = Vec::new();
@@ -161,7 +163,7 @@ impl<S> Shown<'_, S> {
     }
 }
 
-impl<S: Sink> Sink for Shown<'_, S> {
+impl<S: Sink> Sink for ProgressSink<'_, S> {
     fn take(&mut self, state: &State, record: &Record) -> Result<(), SinkError> {
         self.inner.take(state, record)?;
         self.records.push(record.clone());
@@ -181,7 +183,8 @@ fn thousandths(parameter: f64) -> u64 {
 
 fn live_bar(driven_by: Parameter, target: f64, start: f64) -> ProgressBar {
     let template = "{prefix}  {bar:10}  {wide_msg}  {elapsed}, {eta} left";
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style =
+        indicatif::ProgressStyle::with_template(template).unwrap_or_else(|_| indicatif::ProgressStyle::default_bar());
     let bar = ProgressBar::with_draw_target(Some(thousandths(target)), ProgressDrawTarget::stderr())
         .with_style(style.progress_chars("━╸─"))
         .with_prefix(live_prefix(driven_by, start, target))

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{file_name, path_in_line, print, say};
+use super::output::{eprint, file_name, path_in_line, print};
 use crate::history::mended;
 use crate::journal::{Log, RecoverOutcome, recover, recover_mended};
 use crate::units::count;
@@ -41,7 +41,7 @@ impl Arguments {
         let outcome = outcome.map_err(|source| Failure::WrongLog { log: log.clone(), source: Box::new(source) })?;
         // Where the mended log does not read as it should, the good part of the log itself is what is kept.
         if made > 0 && matches!(outcome, RecoverOutcome::Lossless { .. }) {
-            say(&format!(
+            eprint(&format!(
                 "made again what was lost, {}: the stages behind follow on it; but how long it took is not known any more",
                 count(made, "stage")
             ));

@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{ReadLog, scene_of};
-use super::output::{path_in_line, print, say};
+use super::output::{eprint, path_in_line, print};
 use super::probe_table::{json_lines, new_probes, probe_table};
-use super::progress::Manner;
+use super::progress::ProgressStyle;
 use super::session::{RunOptions, drive, watch_signals};
 use crate::history::{basis, plan, read_probes, restored_scene};
 use crate::journal::{Completeness, Entry, Log, Manifest, ReadError, Resume, ResumeError, Resumed, stages_in_words};
@@ -50,7 +50,7 @@ impl Arguments {
             log: self.log,
             threads: self.threads.map(usize::from),
             until: self.until,
-            manner: Manner::of(self.quiet, self.json),
+            style: ProgressStyle::of(self.quiet, self.json),
         };
         let last = old.claim.log().manifests().last();
         let (file, text) = last.map_or_else(Default::default, |m| (m.scene_file.clone(), m.scene_text.clone()));
@@ -112,9 +112,9 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let lost = ReadLog::warnings_of(log).into_iter().chain(restored).chain(plan.changes);
     let mut findings = other_numerics(log, &manifest);
     if options.is_shown() {
-        say(&found(log, plan.keep));
+        eprint(&found(log, plan.keep));
     }
-    lost.for_each(|line| say(&line));
+    lost.for_each(|line| eprint(&line));
     let mut stages = Stages::new(scene.clone());
     if !same_scene {
         // What a run of it from the start would refuse is refused.
@@ -139,7 +139,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
         None => findings.push(format!("nothing to do: the log has reached {shown}")),
     }
     if options.is_shown() {
-        findings.iter().for_each(|line| say(line));
+        findings.iter().for_each(|line| eprint(line));
     }
     let finished = log.completeness() == Completeness::Finished && plan.keep == all;
     // One that lost its summary is closed again.
@@ -173,8 +173,8 @@ fn scene_before(log: &Log, path: &Path, scene: &Scene) -> Result<(Scene, Option<
 /// Shows what probes that a log has not read on its equilibria.
 fn show_probes(names: &[String], before: &[Record], options: &RunOptions) -> Result<(), Failure> {
     let head = "new probes on the equilibria of the log, which itself keeps the ones that it has";
-    match options.manner {
-        Manner::Json => print(&json_lines(before)),
+    match options.style {
+        ProgressStyle::Json => print(&json_lines(before)),
         _ => print(&format!("{head}\n{}", probe_table(names, before))),
     }
 }
@@ -197,14 +197,14 @@ fn put_back(
 ) -> Result<(), Failure> {
     let path = &options.log;
     let finished = claim.log().completeness() == Completeness::Finished;
-    ReadLog::warnings_of(claim.log()).iter().for_each(|line| say(line));
+    ReadLog::warnings_of(claim.log()).iter().for_each(|line| eprint(line));
     let resumed = claim
         .put_back(manifest, sync)
         .map_err(|source| Failure::Resume { log: path.clone(), source: Box::new(source) })?;
     say_dropped(&resumed);
     let closed = if finished { resumed.writer.finish() } else { resumed.writer.close() };
     closed.map_err(|source| Failure::WrongLog { log: path.clone(), source: Box::new(source) })?;
-    say(&format!(
+    eprint(&format!(
         "put back: the scene of {stages}, which this is. No stage was run; `foldline resume` goes on with that of the last"
     ));
     Ok(())
@@ -212,7 +212,7 @@ fn put_back(
 
 fn say_dropped(resumed: &Resumed) {
     if let Some(dropped) = &resumed.dropped {
-        say(&format!("what was dropped is kept in {}", path_in_line(dropped)));
+        eprint(&format!("what was dropped is kept in {}", path_in_line(dropped)));
     }
 }
 

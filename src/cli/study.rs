@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{path_in_line, print, print_json, say};
+use super::output::{eprint, path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
 use crate::scene::Scene;
@@ -77,7 +77,7 @@ impl Arguments {
             comparable.map_err(|cause| Failure::Study { case: case.label(), source: Box::new(cause) })?;
         }
         if !self.json {
-            say(&format!("reference: {name}"));
+            eprint(&format!("reference: {name}"));
         }
         let failed = |case: String| move |source: AccuracyError| Failure::Study { case, source: Box::new(source) };
         let expected = measure(&reference).map_err(failed(name.clone()))?;
@@ -140,7 +140,7 @@ impl Arguments {
             }));
         }
         print(&format!("{:<width$}  failed\n", case.label()))?;
-        say(&failure.in_full());
+        eprint(&failure.in_full());
         Ok(())
     }
 

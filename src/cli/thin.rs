@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{file_name, path_in_line, print, say};
+use super::output::{eprint, file_name, path_in_line, print};
 use crate::journal::{ThinError, Thinned, thin};
 use crate::units::count;
 
@@ -38,7 +38,7 @@ impl Arguments {
             source => Failure::WrongLog { log: log.clone(), source: Box::new(source) },
         })?;
         for (text, choice) in &keep.choices {
-            not_kept(text, *choice, &thinned, &log).iter().for_each(|line| say(line));
+            not_kept(text, *choice, &thinned, &log).iter().for_each(|line| eprint(line));
         }
         let [before, after] = thinned.bytes.map(|bytes| bytes as f64 / 1e6);
         print(&format!(

@@ -23,7 +23,7 @@ impl IndexBisection {
 
     /// Narrows the search by what was seen at `index`.
     #[must_use]
-    pub fn told(self, index: usize, holds: bool) -> Self {
+    pub fn narrowed(self, index: usize, holds: bool) -> Self {
         if holds {
             Self { high: index.min(self.high), ..self }
         } else {
@@ -60,7 +60,7 @@ impl LoadBisection {
 
     /// Narrows the bracket by what a solve showed.
     #[must_use]
-    pub fn told(self, parameter: f64, jumped: bool) -> Self {
+    pub fn narrowed(self, parameter: f64, jumped: bool) -> Self {
         if jumped { Self { beyond: parameter, ..self } } else { Self { below: parameter, ..self } }
     }
 
@@ -81,7 +81,7 @@ mod tests {
                 let mut search = IndexBisection::new(len);
                 let mut looks = 0;
                 while let Some(index) = search.next() {
-                    search = search.told(index, index >= first);
+                    search = search.narrowed(index, index >= first);
                     looks += 1;
                 }
                 assert_eq!(search.answer(), first);
@@ -95,7 +95,7 @@ mod tests {
         let mut search = LoadBisection::new(9.0, 10.0, 1e-4);
         let mut tries = 0;
         while let Some(load) = search.next() {
-            search = search.told(load, load > 9.876_543);
+            search = search.narrowed(load, load > 9.876_543);
             tries += 1;
         }
         let [below, beyond] = search.bracket();

@@ -41,7 +41,7 @@ pub fn find_parting(a: &AskedLog, b: &AskedLog) -> Result<Option<Parting>, Remak
         let [x, y] = both(index)?;
         let parted =
             if same_scene { x.chain_hash != y.chain_hash } else { (x.stage, x.state_hash) != (y.stage, y.state_hash) };
-        search = search.told(index, parted);
+        search = search.narrowed(index, parted);
         looks += 1;
     }
     let index = search.answer();

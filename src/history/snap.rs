@@ -123,16 +123,17 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance: f64) -> Result<S
     let before = before.map(|place| log.first() + place);
     let start = states.at(before.ok_or(SnapError::NothingBefore)?)?;
     let mut work = Workspace::with_terms(scene, &start.mesh, states.own_terms())?;
-    let mut tries = Tries { scene, work: &mut work, count: 0 };
+    let mut attempts = SnapSearch { scene, work: &mut work, count: 0 };
 
     let mut stable = start;
     let mut beyond = reached.max(stable.parameter);
     let along_path = stable.drive.path().is_some();
     loop {
-        let gently = if beyond > stable.parameter { tries.gently(&stable, beyond)? } else { Some(stable.clone()) };
-        match gently {
+        let next =
+            if beyond > stable.parameter { attempts.solve_unless_jump(&stable, beyond)? } else { Some(stable.clone()) };
+        match next {
             None => break,
-            Some(next) if along_path && tries.count < MOST_TRIES => {
+            Some(next) if along_path && attempts.count < MOST_ATTEMPTS => {
                 stable = next;
                 beyond = stable.parameter + scene.load.increment();
             }
@@ -141,16 +142,16 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance: f64) -> Result<S
     }
     let mut search = LoadBisection::new(stable.parameter, beyond, tolerance);
     while let Some(parameter) = search.next() {
-        let next = tries.gently(&stable, parameter)?;
-        search = search.told(parameter, next.is_none());
+        let next = attempts.solve_unless_jump(&stable, parameter)?;
+        search = search.narrowed(parameter, next.is_none());
         if let Some(next) = next {
             stable = next;
         }
     }
     let bracket = search.bracket();
-    let (after, work_done, most_negative) = tries.through(&stable, bracket[1])?;
-    let critical = tries.what_is_passed(&stable, bracket);
-    let solves = tries.count;
+    let (after, work_done, most_negative) = attempts.solve_across_jump(&stable, bracket[1])?;
+    let critical = attempts.critical_point_after(&stable, bracket);
+    let solves = attempts.count;
     let (mode, mode_at) = mode_of(scene, &mut work, &stable).map_err(|source| SnapError::Solve {
         from: shown(stable.parameter),
         to: shown(stable.parameter),
@@ -170,17 +171,17 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance: f64) -> Result<S
 }
 
 /// Solves before a search gives up.
-const MOST_TRIES: usize = 100;
+const MOST_ATTEMPTS: usize = 100;
 
-struct Tries<'a> {
+struct SnapSearch<'a> {
     scene: &'a Scene,
     work: &'a mut Workspace,
     count: usize,
 }
 
-impl Tries<'_> {
+impl SnapSearch<'_> {
     /// The equilibrium at a rotation, if the shell reaches it without passing an unstable shape or releasing energy.
-    fn gently(&mut self, from: &State, parameter: f64) -> Result<Option<State>, SnapError> {
+    fn solve_unless_jump(&mut self, from: &State, parameter: f64) -> Result<Option<State>, SnapError> {
         let stable = from.negative_pivots as usize;
         let (reached, work) = match self.solve(from, parameter, &mut |iterate| iterate.negative_pivots > stable) {
             Ok(reached) => reached,
@@ -199,13 +200,13 @@ impl Tries<'_> {
 
     /// Follows the path from the last stable state until something changes. Steps grow from what the bracket is wide, since
     /// the length of the path to a limit point goes with the square root of that.
-    fn what_is_passed(&mut self, from: &State, bracket: [f64; 2]) -> Option<CriticalPoint> {
+    fn critical_point_after(&mut self, from: &State, bracket: [f64; 2]) -> Option<CriticalPoint> {
         let mut continuation = Continuation::new(self.scene, self.work);
         let start = continuation.heading_at(Configuration::of(from), Sense::Parameter { grows: true }).ok()?;
         let mut length = (bracket[1] - bracket[0]).abs().max(f64::EPSILON * bracket[1].abs()) / start.parameter;
         let mut heading = start;
         let mut at = from.clone();
-        for _ in 0..MOST_TRIES {
+        for _ in 0..MOST_ATTEMPTS {
             self.count += 1;
             let Ok(point) = continuation.step(Configuration::of(&at), &heading.motion, length, &mut |_| false) else {
                 length *= 0.5;
@@ -235,7 +236,7 @@ impl Tries<'_> {
     }
 
     /// The equilibrium at a rotation however it is reached, the work done, and the most negative pivots on the way.
-    fn through(&mut self, from: &State, parameter: f64) -> Result<(State, f64, usize), SnapError> {
+    fn solve_across_jump(&mut self, from: &State, parameter: f64) -> Result<(State, f64, usize), SnapError> {
         let mut most = 0;
         let mut watch = |iterate: &Iterate| {
             most = most.max(iterate.negative_pivots);

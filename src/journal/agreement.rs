@@ -27,7 +27,7 @@ pub(super) fn disagreement(report: &Report, state: &State) -> Option<Disagreemen
     let counted = state.refined.as_ref().filter(|_| report.stage == Stage::RefineKnots).unwrap_or(&state.mesh);
     let marked = match report.stage {
         Stage::RefineKnots => report.marked,
-        _ => [0, 1].map(|way| state.marked[way].len()),
+        _ => [0, 1].map(|direction| state.marked[direction].len()),
     };
     differs("parameter", report.parameter, state.parameter)
         .or_else(|| differs("moment_n_mm", report.moment_n_mm, state.moment_n_mm).filter(|_| turns))

@@ -8,38 +8,38 @@ use crate::state::{Course, CriticalAhead, DriveMemory, Mesh, PathMemory, Previou
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Flaw {
     /// A degree that no kernel is built for.
-    #[error("degree {degree} in direction {} (it must be {} to {})", way + 1, DEGREES.start(), DEGREES.end())]
+    #[error("degree {degree} in direction {} (it must be {} to {})", direction + 1, DEGREES.start(), DEGREES.end())]
     Degree {
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// The degree.
         degree: usize,
     },
     /// Too few knots for the degree.
-    #[error("{found} knots in direction {} for degree {degree} (it takes at least {})", way + 1, 2 * (degree + 1))]
+    #[error("{found} knots in direction {} for degree {degree} (it takes at least {})", direction + 1, 2 * (degree + 1))]
     FewKnots {
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// The degree.
         degree: usize,
         /// Knots there are.
         found: usize,
     },
     /// A knot smaller than the one before it.
-    #[error("knot {index} in direction {} is {value}, smaller than the one before it", way + 1)]
+    #[error("knot {index} in direction {} is {value}, smaller than the one before it", direction + 1)]
     KnotOrder {
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// Place in the knot vector.
         index: usize,
         /// The knot.
         value: f64,
     },
     /// A knot repeated so often that the surface falls apart, or a knot vector that is not open.
-    #[error("knot {value} in direction {} stands {found} times for degree {degree}", way + 1)]
+    #[error("knot {value} in direction {} stands {found} times for degree {degree}", direction + 1)]
     KnotMultiplicity {
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// The degree.
         degree: usize,
         /// The knot.
@@ -76,12 +76,12 @@ pub enum Flaw {
         value: f64,
     },
     /// A marked knot that the mesh cannot have, or one that the refined mesh lacks.
-    #[error("{what} knot {value} in direction {} is not a knot that this mesh can have", way + 1)]
+    #[error("{what} knot {value} in direction {} is not a knot that this mesh can have", direction + 1)]
     ForeignKnot {
         /// "marked" or "the mesh's".
         what: &'static str,
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// The knot.
         value: f64,
     },
@@ -122,19 +122,19 @@ fn finite(what: &'static str, values: impl IntoIterator<Item = f64, IntoIter: Cl
 /// # Errors
 /// The first flaw.
 pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
-    for way in 0..2 {
-        let (degree, knots) = (mesh.degree[way], &mesh.knots[way]);
+    for direction in 0..2 {
+        let (degree, knots) = (mesh.degree[direction], &mesh.knots[direction]);
         if !DEGREES.contains(&degree) {
-            return Err(Flaw::Degree { way, degree });
+            return Err(Flaw::Degree { direction, degree });
         }
         check_knots(knots, degree, 0.0).map_err(|flaw| match flaw {
-            KnotFlaw::Few { .. } => Flaw::FewKnots { way, degree, found: knots.len() },
+            KnotFlaw::Few { .. } => Flaw::FewKnots { direction, degree, found: knots.len() },
             KnotFlaw::NotFinite { index } => Flaw::NotFinite { what: "knot", index, value: knots[index] },
-            KnotFlaw::Descending { index } => Flaw::KnotOrder { way, index, value: knots[index] },
+            KnotFlaw::Descending { index } => Flaw::KnotOrder { direction, index, value: knots[index] },
             // No distance is asked for.
-            KnotFlaw::TooNear { pair: [value, _], .. } => Flaw::KnotMultiplicity { way, degree, value, found: 1 },
+            KnotFlaw::TooNear { pair: [value, _], .. } => Flaw::KnotMultiplicity { direction, degree, value, found: 1 },
             KnotFlaw::NotClamped { knot: value, times: found } | KnotFlaw::Tears { knot: value, times: found } => {
-                Flaw::KnotMultiplicity { way, degree, value, found }
+                Flaw::KnotMultiplicity { direction, degree, value, found }
             }
         })?;
     }
@@ -178,22 +178,22 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
     } = state;
     if let Some(refined) = refined {
         check_mesh(refined)?;
-        for way in 0..2 {
-            if refined.degree[way] != mesh.degree[way] {
-                return Err(Flaw::Degree { way, degree: refined.degree[way] });
+        for direction in 0..2 {
+            if refined.degree[direction] != mesh.degree[direction] {
+                return Err(Flaw::Degree { direction, degree: refined.degree[direction] });
             }
             // The refined mesh has every knot of the mesh, and more.
-            let mut finer = refined.knots[way].iter();
-            if let Some(&value) = mesh.knots[way].iter().find(|&knot| !finer.any(|other| other == knot)) {
-                return Err(Flaw::ForeignKnot { what: "the mesh's", way, value });
+            let mut finer = refined.knots[direction].iter();
+            if let Some(&value) = mesh.knots[direction].iter().find(|&knot| !finer.any(|other| other == knot)) {
+                return Err(Flaw::ForeignKnot { what: "the mesh's", direction, value });
             }
         }
     }
-    for way in 0..2 {
-        let knots = &mesh.knots[way];
-        for &value in &marked[way] {
+    for direction in 0..2 {
+        let knots = &mesh.knots[direction];
+        for &value in &marked[direction] {
             if !(value > knots[0] && value < knots[knots.len() - 1]) {
-                return Err(Flaw::ForeignKnot { what: "marked", way, value });
+                return Err(Flaw::ForeignKnot { what: "marked", direction, value });
             }
         }
     }
@@ -260,9 +260,9 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
         refinement,
     } = state;
     let foreign = |what| Err(Flaw::Foreign { what });
-    for way in 0..2 {
-        if mesh.degree[way] != scene.mesh.degree[way] {
-            return Err(Flaw::Degree { way, degree: mesh.degree[way] });
+    for direction in 0..2 {
+        if mesh.degree[direction] != scene.mesh.degree[direction] {
+            return Err(Flaw::Degree { direction, degree: mesh.degree[direction] });
         }
     }
     let follows_a_path = scenes.iter().any(|scene| Drive::of(scene).follows_path());

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::data::{Action, ActionKind, ForceVector, Geometry, Material, Place, SurfaceDirection};
+use super::data::{Action, ActionKind, ForceVector, Geometry, Material, Region, SurfaceDirection};
 use super::fault::Checked;
 use super::histories::history;
 use super::table::{Table, data};
@@ -51,7 +51,7 @@ fn vector(table: &Table, name: &str, force: Value, geometry: &Geometry) -> Check
 fn check(table: &Table, kind: &ActionKind, material: &Material) -> Checked<()> {
     match kind {
         ActionKind::LineForce {
-            on: Place::Line(..),
+            on: Region::Line(..),
             force_n_per_mm: ForceVector::Along(_, SurfaceDirection::Outward),
         } => Err(table.wrong_at(
             "along",

@@ -8,7 +8,7 @@ use super::data::{
 };
 use super::document::Document;
 use super::error::SceneError;
-use super::fault::{Checked, CheckedWhole, Fault, Faults, Place, Source};
+use super::fault::{Checked, CheckedWhole, Fault, Faults, Source, TextSpan};
 use super::key_table::SECTIONS;
 use super::problem::{Direction, Problem};
 use super::structure::structure;
@@ -295,7 +295,7 @@ fn continuation(tables: &Tables, load: &Load) -> Checked<Option<ArcLength>> {
 }
 
 /// The error for two values that do not go together; either may be a default, which stands nowhere.
-fn between(problem: Problem, first: Option<Place>, second: Option<Place>, table: &Table) -> Box<Fault> {
+fn between(problem: Problem, first: Option<TextSpan>, second: Option<TextSpan>, table: &Table) -> Box<Fault> {
     match (first, second) {
         (Some(first), second) => Fault::new(problem, &first).also(second.as_ref()),
         (None, Some(second)) => Fault::new(problem, &second),

@@ -5,16 +5,16 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::fault::Place;
+use super::fault::TextSpan;
 use super::keys::Key;
 
 /// A key with its value.
 pub(super) struct Entry<'t> {
     pub name: String,
-    pub place: Place,
+    pub place: TextSpan,
     pub value: Spanned<DeValue<'t>>,
     /// Where the text begins that the spans in `value` count from.
-    pub base: Place,
+    pub base: TextSpan,
 }
 
 impl Entry<'static> {
@@ -23,7 +23,7 @@ impl Entry<'static> {
     /// # Errors
     /// Where the default is not TOML.
     pub fn of_default(key: &Key, text: &'static str) -> Result<Self, toml::de::Error> {
-        let place = Place { source: 0, span: 0..0 };
+        let place = TextSpan { source: 0, span: 0..0 };
         let value = DeValue::parse(text)?;
         Ok(Self { name: key.name.into(), base: place.clone(), place, value })
     }
@@ -36,13 +36,13 @@ impl Entry<'_> {
     }
 
     /// Where the value stands.
-    pub fn value_place(&self) -> Place {
+    pub fn value_place(&self) -> TextSpan {
         self.place_of(self.value.span())
     }
 
     /// Where a part of the value stands.
-    pub fn place_of(&self, span: Range<usize>) -> Place {
+    pub fn place_of(&self, span: Range<usize>) -> TextSpan {
         let start = self.base.span.start;
-        Place { source: self.base.source, span: start + span.start..start + span.end }
+        TextSpan { source: self.base.source, span: start + span.start..start + span.end }
     }
 }

@@ -10,19 +10,19 @@ pub(super) struct Fault {
     pub problem: Problem,
     /// The table that it stands in, where there may be several of its name.
     pub item: Option<String>,
-    pub place: Place,
+    pub place: TextSpan,
     /// A second place that the problem hangs on.
-    pub also: Option<Place>,
+    pub also: Option<TextSpan>,
     /// Replacements that mend it.
-    pub edits: Vec<(Place, String)>,
+    pub edits: Vec<(TextSpan, String)>,
 }
 
 impl Fault {
-    pub fn new(problem: Problem, place: &Place) -> Box<Self> {
+    pub fn new(problem: Problem, place: &TextSpan) -> Box<Self> {
         Box::new(Self { problem, item: None, place: place.clone(), also: None, edits: Vec::new() })
     }
 
-    pub fn also(mut self: Box<Self>, place: Option<&Place>) -> Box<Self> {
+    pub fn also(mut self: Box<Self>, place: Option<&TextSpan>) -> Box<Self> {
         self.also = place.cloned();
         self
     }
@@ -39,7 +39,7 @@ impl Fault {
         self
     }
 
-    pub fn edit(mut self: Box<Self>, place: &Place, text: impl Into<String>) -> Box<Self> {
+    pub fn edit(mut self: Box<Self>, place: &TextSpan, text: impl Into<String>) -> Box<Self> {
         self.edits.push((place.clone(), text.into()));
         self
     }
@@ -81,7 +81,7 @@ pub(super) struct Source {
 
 /// Bytes of one of the sources.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct TextSpan {
     /// Index of the source: 0 is the file, then one for each setting.
     pub source: usize,
     pub span: Range<usize>,

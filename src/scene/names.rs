@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use super::document::{Document, Written};
 use super::entry::Entry;
-use super::fault::{Fault, Place};
+use super::fault::{Fault, TextSpan};
 use super::foreign_unit::ForeignUnit;
 use super::keys::{Key, Section, toml_float};
 use super::meant::{also_called, meant_anywhere, near, other_unit};
@@ -25,7 +25,7 @@ pub(super) fn check(document: &Document<'_>) -> Vec<Fault> {
     faults
 }
 
-fn in_single_brackets(section: &Section, place: &Place) -> Box<Fault> {
+fn in_single_brackets(section: &Section, place: &TextSpan) -> Box<Fault> {
     let problem = Problem::Table {
         table: format!("[{}]", section.name),
         problem: "there may be several, so each is an item of an array".into(),

@@ -185,7 +185,7 @@ pub enum Problem {
         character: char,
     },
     /// No part of the surface is called so.
-    UnknownPlace {
+    UnknownRegion {
         /// The key.
         key: &'static Key,
         /// What stands there.

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use super::data::Stage;
 use super::key_table::SECTIONS;
 use super::keys::{Choice, Form, Key, Kind, Length, Limits, Presence, Section};
-use super::places::EDGES;
+use super::regions::EDGES;
 
 /// The schema of a scene file (draft 7), pretty-printed.
 pub fn json_schema() -> String {
@@ -128,7 +128,7 @@ fn of_values(kind: &Kind) -> Value {
         }
         Kind::Count(limits) => within("integer", limits),
         Kind::Pair(limits) => either(within("integer", limits), list(Length::Exactly(2), within("integer", limits))),
-        Kind::Place(forms) => json!({ "anyOf": forms.iter().map(|form| place(*form)).collect::<Vec<_>>() }),
+        Kind::Region(forms) => json!({ "anyOf": forms.iter().map(|form| place(*form)).collect::<Vec<_>>() }),
         Kind::Switch => json!({ "type": "boolean" }),
         Kind::Stages => {
             json!({ "type": "array", "items": { "enum": Stage::ALL.map(Stage::name) }, "minItems": 1, "uniqueItems": true })

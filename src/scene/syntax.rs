@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use super::fault::{Fault, Place};
+use super::fault::{Fault, TextSpan};
 use super::key_table::SECTIONS;
 use super::problem::{Problem, SyntaxSlip};
 
 /// The error for a text that is not TOML; `base` is where the text begins.
-pub(super) fn fault(error: &toml::de::Error, text: &str, base: &Place) -> Box<Fault> {
+pub(super) fn fault(error: &toml::de::Error, text: &str, base: &TextSpan) -> Box<Fault> {
     let span = error.span().unwrap_or(text.len()..text.len());
-    let at = |span: Range<usize>| Place {
+    let at = |span: Range<usize>| TextSpan {
         source: base.source,
         span: base.span.start + span.start..base.span.start + span.end,
     };

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::document::{Document, Written};
 use super::entry::Entry;
-use super::fault::{CheckedWhole, Fault, Place};
+use super::fault::{CheckedWhole, Fault, TextSpan};
 use super::keys::{Key, Presence, Section};
 use super::problem::Problem;
 use super::read;
@@ -22,11 +22,11 @@ pub(super) struct Table {
     /// Whether the file has it, or a setting.
     pub is_given: bool,
     /// Where it begins.
-    pub place: Place,
+    pub place: TextSpan,
     /// Values in the form that the data of a scene have in JSON, by key.
     pub values: Map<String, Value>,
     /// Places of given values: of the whole, and of the items of a list.
-    places: BTreeMap<&'static str, (Place, Vec<Place>)>,
+    places: BTreeMap<&'static str, (TextSpan, Vec<TextSpan>)>,
 }
 
 impl Table {
@@ -128,18 +128,18 @@ impl Table {
     }
 
     /// Where a key's value stands, if it is given.
-    pub fn place_of(&self, name: &str) -> Option<Place> {
+    pub fn place_of(&self, name: &str) -> Option<TextSpan> {
         self.places.get(name).map(|(whole, _)| whole.clone())
     }
 
     /// Where an item of a key's value stands, or the whole where it is no list.
-    pub fn place_of_item(&self, name: &str, index: usize) -> Option<Place> {
+    pub fn place_of_item(&self, name: &str, index: usize) -> Option<TextSpan> {
         let (whole, items) = self.places.get(name)?;
         Some(items.get(index).unwrap_or(whole).clone())
     }
 
     /// An error about this table.
-    pub fn wrong(&self, place: Option<&Place>, problem: impl Into<String>, remedy: impl Into<String>) -> Box<Fault> {
+    pub fn wrong(&self, place: Option<&TextSpan>, problem: impl Into<String>, remedy: impl Into<String>) -> Box<Fault> {
         let problem = Problem::Table { table: self.title.clone(), problem: problem.into(), remedy: remedy.into() };
         Fault::new(problem, place.unwrap_or(&self.place))
     }

@@ -1,7 +1,7 @@
 //! All tables of a scene file, each read by itself: what is wrong with one hides nothing of another.
 
 use super::document::{Document, Written};
-use super::fault::{CheckedWhole, Fault, Place};
+use super::fault::{CheckedWhole, Fault, TextSpan};
 use super::keys::{Presence, Section};
 use super::names;
 use super::problem::Problem;
@@ -17,7 +17,7 @@ impl Tables {
         let is_told = |name: &str| wrong_names.iter().any(|fault| fault.problem.meant().as_deref() == Some(name));
         // Of a table that is most likely of another kind nothing can be said.
         let of_other_kind = |fault: &&Fault| matches!(fault.problem, Problem::OfOtherKind { .. });
-        let unread: Vec<&Place> = wrong_names.iter().filter(of_other_kind).map(|fault| &fault.place).collect();
+        let unread: Vec<&TextSpan> = wrong_names.iter().filter(of_other_kind).map(|fault| &fault.place).collect();
         let is_read = |table: &&Written<'_>| !table.entries.iter().any(|entry| unread.contains(&&entry.place));
         let (mut tables, mut faults) = (Vec::new(), Vec::new());
         let mut keep = |table: CheckedWhole<Table>| match table {

@@ -17,7 +17,7 @@ impl<'a> MeshV1<'a> {
     pub fn of(mesh: &'a Mesh) -> Self {
         Self {
             degree: mesh.degree.map(|degree| degree as u64),
-            knots: [0, 1].map(|way| Cow::from(&mesh.knots[way])),
+            knots: [0, 1].map(|direction| Cow::from(&mesh.knots[direction])),
             control_points: Cow::from(&mesh.control_points),
         }
     }

@@ -52,7 +52,7 @@ impl Edge {
 /// [`super::Geometry::Nurbs`]).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Place {
+pub enum Region {
     /// A whole edge.
     Edge(Edge),
     /// A point (u, v), a corner for instance; fractions in [0, 1].
@@ -69,7 +69,7 @@ pub struct Support {
     /// What reports and errors call it; no two supports have the same name.
     pub name: String,
     /// Where.
-    pub on: Place,
+    pub on: Region,
     /// How.
     #[serde(flatten)]
     pub hold: Hold,
@@ -92,7 +92,7 @@ pub enum Hold {
     /// or line are zero. It must be plane, and the surface must cross the plane at right angles. Edges and lines only.
     Symmetric,
     /// The rigid motions that the other supports leave free are held, and nothing else: the shell takes no part in them
-    /// on the mean of points spread over it. Loads in balance leave no reaction. [`Place::Whole`] only.
+    /// on the mean of points spread over it. Loads in balance leave no reaction. [`Region::Whole`] only.
     RigidMotions,
     /// The edge is a rigid section with a pose of its own. `clamped` in a scene is one with all six motions held. The
     /// membrane strain at the edge stays free. Edges only.
@@ -159,7 +159,7 @@ pub enum ActionKind {
     /// A dead force per undeformed length of an edge or a line.
     LineForce {
         /// Edge or line.
-        on: Place,
+        on: Region,
         /// N/mm.
         force_n_per_mm: ForceVector,
     },

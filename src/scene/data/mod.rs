@@ -15,7 +15,7 @@ mod material;
 mod probe;
 
 pub use boundary::{
-    Action, ActionKind, Edge, ForceVector, FreeWord, History, Hold, LoadedArea, Motion, ParametricDirection, Place,
+    Action, ActionKind, Edge, ForceVector, FreeWord, History, Hold, LoadedArea, Motion, ParametricDirection, Region,
     Support, SurfaceDirection,
 };
 pub use expectation::{Expectation, ExpectedOutcome};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Place;
+use super::Region;
 
 /// A quantity that every equilibrium reports.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,7 +39,7 @@ pub enum ProbeKind {
     /// N·mm.
     SectionMoment {
         /// A line.
-        on: Place,
+        on: Region,
         /// Which component.
         component: Axis,
     },

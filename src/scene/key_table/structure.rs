@@ -45,15 +45,15 @@ pub(super) static SUPPORT: &[Key] = &[
     ]), "\"clamped\"")
         .means("How it holds.")
         .also_called(TYPES),
-    support("on", Kind::Place(&[Form::Edge, Form::Point, Form::Line]), "[1.0, 0.5]")
+    support("on", Kind::Region(&[Form::Edge, Form::Point, Form::Line]), "[1.0, 0.5]")
         .of(&["hinged", "fixed", "displacement"])
         .means("Where it holds.")
         .also_called(PLACES),
-    support("on", Kind::Place(&[Form::Edge, Form::Line]), "\"v-start\"")
+    support("on", Kind::Region(&[Form::Edge, Form::Line]), "\"v-start\"")
         .of(&["symmetric"])
         .means("Edge or line in the plane of symmetry.")
         .also_called(PLACES),
-    support("on", Kind::Place(&[Form::Edge]), "\"u-start\"")
+    support("on", Kind::Region(&[Form::Edge]), "\"u-start\"")
         .of(&["clamped", "rigid"])
         .means("Edge that it holds.")
         .also_called(PLACES),
@@ -135,15 +135,15 @@ pub(super) static ACTION: &[Key] = &[
     ]), "\"line-force\"")
         .means("What acts. Forces act on the model as it is: on half a shell put half the force that stands on its cut.")
         .also_called(TYPES),
-    action("on", Kind::Place(&[Form::Point]), "[1.0, 0.5]")
+    action("on", Kind::Region(&[Form::Point]), "[1.0, 0.5]")
         .of(&["force"])
         .means("Point that it acts on.")
         .also_called(PLACES),
-    action("on", Kind::Place(&[Form::Edge, Form::Line]), "\"u-end\"")
+    action("on", Kind::Region(&[Form::Edge, Form::Line]), "\"u-end\"")
         .of(&["line-force"])
         .means("Edge or line that it acts on.")
         .also_called(PLACES),
-    action("on", Kind::Place(&[Form::Edge]), "\"u-end\"")
+    action("on", Kind::Region(&[Form::Edge]), "\"u-end\"")
         .of(&["edge-moment"])
         .means("Edge that it acts on.")
         .also_called(PLACES),
@@ -239,11 +239,11 @@ pub(super) static PROBE: &[Key] = &[
     ]), "\"displacement\"")
         .means("What it measures.")
         .also_called(TYPES),
-    probe("on", Kind::Place(&[Form::Point]), "[1.0, 0.5]")
+    probe("on", Kind::Region(&[Form::Point]), "[1.0, 0.5]")
         .of(&["displacement"])
         .means("Point whose displacement it is.")
         .also_called(PLACES),
-    probe("on", Kind::Place(&[Form::Line]), "\"u=0.5\"")
+    probe("on", Kind::Region(&[Form::Line]), "\"u=0.5\"")
         .of(&["section-moment"])
         .means("Line across which it acts.")
         .also_called(PLACES),

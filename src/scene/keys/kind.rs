@@ -27,7 +27,7 @@ pub enum Kind {
     /// Two whole numbers (along the length, along the arc), or one for both.
     Pair(Limits),
     /// A part of the surface of one of these forms.
-    Place(&'static [Form]),
+    Region(&'static [Form]),
     /// true or false.
     Switch,
     /// The list of stages.
@@ -60,7 +60,7 @@ impl Kind {
             Kind::Vector => format!("a list of 3 numbers{0}, or one number{0} beside `along`", within(&Limits::ANY)),
             Kind::Count(limits) => format!("a whole number {limits}"),
             Kind::Pair(limits) => format!("a whole number {limits}, or a pair of them"),
-            Kind::Place(forms) => join_or(&forms.iter().map(|form| form.words().to_owned()).collect::<Vec<_>>()),
+            Kind::Region(forms) => join_or(&forms.iter().map(|form| form.words().to_owned()).collect::<Vec<_>>()),
             Kind::Switch => "true or false".into(),
             Kind::Stages => "a list of stages".into(),
             Kind::Text => "text in quotes".into(),
