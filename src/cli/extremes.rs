@@ -131,7 +131,7 @@ fn stem(name: &str) -> &str {
     name.strip_suffix(".toml").unwrap_or(name)
 }
 
-/// The table of a suite, line by line as its scenes end.
+/// The table that `foldline extremes` prints, a line for each scene as it ends.
 pub struct ExtremesTable {
     name_width: usize,
 }
@@ -142,14 +142,14 @@ impl ExtremesTable {
         Self { name_width: names.map(|name| name.chars().count()).chain([5]).max().unwrap_or(5) }
     }
 
-    /// The heads of the columns.
+    /// Returns the line with the heads of the columns.
     pub fn head(&self) -> String {
         let cells =
             ["outcome", "as stated", "error", "steps", "iter", "residual", "W - E", "cond", "asym", "bits", "wall"];
         self.line("scene", cells.map(str::to_owned))
     }
 
-    /// A scene; below it the error that ended it, and what is wrong.
+    /// Returns the line of a scene and, below it, the error that ended the scene and the faults found.
     pub fn row(&self, row: &ExtremeRow) -> String {
         let small = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0e}"));
         let balance = row.energy_balance.map_or_else(|| "-".to_owned(), |value| format!("{value:+.0e}"));

@@ -115,7 +115,7 @@ impl Command {
     }
 }
 
-/// Does what the arguments of this process ask for, and says what came of it.
+/// Runs the command that the arguments of this process name, prints its result or error, and returns the exit code.
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,

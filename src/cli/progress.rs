@@ -14,7 +14,7 @@ use crate::scene::Scene;
 use crate::state::State;
 use crate::units::{count, rounded};
 
-/// How a run is shown.
+/// How the progress of a run is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProgressStyle {
     /// Nothing.
@@ -28,7 +28,7 @@ pub enum ProgressStyle {
 }
 
 impl ProgressStyle {
-    /// What the arguments ask for; a live line only where standard error is a terminal.
+    /// The style that the arguments `--quiet` and `--json` choose; a live line only where standard error is a terminal.
     pub fn of(quiet: bool, json: bool) -> Self {
         match (quiet, json) {
             (_, true) => ProgressStyle::Json,
@@ -39,7 +39,8 @@ impl ProgressStyle {
     }
 }
 
-/// A sink that shows every stage after the sink within has taken it, so that what is shown is also kept.
+/// A sink that shows the progress of a run: it hands every stage to an inner sink first, so that what is shown is also
+/// kept.
 pub struct ProgressSink<'a, S> {
     inner: S,
     display: Display<'a>,
@@ -64,8 +65,8 @@ enum Display<'a> {
 }
 
 impl<'a, S: Sink> ProgressSink<'a, S> {
-    /// Shows a run of `scene` from a rotation (0, or where it is taken up again) to another, degrees, to the streams
-    /// of this process.
+    /// Creates a sink that shows a run of `scene` on the streams of this process; the run leads from parameter `start`
+    /// (0, or where it is resumed) to `target`.
     pub fn new(inner: S, style: ProgressStyle, scene: &Scene, [start, target]: [f64; 2]) -> Self {
         let gatherer = Gatherer::new(scene);
         let display = match style {
@@ -79,18 +80,19 @@ impl<'a, S: Sink> ProgressSink<'a, S> {
         Self { inner, display, records: Vec::new(), warned: Vec::new() }
     }
 
-    /// Writes lines as [`ProgressStyle::Lines`] to `out`.
+    /// Creates a sink that writes the lines of [`ProgressStyle::Lines`] to `out`.
     pub fn lines(inner: S, scene: &Scene, out: impl Write + 'a) -> Self {
         let display = Display::Lines { out: Box::new(out), gatherer: Gatherer::new(scene) };
         Self { inner, display, records: Vec::new(), warned: Vec::new() }
     }
 
-    /// Writes lines as [`ProgressStyle::Json`] to `out`.
+    /// Creates a sink that writes the lines of [`ProgressStyle::Json`] to `out`.
     pub fn json(inner: S, out: impl Write + 'a) -> Self {
         Self { inner, display: Display::Json(Some(Box::new(out))), records: Vec::new(), warned: Vec::new() }
     }
 
-    /// Ends the display, however the run ended. Gives back the sink within and the stages that were shown.
+    /// Ends the display, however the run ended, and returns the inner sink and the records of the stages that were
+    /// shown.
     pub fn finish(mut self) -> (S, Vec<Record>) {
         match &mut self.display {
             Display::Live { bar, gatherer, .. } => {

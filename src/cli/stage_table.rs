@@ -27,7 +27,8 @@ const COLUMNS: [Column; 14] = [
     Column("", false),
 ];
 
-/// A row a stage, in columns that are as wide as they need to be; a run of a thousand stages fits 120 characters.
+/// Formats stages as a table with a row for each; columns are as wide as they need to be, and a run of a thousand
+/// stages fits 120 characters.
 ///
 /// `mesh` is elements along the length × along the arc, `free` the free unknowns, `neg` the negative pivots; blank is
 /// zero. The last column says what else happened; ✗ is a solve rejected, at the rotation that it tried, ! a warning.
@@ -124,7 +125,7 @@ fn happened(report: &Report) -> String {
     }
 }
 
-/// Everything about every stage of load step `step`; empty where the log has no such step.
+/// Lists all fields of every stage of load step `step`; empty where the log has no such step.
 pub fn step_in_full(records: &[Record], step: u64) -> String {
     let mut text = String::new();
     for record in records.iter().filter(|record| record.report.step == step) {

@@ -7,7 +7,7 @@ use crate::state::{
     Course, CriticalAhead, DriveMemory, PathMemory, Previous, Refinement, Rejection, State, StepControl,
 };
 
-/// Two values of a field that are not the same.
+/// A field in which two states differ, and its values where they differ most.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// Name of the field.
@@ -21,7 +21,7 @@ pub struct Difference {
     pub agreeing_bits: f64,
 }
 
-/// All fields of two states.
+/// The result of comparing all fields of two states.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Comparison {
     /// Every bit agrees.

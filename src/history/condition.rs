@@ -6,7 +6,7 @@ use crate::journal::word_number;
 use crate::record::{Outcome, Report, as_number, fields_of};
 use crate::scene::Stage;
 
-/// Comparisons that must all hold.
+/// A condition on the report of a stage: comparisons that must all hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     terms: Vec<Term>,
@@ -45,7 +45,7 @@ const OPERATORS: [(&str, Operator); 6] = [
     (">", Operator::Greater),
 ];
 
-/// Why a condition cannot be used.
+/// Why the text of a condition is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionError {
     /// No operator.
@@ -87,9 +87,9 @@ pub enum ConditionError {
 }
 
 impl Condition {
-    /// Reads `FIELD OPERATOR VALUE`, several joined by `and`. Fields are those of a report in JSON and the names of its
-    /// probes; `elements`, `marked` stand for the product or sum of their two numbers, `elements_1` and `elements_2` for one
-    /// of them. A probe has a value at equilibria alone.
+    /// Parses `FIELD OPERATOR VALUE`, several joined by `and`. Fields are those of a report in JSON and the names of
+    /// its probes; `elements`, `marked` stand for the product or sum of their two numbers, `elements_1` and
+    /// `elements_2` for one of them. A probe has a value at equilibria alone.
     ///
     /// # Errors
     /// Where it has another form or names a field that reports do not have.
@@ -99,8 +99,8 @@ impl Condition {
         Ok(Self { terms })
     }
 
-    /// Whether it holds for a report. What is not a number (a residual after a failed solve) meets no condition but
-    /// `!=`.
+    /// Whether the condition holds for a report. What is not a number (a residual after a failed solve) meets no
+    /// condition but `!=`.
     pub fn holds(&self, report: &Report) -> bool {
         let fields = fields_of(report);
         self.terms.iter().all(|term| {
@@ -120,12 +120,12 @@ impl Condition {
 }
 
 impl Condition {
-    /// The fields that it asks for, one for each comparison.
+    /// The names of the fields that are compared, one for each comparison.
     pub fn fields(&self) -> Vec<&str> {
         self.terms.iter().map(|term| term.field.as_str()).collect()
     }
 
-    /// Whether it holds for numbers of an index, one for each comparison.
+    /// Whether the condition holds for values of [`Self::fields`] as an index stores them.
     pub fn holds_for(&self, numbers: &[u64]) -> bool {
         self.terms.iter().zip(numbers).all(|(term, number)| match &term.value {
             Operand::Number(value) => term.operator.holds(f64::from_bits(*number), *value),

@@ -13,7 +13,7 @@ use crate::state::Hash;
 const DEFAULTS_BEFORE: [&str; 3] =
     ["mesh.quadrature=patch", "mesh.quadrature=full", "adapt.length_limit=sqrt-radius-thickness"];
 
-/// Why the scene of a stage cannot be had.
+/// Why the scene that a stage was run with is not available.
 #[derive(Debug, thiserror::Error)]
 pub enum LoggedSceneError {
     /// No manifest has a scene that hashes as the stage's commit says.
@@ -50,8 +50,8 @@ pub enum LoggedSceneError {
     Unreadable(#[from] SceneInLogError),
 }
 
-/// The scene that stage `index` was run with beside these terms of the caller's own, with settings applied to it: that of its
-/// stretch, and held with them against the hash in its commit, so that no other takes its place where it is lost.
+/// Returns the scene that stage `index` was run with, `settings` applied to it. Scene and terms of the caller's own are
+/// compared with the hash in the stage's commit, so that no other scene takes the place of one that is lost.
 ///
 /// # Errors
 /// Where it is lost, does not read with the settings, or was run with other terms.

@@ -6,7 +6,7 @@ use crate::history::states::{RemakeError, States};
 use crate::journal::{AskedLog, LongLogError};
 use crate::record::Commit;
 
-/// The first stage at which two runs differ.
+/// The first stage at which two runs differ, and how its states compare.
 #[derive(Clone, Debug)]
 pub struct Parting {
     /// Ordinal of the stage.

@@ -10,7 +10,7 @@ use crate::pipeline::{StageError, Stages};
 use crate::record::{Outcome, Record};
 use crate::scene::{Probe, Scene, shown_values};
 
-/// Why a probe cannot be read.
+/// Why the probes of a scene cannot be evaluated on a log.
 #[derive(Debug, thiserror::Error)]
 pub enum ProbeError {
     /// The state cannot be had.
@@ -24,8 +24,8 @@ pub enum ProbeError {
     Stage(#[from] StageError),
 }
 
-/// Reads the probes of the scene of `stages` at every equilibrium of the first stages of a log, and puts the readings
-/// into their records, of which there is one for each of these stages. The log itself keeps what it has.
+/// Evaluates the probes of the scene of `stages` at every equilibrium of the first stages of a log, and puts the
+/// readings into `records`, which holds a record for each of these stages. The log itself does not change.
 ///
 /// # Errors
 /// Where a state cannot be read, or was made with other terms of the caller's own.
@@ -40,7 +40,7 @@ pub fn read_probes(log: &Log, stages: &mut Stages, records: &mut [Record]) -> Re
     Ok(())
 }
 
-/// A probe that measured something else under the same name before.
+/// A probe of which earlier stages of the log hold readings of something else under the same name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Redefined {
     /// Ordinals of the stages that were run with another one.
@@ -66,7 +66,7 @@ impl fmt::Display for Redefined {
     }
 }
 
-/// Probes of the last scene of a log that other stretches have under the same name, and other.
+/// The probes of the last scene of a log that earlier stretches define otherwise under the same name.
 pub fn redefined_probes(log: &Log) -> Vec<Redefined> {
     let [before @ .., last] = log.manifests() else { return Vec::new() };
     let probes = |manifest: &Manifest| manifest.scene(&[]).map_or_else(|_| Vec::new(), |scene: Scene| scene.probes);
@@ -88,7 +88,7 @@ pub fn redefined_probes(log: &Log) -> Vec<Redefined> {
     found
 }
 
-/// Takes out of records the readings that are not of the probes of the last scene.
+/// Removes readings from records that were made by other probes of the same names.
 pub fn keep_apart(redefined: &[Redefined], records: &mut [Record]) {
     for Record { report, commit, .. } in records {
         let here = redefined.iter().filter(|other| other.stages.contains(&commit.ordinal));

@@ -9,11 +9,11 @@ use crate::record::Report;
 use crate::spline::Mesh;
 use crate::state::State;
 
-/// States that agree to this many bits are the same within what another processor or another kernel may do to
-/// rounding. The solver's default tolerance of 1e-7 leaves some 23 bits.
+/// Number of bits to which two states must agree to count as the same up to the rounding of another processor or
+/// kernel. The solver's default tolerance of 1e-7 leaves some 23 bits.
 pub const TOLERATED_BITS: f64 = 20.0;
 
-/// A stage that ran again.
+/// The result of running a stage of a log again.
 #[derive(Clone, Debug)]
 pub struct Replayed {
     /// The state that it made now.
@@ -24,7 +24,7 @@ pub struct Replayed {
     pub comparison: Comparison,
 }
 
-/// What a replay showed.
+/// How a stage that was run again compares with the log.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// Every bit is the same.
@@ -46,8 +46,8 @@ pub enum ReplayError {
     Stage(#[from] StageError),
 }
 
-/// Runs stage `index` of a log again with `stages`, whose scene may differ from the log's in settings; `observer` is handed every
-/// iterate with the mesh that it lies on. Nothing but the stage itself is run with other settings.
+/// Runs stage `index` of a log again with `stages`, whose scene may differ from the log's in settings; `observer` is
+/// called with every iterate and its mesh. Only this stage is run with other settings.
 ///
 /// # Errors
 /// Where a state cannot be had or the stage fails.
@@ -78,7 +78,7 @@ pub fn replay_stage(
     Ok(Replayed { state, report, comparison })
 }
 
-/// What a comparison means.
+/// Judges a comparison of a replayed state with the log's.
 pub fn verdict(comparison: &Comparison) -> Verdict {
     match comparison {
         Comparison::Identical => Verdict::BitIdentical,

@@ -15,7 +15,7 @@ const TARGETS: [&str; 2] = ["load.rotation_deg", "load.factor"];
 /// Targets that differ by less than this, relatively, are one.
 const TARGET_ROUNDING: f64 = 1e-12;
 
-/// What a run continues from.
+/// The state that a run continues from, and the last commit before it.
 #[derive(Clone, Debug)]
 pub struct Basis {
     /// The state.
@@ -24,7 +24,7 @@ pub struct Basis {
     pub commit: Option<Commit>,
 }
 
-/// Why there is nothing to continue from.
+/// Why a log gives no state to continue from.
 #[derive(Debug, thiserror::Error)]
 pub enum BasisError {
     /// The log's own state cannot be used.
@@ -35,7 +35,7 @@ pub enum BasisError {
     Model(#[from] ModelError),
 }
 
-/// The state after the first `keep` stages of a log.
+/// Reads the state after the first `keep` stages of a log, or makes the start state where `keep` is 0.
 ///
 /// # Errors
 /// Where the state cannot be read, or, for `keep` = 0, the scene cannot be made discrete.
@@ -46,7 +46,7 @@ pub fn basis(log: &Log, keep: usize, stages: &mut Stages) -> Result<Basis, Basis
     }
 }
 
-/// How much of a log a scene can continue from.
+/// How much of a log a changed scene can continue from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResumePlan {
     /// Stages that stand, counted from the start of the log.
@@ -55,7 +55,7 @@ pub struct ResumePlan {
     pub changes: Vec<String>,
 }
 
-/// Changes of the scene that no state of the log survives.
+/// The changes of a scene for which no stage of a log can be kept.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}: nothing can be kept; write to another log with -o", changes.join("\n  "))]
 pub struct NothingKept {
@@ -63,7 +63,7 @@ pub struct NothingKept {
     pub changes: Vec<String>,
 }
 
-/// What stands of a log written for `old` when it is continued with `new`.
+/// Decides how many stages of a log written for `old` are kept when it is continued with `new`.
 ///
 /// Output, probes and names may change freely. The target may: what was cut short at the old target goes, and what lies beyond a
 /// nearer one. A change of what steps are made with keeps every complete step and drops a step in hand; one of a history keeps what
@@ -205,8 +205,9 @@ fn complete_steps(log: &Log, keep: usize, scene: &Scene) -> Result<usize, StateE
     Ok(0)
 }
 
-/// The scene of a log's last stretch where the log has lost it and the scene of `stages`, which with their terms decides the
-/// same states, takes its place. Its target is not known any more; what was attempted says which steps it may have cut short.
+/// Returns the scene of a log's last stretch where the log has lost it and the scene of `stages`, which with their
+/// terms decides the same states, takes its place. Its target is not known any more; the attempted parameters show
+/// which steps it may have cut short.
 pub fn restored_scene(log: &Log, stages: &Stages) -> Option<Scene> {
     let last = log.last_commit()?;
     let attempts = log.entries().iter().map(|entry| entry.record.report.attempted_parameter);

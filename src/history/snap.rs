@@ -14,7 +14,7 @@ use crate::record::{CriticalPoint, Outcome, Parameter};
 use crate::scene::Scene;
 use crate::state::State;
 
-/// A jump, located.
+/// A jump or loss of stability, located.
 #[derive(Clone, Debug)]
 pub struct SnapReport {
     /// Last value of the parameter at which the shell is stable where it was, and the first at which it is not.
@@ -84,7 +84,7 @@ pub enum SnapError {
     Workspace(#[from] WorkspaceError),
 }
 
-/// The first stage of a log that jumped, or at which the shell stands on an unstable equilibrium.
+/// The index of the first stage of a log that jumped or ended in an unstable equilibrium.
 pub fn first_loss_of_stability(log: &Log) -> Option<usize> {
     let place = log.entries().iter().position(|entry| {
         let report = &entry.record.report;
@@ -94,7 +94,8 @@ pub fn first_loss_of_stability(log: &Log) -> Option<usize> {
     Some(log.first() + place)
 }
 
-/// That a log, which was read in parts, holds no jump; `farthest` is the largest value of the parameter in it.
+/// The error for a log that was read in parts and holds no jump; `farthest` is the largest value of the parameter in
+/// it.
 pub fn no_jump(scene: &Scene, farthest: f64) -> SnapError {
     SnapError::NoJump { farthest: Parameter::of(scene).shown(farthest) }
 }

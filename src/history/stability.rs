@@ -6,7 +6,7 @@ use crate::history::states::{RemakeError, States};
 use crate::scene::Scene;
 use crate::state::State;
 
-/// A state with its softest mode.
+/// The softest mode of a state in a log.
 #[derive(Clone, Debug)]
 pub struct StabilityReport {
     /// The state.
@@ -17,7 +17,7 @@ pub struct StabilityReport {
     pub mode_at: [f64; 3],
 }
 
-/// Why there is no report.
+/// Why the softest mode of a state cannot be computed.
 #[derive(Debug, thiserror::Error)]
 pub enum StabilityError {
     /// The state cannot be had.
@@ -34,7 +34,7 @@ pub enum StabilityError {
     Solve(#[from] SolveError),
 }
 
-/// The softest mode of the state that stage `index` made.
+/// Computes the softest mode of the state that stage `index` made.
 ///
 /// # Errors
 /// Where the state cannot be had, was made with other terms, or its stiffness has no factor.

@@ -10,7 +10,7 @@ use crate::model::ModelError;
 use crate::pipeline::{StageError, Stages};
 use crate::state::{Hash, State};
 
-/// Why a state cannot be had.
+/// Why the state of a stage cannot be read or made again.
 #[derive(Debug, thiserror::Error)]
 pub enum RemakeError {
     /// What the log holds cannot be used.
@@ -58,7 +58,7 @@ fn because(why: &Option<String>) -> String {
     why.as_ref().map_or_else(String::new, |why| format!(" ({why})"))
 }
 
-/// The states of a log. Those that follow on one another are made again one from the other.
+/// The states of a log, read, or made again from the last kept one where the log was thinned.
 #[derive(Debug)]
 pub struct States<'l> {
     log: &'l Log,
@@ -76,12 +76,12 @@ impl<'l> States<'l> {
         Self { log, own: Vec::new(), stages: None, made: None }
     }
 
-    /// Those of a log of a run with terms of the caller's own.
+    /// Runs stages again with these energy terms of the caller's own, which the run had.
     pub fn with_terms(self, own: &[Arc<dyn TermSource>]) -> Self {
         Self { own: own.to_vec(), ..self }
     }
 
-    /// The terms of the caller's own that stages run again with.
+    /// The energy terms of the caller's own that stages are run again with.
     pub fn own_terms(&self) -> &[Arc<dyn TermSource>] {
         &self.own
     }
@@ -91,7 +91,7 @@ impl<'l> States<'l> {
         self.log
     }
 
-    /// The state that stage `index` made.
+    /// Returns the state that stage `index` made.
     ///
     /// # Errors
     /// Where there is no such stage, what the log holds cannot be used, or what it does not hold comes out otherwise.
@@ -102,7 +102,7 @@ impl<'l> States<'l> {
         self.make(index + 1)
     }
 
-    /// The state that stage `index` starts from.
+    /// Returns the state that stage `index` started from.
     ///
     /// # Errors
     /// As for [`Self::at`].

@@ -4,7 +4,7 @@ use crate::record::{Parameter, Report};
 use crate::scene::Stage;
 use crate::state::State;
 
-/// A field of a report that is not as in the state that the stage made.
+/// A number of a report that differs from the number in the state that the stage made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("the report says {field} {said}, and the state has {held}")]
 pub struct Disagreement {

@@ -10,7 +10,7 @@ use super::still_ours::{Estranged, still_ours};
 pub(super) use crate::whole_file::beside;
 use crate::whole_file::{WholeFile, sync_folder_of};
 
-/// Takes the bytes of a log, whole commits at a time.
+/// A place to which the bytes of a log are written, whole commits at a time.
 pub trait Backend: Send {
     /// Looks whether what was appended, `length` bytes with `commits` stages, is still where it went. Asked before
     /// every append; a place that nobody else can reach need not look.
@@ -49,7 +49,7 @@ pub trait Backend: Send {
     fn cut(&mut self, length: u64) -> io::Result<()>;
 }
 
-/// A log in a file.
+/// A backend that writes a log to a file.
 #[derive(Debug)]
 pub struct FileBackend {
     file: File,
@@ -93,8 +93,8 @@ enum Coming {
 }
 
 impl FileBackend {
-    /// A new, empty file, which has this name only from its first bytes on. A file of that name that comes to be meanwhile
-    /// is not overwritten.
+    /// Creates an empty file, which takes the name `path` only with its first bytes. A file that appears under that
+    /// name meanwhile is not overwritten.
     ///
     /// # Errors
     /// Where none can be made in that folder.

@@ -35,7 +35,8 @@ pub(super) struct Checkpoint {
 pub(super) type StoredPiece = (Hash, u64, Vec<u8>);
 
 impl Checkpoint {
-    /// The last commit of a part of a log that was read, and that is as it was written; `ledger` has all before it.
+    /// The checkpoint at the last commit of a part of a log, if nothing in the part is damaged; `ledger` describes all
+    /// before it.
     pub fn at_the_end_of(log: &Log, ledger: &Ledger) -> Option<Self> {
         let entry = log.entries.last()?;
         let piece = |places: &std::collections::HashMap<Hash, std::ops::Range<usize>>, hash| {

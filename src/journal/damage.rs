@@ -8,7 +8,7 @@ use super::message::SealError;
 use crate::scene::Stage;
 use crate::state::Hash;
 
-/// Something in a log that is not as it was written.
+/// A place in a log that is not as it was written, and what is wrong there.
 #[derive(Debug, thiserror::Error)]
 #[error("at byte {at}: {damage}")]
 pub struct Problem {
@@ -18,7 +18,7 @@ pub struct Problem {
     pub damage: Damage,
 }
 
-/// What is wrong with a record.
+/// What is wrong with a record of a log.
 #[derive(Debug, thiserror::Error)]
 pub enum Damage {
     /// The file ends inside a record's first nine bytes.
@@ -230,7 +230,7 @@ impl Damage {
     }
 }
 
-/// What a log is worth.
+/// How complete a log is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Completeness {
     /// Every commit is good, and the run reached its end.
@@ -255,7 +255,7 @@ pub enum Completeness {
     },
 }
 
-/// A commit behind some damage: whole in itself, but what it follows on is lost.
+/// A whole commit that follows a damaged part of the log, and cannot be used because the commits before it are lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LaterCommit {
     /// First byte of its chunk.

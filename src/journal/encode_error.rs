@@ -5,7 +5,7 @@ use mcap::McapError;
 use super::codec::CodecError;
 use super::format::{CHUNK_BYTES_LIMIT, MANIFEST_BYTES_LIMIT, REPORT_BYTES_LIMIT, SCENE_VALUES_LIMIT};
 
-/// Why a stage cannot be put into a log.
+/// Why a stage cannot be encoded for a log.
 #[derive(Debug, thiserror::Error)]
 pub enum EncodeError {
     /// The state has no place in a log.

@@ -25,7 +25,7 @@ use super::summary;
 use crate::record::{Commit, Record};
 use crate::state::Hash;
 
-/// A topic for viewers beside the log's own.
+/// A topic that a log carries for viewers, apart from its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewerTopic {
     /// Name of the topic; none of the log's own.
@@ -40,7 +40,7 @@ pub struct ViewerTopic {
     pub schema: Vec<u8>,
 }
 
-/// A message for viewers.
+/// A message for viewers on one of their topics.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewerMessage {
     /// Where it goes.

@@ -42,32 +42,32 @@
 /// Version of the layout that this module describes. A reader refuses a newer one.
 pub const FORMAT_VERSION: u32 = 3;
 
-/// Profile in the header of the file.
+/// Name of the MCAP profile in the header of a log.
 pub const PROFILE: &str = "foldline";
 
 /// Name of the metadata records that hold a manifest.
 pub const MANIFEST: &str = "foldline.manifest";
 
-/// Name of the metadata record of a log that was thinned.
+/// Name of the metadata record that marks a thinned log.
 pub const THINNED: &str = "foldline.thinned";
 
-/// Encoding of states and meshes: a version byte, then bincode (little endian, fixed-width integers).
+/// Name of the encoding of states and meshes: a version byte, then bincode (little endian, fixed-width integers).
 pub const BINARY_ENCODING: &str = "foldline-bincode-v1";
 
-/// Topic of the meshes.
+/// Topic of the messages with meshes.
 pub const MESH_TOPIC: &str = "/foldline/mesh";
-/// Topic of the fields on the control points.
+/// Topic of the messages with fields on the control points.
 pub const DISPLACEMENT_TOPIC: &str = "/foldline/displacement";
-/// Topic of the states.
+/// Topic of the messages with states.
 pub const STATE_TOPIC: &str = "/foldline/state";
-/// Topic of the reports.
+/// Topic of the messages with reports.
 pub const REPORT_TOPIC: &str = "/foldline/report";
-/// Topic of the commits.
+/// Topic of the messages with commits.
 pub const COMMIT_TOPIC: &str = "/foldline/commit";
-/// Topic of the record that ends a finished run.
+/// Topic of the message that ends the log of a finished run.
 pub const FINISHED_TOPIC: &str = "/foldline/finished";
 
-/// Topics that no viewer may write to.
+/// The topics of the log itself, to which no viewer may write.
 pub const OWN_TOPICS: [&str; 6] =
     [MESH_TOPIC, DISPLACEMENT_TOPIC, STATE_TOPIC, REPORT_TOPIC, COMMIT_TOPIC, FINISHED_TOPIC];
 
@@ -104,7 +104,7 @@ pub(super) const CHANNEL_BYTES_LIMIT: usize = 4 << 10;
 /// Distance of two stages in `log_time`.
 const NANOSECONDS_PER_STAGE: u64 = 100_000_000;
 
-/// `log_time` of the stage with this ordinal, nanoseconds.
+/// Logging time of the stage with this ordinal, nanoseconds.
 pub fn log_time_ns(ordinal: u64) -> u64 {
     ordinal.saturating_add(1).saturating_mul(NANOSECONDS_PER_STAGE)
 }

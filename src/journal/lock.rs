@@ -19,7 +19,7 @@ use super::backend::{beside, is_at};
 use super::lease::{LONGEST, Lease, holder, not_ours};
 use crate::whole_file::{room_for, shortage};
 
-/// Why a log cannot be written, or no longer.
+/// Why a process may not write a log, or may no longer.
 #[derive(Debug, thiserror::Error)]
 pub enum LockError {
     /// Another process writes this log.
@@ -114,7 +114,7 @@ pub struct LogLock {
 }
 
 impl LogLock {
-    /// Takes the right to write `log`, which need not exist.
+    /// Acquires the right to write `log`, which need not exist.
     ///
     /// # Errors
     /// Where another process has it, or the files beside the log cannot be made.
@@ -164,12 +164,12 @@ impl LogLock {
         Ok(Self { log: log.to_owned(), lease, lock_path, lock, is_exclusive: is_locked })
     }
 
-    /// Whether the system keeps others out, and not the lease alone.
+    /// Whether the file system's lock keeps other processes out, and not the lease alone.
     pub fn is_exclusive(&self) -> bool {
         self.is_exclusive
     }
 
-    /// Looks whether the right is still held. A lease that cannot be read is tried again for a while.
+    /// Checks that the right is still held. A lease that cannot be read is tried again for a while.
     ///
     /// # Errors
     /// Where it is not.

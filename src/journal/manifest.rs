@@ -17,7 +17,7 @@ use crate::record::{NUMERICS_REVISION, run_hash};
 use crate::scene::{Scene, SceneError, parse_with_settings};
 use crate::state::Hash;
 
-/// Scene, program and machine of one stretch of a run.
+/// The scene, program and machine of one stretch of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Manifest {
     /// Version of the log's layout.
@@ -52,7 +52,7 @@ pub struct Manifest {
     pub own_terms: Vec<(String, String)>,
 }
 
-/// Why a metadata record is not a manifest.
+/// Why a metadata record cannot be read as a manifest.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ManifestError {
     /// An entry is not there.
@@ -74,7 +74,7 @@ pub enum ManifestError {
     Check,
 }
 
-/// Why the text in a manifest is not a scene.
+/// Why the text in a manifest cannot be read as a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneInLogError {
     /// It does not stand for itself.
@@ -97,7 +97,7 @@ fn own_terms(entries: &BTreeMap<String, String>) -> Vec<(String, String)> {
 }
 
 impl Manifest {
-    /// Creates a manifest of this program on this machine, now.
+    /// Creates a manifest of this program on this machine, with the present time.
     pub fn here(scene_file: &Path, scene_text: &str, threads: usize) -> Self {
         Self {
             format_version: FORMAT_VERSION,
@@ -117,25 +117,27 @@ impl Manifest {
         }
     }
 
-    /// Creates the same for a run with terms of the caller's own.
+    /// Adds the terms of the caller's own that the run is made with.
     pub fn with_terms(self, own: &[Arc<dyn TermSource>]) -> Self {
         let own_terms = own.iter().map(|source| (source.name().to_owned(), source.hash().to_string())).collect();
         Self { own_terms, ..self }
     }
 
-    /// Hash of what the stages of this stretch were made with, as their commits have it; `None` where it does not read.
+    /// Hash of all that decides the results of this stretch, as its commits name it; `None` where the scene cannot be
+    /// read.
     pub fn run_hash(&self) -> Option<Hash> {
         let hash = |hash: &str| Hash::from_hex(hash).ok();
         let terms: Option<Vec<_>> = self.own_terms.iter().map(|(name, of)| Some((&name[..], hash(of)?))).collect();
         Some(run_hash(&self.scene(&[]).ok()?, &terms?))
     }
 
-    /// Whether both were written by machines that compute alike as far as a manifest can tell.
+    /// Whether both stretches were written by machines that compute alike, as far as manifests show.
     pub fn same_machine(&self, other: &Self) -> bool {
         (&self.host, &self.cpu, &self.cpu_features) == (&other.host, &other.cpu, &other.cpu_features)
     }
 
-    /// Why this stretch may round otherwise than `before`, in words; `None` where both round alike, on whatever machines.
+    /// Why this stretch may round differently from `before`, in words; `None` where both round alike, on whatever
+    /// machines.
     pub fn rounds_otherwise(&self, before: &Self) -> Option<String> {
         let kernels = [before, self].map(|manifest| KernelClass::of(&manifest.kernel));
         let [was, is] = [before, self].map(|manifest| {
@@ -158,8 +160,8 @@ impl Manifest {
         }
     }
 
-    /// The scene, with settings applied to it. It stands for itself: one that names a file is none that this program wrote, and
-    /// no file is opened.
+    /// Parses the scene, with settings applied to it. A scene that names a file was not written by this program, and no
+    /// file is opened.
     ///
     /// # Errors
     /// Where it is no scene, in the words of the parser.
@@ -178,7 +180,7 @@ impl Manifest {
         Ok(parse_with_settings(&self.scene_text, "the scene in the log", settings).map_err(Box::new)?)
     }
 
-    /// Checks that a log can hold the manifest.
+    /// Checks that the manifest is not too large for a log.
     ///
     /// # Errors
     /// Where the scene is larger than any that a reader takes.

@@ -10,7 +10,7 @@ use super::reader::ReadError;
 use crate::record::Record;
 use crate::state::State;
 
-/// Why stages cannot be put back.
+/// Why lost stages cannot be put back into a log.
 #[derive(Debug, thiserror::Error)]
 pub enum MendError {
     /// They have no place in a log.
@@ -22,7 +22,7 @@ pub enum MendError {
 }
 
 impl Log {
-    /// The same log with stages behind its good part; `None` where nothing that stands there follows on them.
+    /// Returns the same log with stages behind its good part; `None` where no later commit of the log follows on them.
     ///
     /// # Errors
     /// Where a stage cannot be put into a log.

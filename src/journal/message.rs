@@ -17,7 +17,7 @@ use crate::record::{Commit, Parameter, Reading, Record, Report, WrittenReport};
 use crate::scene::Stage;
 use crate::state::Hash;
 
-/// A hash as 64 lower-case hexadecimal digits.
+/// A hash that is written as 64 lower-case hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HexHash(pub Hash);
 
@@ -54,7 +54,7 @@ impl JsonSchema for HexHash {
     }
 }
 
-/// One message of a chunk, as its commit names it.
+/// The hash of one message of a chunk, as the commit of the chunk lists it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct MessageHash {
     /// Topic of the message.
@@ -66,7 +66,7 @@ pub struct MessageHash {
 }
 
 impl MessageHash {
-    /// Names this data on this topic by its hash.
+    /// Hashes this data on this topic.
     pub fn of(topic: &str, data: &[u8]) -> Self {
         Self::hashed(topic, data, blake3::hash(data))
     }
@@ -115,7 +115,8 @@ pub struct CommitMessage {
 }
 
 impl CommitMessage {
-    /// The message for a commit of the stretch that a manifest with the hash `manifest` begins, whose chunk holds `messages`.
+    /// Creates the message for a commit whose chunk holds `messages`, in the stretch whose manifest has the hash
+    /// `manifest`.
     pub fn new(commit: &Commit, manifest: Hash, mesh_hash: Hash, fields: &[Hash], messages: Vec<MessageHash>) -> Self {
         Self {
             format: FORMAT_VERSION,
@@ -135,12 +136,12 @@ impl CommitMessage {
         }
     }
 
-    /// Hashes of the bytes of the state's fields.
+    /// The hashes of the encoded fields of the state.
     pub fn fields(&self) -> impl Iterator<Item = Hash> {
         self.displacement_hash.iter().chain(&self.field_hashes).map(|hash| hash.0)
     }
 
-    /// The commit that the message stands for; its chain hash is as written, not yet recomputed.
+    /// Converts the message to a commit; its chain hash is as written, not yet computed again.
     pub fn commit(&self) -> Commit {
         Commit {
             ordinal: self.ordinal,
@@ -171,7 +172,8 @@ pub struct FinishedMessage {
 }
 
 impl FinishedMessage {
-    /// The end of a run whose last commit is this, in a stretch that a manifest with the hash `manifest` begins.
+    /// Creates the message for a run whose last commit is `last`, in the stretch whose manifest has the hash
+    /// `manifest`.
     pub fn after(last: &Commit, manifest: Hash) -> Self {
         Self {
             format: FORMAT_VERSION,
@@ -258,8 +260,8 @@ impl ReportMessage {
         serde_json::to_vec(self)
     }
 
-    /// The message that the JSON holds, bit for bit as it was. Entries that a report does not have are passed over and not
-    /// kept, however much they hold.
+    /// Reads the message from JSON, bit for bit as it was written. Entries that a report does not have are ignored,
+    /// however long they are.
     ///
     /// # Errors
     /// Where the JSON is not a report.
@@ -342,7 +344,7 @@ const UNSEALED: HexHash = HexHash(Hash::from_bytes([0; 32]));
 /// The seal's 64 digits and the two characters that end the JSON.
 const SEAL_LEN: usize = 64 + 2;
 
-/// Why a sealed message cannot be trusted.
+/// Why a sealed message is rejected.
 #[derive(Debug, thiserror::Error)]
 pub enum SealError {
     /// Too short to hold a seal.
@@ -394,12 +396,13 @@ pub fn unseal<M: Sealed>(json: &[u8]) -> Result<M, SealError> {
     Ok(parsed(json)?)
 }
 
-/// A message whose last entry is its seal.
+/// A message that is written with a seal (a hash of its other bytes) as its last entry.
 pub trait Sealed: Serialize + for<'de> Deserialize<'de> {}
 impl Sealed for CommitMessage {}
 impl Sealed for FinishedMessage {}
 
-/// The JSON schema of a message, in the subset that viewers read: no references, and a choice of words as `enum`.
+/// Generates the JSON schema of a message, in the subset that viewers read: no references, and a choice of words as
+/// `enum`.
 pub fn schema_of<M: JsonSchema>(title: &str) -> Vec<u8> {
     let settings = schemars::generate::SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
     let mut schema = settings.into_generator().into_root_schema_for::<M>().to_value();

@@ -65,7 +65,7 @@ impl Log {
         Log::from_bytes(bytes)
     }
 
-    /// Reads the log that the bytes hold; see [`Log::read`].
+    /// Reads a log from bytes in memory; see [`Log::read`].
     ///
     /// # Errors
     /// Where they are not a log.

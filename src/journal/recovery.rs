@@ -57,7 +57,7 @@ pub(super) fn copy(log: &Log, keep: usize, encoder: &mut Encoder, backend: &mut 
     Ok(length)
 }
 
-/// What became of a log that was recovered.
+/// The outcome of recovering a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecoverOutcome {
     /// Every commit that the log ever held is in the new one.
@@ -96,7 +96,7 @@ pub enum RecoverError {
     New(#[from] NewLogError),
 }
 
-/// Copies what is good of a log to a new file, with the summary that viewers look for.
+/// Copies the good part of a log to a new file, with the summary that viewers need.
 ///
 /// # Errors
 /// Where the log cannot be read at all, or the new file exists or cannot be written. That nothing is good of the log is
@@ -105,7 +105,7 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> 
     recover_with(path, new, None)
 }
 
-/// The same; of a log in which whole commits have lost what they follow on `mend` may give back one in which they have not.
+/// Recovers a log as [`recover`] does, but lets `mend` put lost stages back where whole commits follow on them.
 ///
 /// # Errors
 /// Those of [`recover`].

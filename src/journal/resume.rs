@@ -85,7 +85,7 @@ pub enum ResumeError {
     },
 }
 
-/// A log that this process, and no other, may continue.
+/// A log that this process alone may continue.
 #[derive(Debug)]
 pub struct Resume {
     path: PathBuf,
@@ -105,7 +105,7 @@ struct Before {
     builder: Builder,
 }
 
-/// A log that is being continued.
+/// A log that is being continued, and its last good state.
 #[derive(Debug)]
 pub struct Resumed {
     /// Takes the stages that follow.
@@ -118,7 +118,7 @@ pub struct Resumed {
 }
 
 impl Resume {
-    /// Claims a log and reads it. Changes nothing.
+    /// Acquires the right to write a log, and reads the log. Changes nothing.
     ///
     /// # Errors
     /// Where it is not there, not a log, or another process writes it.
@@ -136,7 +136,7 @@ impl Resume {
         Ok(Self { path, name, lock, log, before, copies: false })
     }
 
-    /// The same log, read from its start: for what the end of a long one does not tell.
+    /// Reads the log again from its start, for what the end of a long log does not show.
     ///
     /// # Errors
     /// Where it cannot be read.
@@ -148,7 +148,7 @@ impl Resume {
         Ok(Self { log, before: None, ..self })
     }
 
-    /// Goes on in a copy that takes the log's place, as where there are no locks.
+    /// Continues in a copy that takes the log's place, as where there are no locks.
     pub fn in_a_copy(self) -> Self {
         Self { copies: true, ..self }
     }
@@ -158,7 +158,7 @@ impl Resume {
         &self.log
     }
 
-    /// Begins a new stretch behind the last good commit. That the run was finished, where it was, is not carried over.
+    /// Starts a new stretch behind the last good commit. A record that the run was finished is not carried over.
     ///
     /// # Errors
     /// Where the copy cannot be made; the log is then as it was.
@@ -167,7 +167,7 @@ impl Resume {
         self.start_after(all, manifest, sync)
     }
 
-    /// The same behind the first `keep` commits; those after them go.
+    /// Starts a new stretch behind the first `keep` commits; those after them are dropped.
     ///
     /// # Errors
     /// Where the copy cannot be made; the log is then as it was.
@@ -183,7 +183,7 @@ impl Resume {
         if in_place { self.in_place(&manifest, sync) } else { self.whole()?.copied(keep, &[manifest], sync) }
     }
 
-    /// Puts back the scene of a manifest that is lost, of which `manifest` has the file, and behind it that of the last stretch, with
+    /// Puts back the scene of a lost manifest, which `manifest` holds, and behind it that of the last stretch, with
     /// which the log is continued as before. No stage is added.
     ///
     /// # Errors
@@ -283,7 +283,7 @@ impl Resume {
 }
 
 impl JournalWriter {
-    /// Goes on with a log: [`Resume::open`] and [`Resume::start`] in one, for callers who know the scene.
+    /// Continues a log: [`Resume::open`] and [`Resume::start`] in one, for callers who know the scene.
     ///
     /// # Errors
     /// Those of both.

@@ -63,8 +63,8 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    /// A walk that begins at a commit in the middle of a log; `bytes` are those from there on, and `meshes` and
-    /// `fields` say where the ones before it lie beside them.
+    /// Starts a scan at a commit in the middle of a log; `bytes` are those from there on, and `meshes` and `fields`
+    /// locate the earlier ones.
     pub fn from(checkpoint: &Checkpoint) -> Self {
         Self {
             base: checkpoint.at,
@@ -77,8 +77,8 @@ impl Scan {
         }
     }
 
-    /// Walks over the bytes. Where more of them follow in the file (`goes_on`), a record that they cut off is no damage.
-    pub fn run(&mut self, bytes: &[u8], goes_on: bool) {
+    /// Scans the bytes. Where more bytes follow in the file (`more_follows`), a record that they cut off is no damage.
+    pub fn run(&mut self, bytes: &[u8], more_follows: bool) {
         let mut at = 0;
         self.content_end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
         if self.from.is_none() {
@@ -90,7 +90,7 @@ impl Scan {
         self.good_end = at.min(bytes.len());
         self.stretch_end = self.good_end;
         while let Some(next) = frame::next(bytes, at) {
-            if goes_on && next.is_err() {
+            if more_follows && next.is_err() {
                 break;
             }
             let outcome = match &next {
@@ -110,7 +110,7 @@ impl Scan {
                         }
                     }
                     match self.closed {
-                        true if goes_on => None,
+                        true if more_follows => None,
                         true => frame::find(bytes, frame.body.end),
                         false => Some(frame.body.end),
                     }
@@ -141,7 +141,7 @@ impl Scan {
             }
         }
         let good = self.commits();
-        if !goes_on || self.closed {
+        if !more_follows || self.closed {
             self.stretches.end(good, self.problems.last().map(|problem| problem.at));
             if let Some(at) = self.stretches.unused {
                 let text = "the log ends in a manifest that cannot be read: no stage was run under it, and what it asked for is not \

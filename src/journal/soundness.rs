@@ -4,7 +4,7 @@ use crate::scene::{Drive, Scene, Stage};
 use crate::spline::{DEGREES, KnotFlaw, check_knots};
 use crate::state::{Course, CriticalAhead, DriveMemory, Mesh, PathMemory, Previous, Refinement, State, StepControl};
 
-/// What is wrong with a mesh or a state.
+/// What is wrong with a decoded mesh or state.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Flaw {
     /// A degree that no kernel is built for.

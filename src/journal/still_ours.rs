@@ -15,7 +15,7 @@ const FIRST_PAUSE: Duration = Duration::from_millis(10);
 /// Between two tries at most.
 const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
-/// What became of a log in other hands.
+/// Why a log is no longer the file that this process wrote.
 #[derive(Debug, thiserror::Error)]
 pub enum Estranged {
     /// It has no name any more.

@@ -15,7 +15,7 @@ use super::portions::{Portion, Portions};
 use super::reader::ReadError;
 use crate::state::Hash;
 
-/// What became of a log that was thinned.
+/// The outcome of thinning a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Thinned {
     /// Stages in the new log: all.
@@ -56,8 +56,8 @@ pub enum ThinError {
     New(#[from] NewLogError),
 }
 
-/// Writes a log again with the states that end the load steps which `keeps` takes, and the last one; `kept_as` says in words
-/// which. The new log is whole or not there.
+/// Copies a log to a new one that holds only the states that end load steps for which `keeps` is true, and the last
+/// state; `kept_as` describes them in words. The new log is written whole or not at all.
 ///
 /// # Errors
 /// Where the log cannot be read or is damaged, or the new one exists or cannot be written.

@@ -15,7 +15,7 @@ use super::reader::{open_regular, read_at};
 use super::rewriting::Rewriting;
 use crate::units::count;
 
-/// How much a finding matters.
+/// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Good to know.
@@ -100,7 +100,7 @@ fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
     Ok(Some(findings))
 }
 
-/// Checks a log that was read; see [`verify`].
+/// Checks a log that was read before; see [`verify`].
 pub fn verify_log(log: &Log) -> Vec<Finding> {
     let mut findings = of_the_whole(log);
     findings.extend(states_kept(log, kept_in(log.entries())));

@@ -9,7 +9,7 @@ use crate::record::SinkError;
 use crate::state::Hash;
 use crate::whole_file::shortage;
 
-/// Why a stage could not be kept, or a log not be begun.
+/// Why a stage could not be written to a log, or a log could not be started.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// There is a file of that name.

@@ -25,8 +25,8 @@ use crate::whole_file::room_for;
 /// How often [`SyncPolicy::EachSecond`] forces the log to disk at most.
 const SYNC_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Makes messages for viewers out of a stage. They go into the stage's commit, and into none of the hashes that states
-/// and runs are told apart by.
+/// A source of messages for viewers, made from each stage. They are stored in the stage's commit, but enter no hash of
+/// a state or of the chain.
 pub trait ViewerTopics: Send {
     /// The messages about this stage; none where it changed nothing to look at.
     fn messages(&mut self, state: &State, record: &Record) -> Vec<ViewerMessage>;
@@ -39,8 +39,8 @@ pub(super) struct KnownPieces {
     pub fields: Vec<EncodedField>,
 }
 
-/// Writes a run to a log, one commit a stage. Dropped without [`JournalWriter::finish`] or [`JournalWriter::close`] it
-/// leaves what a killed process leaves: every commit, and no summary.
+/// A writer of a run to a log, one commit for each stage. Dropped without [`JournalWriter::finish`] or
+/// [`JournalWriter::close`] it leaves what a killed process leaves: every commit, and no summary.
 pub struct JournalWriter {
     pub(super) encoder: Encoder,
     pub(super) backend: Box<dyn Backend>,
@@ -69,7 +69,7 @@ impl fmt::Debug for JournalWriter {
 }
 
 impl JournalWriter {
-    /// Begins a log. Never touches a file that is there already.
+    /// Creates a log. An existing file is never touched.
     ///
     /// # Errors
     /// Where there is one, where another process writes it, or where it cannot be written.
@@ -85,8 +85,8 @@ impl JournalWriter {
         Self::begin(path, lock, manifest, sync)
     }
 
-    /// Begins a log where a file is that holds nothing, not even a header, as a power cut may leave it. Whether it does is
-    /// asked again under the lock.
+    /// Creates a log in place of a file that holds nothing, not even a header, as a power cut may leave it. Whether it
+    /// does is checked again under the lock.
     ///
     /// # Errors
     /// As for [`Self::create`]; a file that holds more is left alone.
@@ -123,7 +123,7 @@ impl JournalWriter {
         }
     }
 
-    /// Begins a log on a backend, which is empty; `log` is its name in messages. Takes no lock.
+    /// Creates a log on an empty backend; `log` is its name in messages. Takes no lock.
     ///
     /// # Errors
     /// Where the backend cannot be written.
@@ -155,7 +155,7 @@ impl JournalWriter {
         }
     }
 
-    /// The same writer, with messages for viewers in every commit from here on.
+    /// Adds messages for viewers to every commit from here on.
     pub fn with_viewer(self, topics: Box<dyn ViewerTopics>) -> Self {
         Self { viewer: Some(topics), ..self }
     }
@@ -165,7 +165,7 @@ impl JournalWriter {
         self.last.as_ref()
     }
 
-    /// Bytes of the log so far.
+    /// Length of the log so far, bytes.
     pub fn len(&self) -> u64 {
         self.length
     }
@@ -175,13 +175,13 @@ impl JournalWriter {
         self.last.is_none()
     }
 
-    /// Whether the log is still the file that was written, as it was left.
+    /// Whether the log is still the file that was written, as this writer left it.
     pub fn is_still_there(&self) -> bool {
         self.backend.check(self.length, self.commits()).is_ok()
     }
 
-    /// Keeps a stage: one commit, one write, and a sync where the policy asks for it. The state is compared with the hash that
-    /// the commit names.
+    /// Writes a stage: one commit, one write, and a sync where the policy demands it. The state is compared with the
+    /// hash that the commit names.
     ///
     /// # Errors
     /// Where it could not be kept. The log is good up to the last commit, and takes no more.
@@ -190,8 +190,8 @@ impl JournalWriter {
         self.keep(state, record, found)
     }
 
-    /// Ends the log of a run that reached its end: a record that says so, MCAP's summary, and a sync. Where there is no
-    /// commit there is no such record either.
+    /// Ends the log of a run that reached its end with a record of that, MCAP's summary, and a sync. A log without
+    /// commits gets no such record.
     ///
     /// # Errors
     /// Where it could not be written; the commits stand.
@@ -202,8 +202,8 @@ impl JournalWriter {
         self.close()
     }
 
-    /// Ends the log of a run that was stopped: MCAP's summary, so that viewers open it at once, and a sync. It can be
-    /// resumed.
+    /// Ends the log of a run that was stopped with MCAP's summary, so that viewers open it at once, and a sync. It can
+    /// be resumed.
     ///
     /// # Errors
     /// Where it could not be written; the commits stand.

@@ -6,10 +6,10 @@ use crate::journal::format::CHUNK_BYTES_LIMIT;
 use crate::journal::soundness::Flaw;
 use crate::state::Hash;
 
-/// The version in which states are written, in front of each of them.
+/// Version of the encoding of states, the first byte of each of them.
 pub const CODEC_VERSION: u8 = 7;
 
-/// Why bytes are not a state or a mesh that can be used.
+/// Why bytes do not decode to a usable state or mesh.
 #[derive(Debug, thiserror::Error)]
 pub enum CodecError {
     /// No bytes at all.
