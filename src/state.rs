@@ -41,7 +41,7 @@ pub struct State {
     pub refinement: Option<Refinement>,
 }
 
-/// What a refinement changed at a state.
+/// The effect of a refinement on the energy of a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refinement {
     /// Magnitudes of what integrating again and re-equilibrating changed the strain energy by, N·mm.
@@ -55,14 +55,15 @@ pub struct Refinement {
 }
 
 impl Refinement {
-    /// What refining the whole mesh would change, if all of it were as the part that was refined, N·mm.
+    /// Estimated change of the energy by refining the whole mesh, if all of it were like the part that was refined,
+    /// N·mm.
     pub fn of_all_n_mm(&self) -> f64 {
         self.changed_n_mm / self.growth
     }
 }
 
-/// What drives a run, load or path, remembers from step to step. A path begins with an increment of the parameter, and so
-/// with the control of load steps.
+/// What the drive of a run, load or path, remembers from step to step. A path begins with an increment of the
+/// parameter, and so with the control of load steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveMemory {
     /// What the next solve will try.
@@ -72,7 +73,7 @@ pub struct DriveMemory {
 }
 
 impl DriveMemory {
-    /// The path that is followed.
+    /// The memory of the path that is followed; `None` where none is.
     pub fn path(&self) -> Option<&PathMemory> {
         match &self.course {
             Course::Path(path) => Some(path),
@@ -80,7 +81,7 @@ impl DriveMemory {
         }
     }
 
-    /// The equilibrium that the load was moved on from.
+    /// The equilibrium from which the load was advanced to the present one.
     pub fn previous(&self) -> Option<&Previous> {
         match &self.course {
             Course::Load(previous) => Some(previous),
@@ -89,8 +90,8 @@ impl DriveMemory {
     }
 }
 
-/// How equilibria led to the present one, for the predictor of the next. What drove the run before stays here until the next
-/// drive has made a step.
+/// How equilibria led to the present one, for the predictor of the next. The memory of an earlier drive stays until the
+/// next drive has made a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Course {
     /// In no way that continues: the shell is undeformed, or it jumped since.
@@ -103,7 +104,7 @@ pub enum Course {
 }
 
 impl Course {
-    /// The same on another mesh, where `project` carries vectors on the control points over.
+    /// Converts the vectors on control points to another mesh with `project`.
     pub fn projected(&self, project: impl Fn(&[[f64; 3]]) -> Vec<[f64; 3]>) -> Self {
         match self {
             Course::Unknown => Course::Unknown,
@@ -131,7 +132,7 @@ impl Course {
     }
 }
 
-/// An equilibrium before the present one.
+/// An equilibrium that precedes the present one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Previous {
     /// Displacement of every control point, mm, in the order of the present mesh.
@@ -140,7 +141,7 @@ pub struct Previous {
     pub parameter: f64,
 }
 
-/// Memory of continuation by arc length.
+/// What continuation by arc length remembers from step to step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathMemory {
     /// Unit tangent of the path: rates of the control points' displacements with its length, in the order of the mesh. A
@@ -160,7 +161,7 @@ pub struct PathMemory {
     pub at_bifurcation: bool,
 }
 
-/// A limit point or a bifurcation known to lie ahead.
+/// A limit point or a bifurcation that is known to lie ahead on the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalAhead {
     /// A step of this length passes it, mm.
@@ -169,7 +170,7 @@ pub struct CriticalAhead {
     pub rate_beyond: f64,
 }
 
-/// Memory of the step control.
+/// What the control of load steps remembers from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepControl {
     /// The scene's increment is divided by 2 to this power; negative where it has grown.
@@ -180,7 +181,7 @@ pub struct StepControl {
     pub rejection: Option<Rejection>,
 }
 
-/// Why an attempted load step was not taken.
+/// Why an attempted load step was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejection {
     /// The solver found no equilibrium.
@@ -210,7 +211,7 @@ impl MeshHash {
 }
 
 impl State {
-    /// The state of an undeformed shell, before the first step.
+    /// Creates the state of an undeformed shell, before the first step.
     pub fn undeformed(mesh: Mesh) -> Self {
         Self {
             displacement: vec![[0.0; 3]; mesh.control_points.len()],

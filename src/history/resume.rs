@@ -132,7 +132,7 @@ fn what_stands(log: &Log, keep: usize, difference: &Difference) -> String {
 /// A change that no state survives.
 fn why_nothing_stands(difference: &Difference, old: &Scene, new: &Scene) -> String {
     let [from, to] = difference.values();
-    let why = match (difference.reach, old.histories_part_at(new)) {
+    let why = match (difference.reach, old.same_histories_up_to(new)) {
         (Reach::LaterLoads, _) if Drive::of(old).follows_path() => {
             ": a step by arc length looks beyond the load at which it ends".to_owned()
         }
@@ -149,7 +149,7 @@ fn before_histories_part(log: &Log, old: &Scene, new: &Scene) -> usize {
     if Drive::of(old).follows_path() {
         return 0;
     }
-    let part_at = old.histories_part_at(new);
+    let part_at = old.same_histories_up_to(new);
     let reports: Vec<&Report> = log.entries().iter().map(|entry| &entry.record.report).collect();
     let asks_for_rates = |index: usize| {
         let ends_stable = |report: &&Report| report.outcome == Outcome::Done && report.negative_pivots == 0;
@@ -186,7 +186,7 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
 
 /// Whether a parameter is at a target or beyond.
 fn is_beyond(scene: &Scene, parameter: f64, target: f64) -> bool {
-    Drive::of(scene).way_of(parameter) >= target * (1.0 - TARGET_ROUNDING)
+    Drive::of(scene).progress(parameter) >= target * (1.0 - TARGET_ROUNDING)
 }
 
 /// Number of stages, of the first `keep`, up to the last one that ends a load step.

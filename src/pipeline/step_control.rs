@@ -80,7 +80,7 @@ fn increment_of(scene: &Scene, halvings: i32) -> f64 {
 
 /// Whether a rotation is reached, to the rounding of its steps.
 pub fn has_reached(scene: &Scene, state: &State, parameter: f64) -> bool {
-    Drive::of(scene).way_of(state.parameter) >= parameter - SAME * scene.load.increment()
+    Drive::of(scene).progress(state.parameter) >= parameter - SAME * scene.load.increment()
 }
 
 /// The stage that follows a state; `None` where the run has reached its target.

@@ -7,7 +7,8 @@ use crate::record::{CriticalPoint, Warning};
 use crate::scene::{Parameter, Scene, Stage};
 use crate::state::State;
 
-/// What a stage reports beside the state that it made. Pure: holds no clock and no host.
+/// What a stage did and the numbers of the state that it made. It depends on model and state alone, on no clock and no
+/// machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "WrittenReport", into = "WrittenReport")]
 pub struct Report {
@@ -100,7 +101,7 @@ impl Report {
     }
 }
 
-/// Energy that a jump released, in words, with so many decimals; it may not be known for two reasons.
+/// Describes the energy that a jump released, with this number of decimals, or why it is not known.
 pub fn released_in_words(energy_n_mm: Option<f64>, loads_follow: bool, decimals: usize) -> String {
     match energy_n_mm {
         Some(energy) => format!("released {energy:.decimals$} N·mm"),
@@ -109,7 +110,7 @@ pub fn released_in_words(energy_n_mm: Option<f64>, loads_follow: bool, decimals:
     }
 }
 
-/// What a probe of the scene measured.
+/// The value of a probe of the scene at an equilibrium.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reading {
     /// Name of the probe.
@@ -127,7 +128,7 @@ fn is_nothing(energy: &f64) -> bool {
     *energy == 0.0
 }
 
-/// A report as it is written: JSON that names its parameter, and leaves out what the scene has no use for.
+/// A report in the form of its JSON, which names the parameter and leaves out what the scene has no use for.
 #[derive(Clone, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Report")]
 pub struct WrittenReport {

@@ -19,7 +19,7 @@ use crate::units::{count, signed, significant};
 /// Change of the strain energy, relative to it, from which on it is said.
 pub(crate) const LARGE: f64 = 0.05;
 
-/// Where numbers are not what they seem, with those that say so.
+/// A reason to doubt numbers of the run, with the numbers that show it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Warning {
@@ -105,7 +105,7 @@ impl Warning {
         Self::RefinementBlocked { parameter: state.parameter, spans, decay_lengths, over_threshold }
     }
 
-    /// Name of the kind of warning, in few words.
+    /// Short name of the kind of warning.
     pub fn name(&self) -> &'static str {
         match self {
             Self::CoarseElements { .. } => "coarse elements",
@@ -129,12 +129,12 @@ impl Warning {
         }
     }
 
-    /// Whether it says that results read at or before its parameter are wrong.
+    /// Whether results up to the warning's parameter are wrong.
     pub fn doubts_results(&self) -> bool {
         !matches!(self, Self::RefinementBlocked { .. })
     }
 
-    /// The warning as a sentence, with its numbers and what to do.
+    /// Describes the warning in a sentence, with its numbers and what to do.
     pub fn in_words(&self) -> String {
         match self {
             &Self::CoarseElements { elements: [n1, n2], energy_share, .. } => {

@@ -26,7 +26,7 @@ const TAPE_SPRING: &str = "tape-spring";
 /// Kinds of geometry without curvature.
 const FLAT: [&str; 2] = ["plate", "annulus"];
 
-/// Reads a scene from TOML. `file_name` is only what errors call the text.
+/// Parses and checks a scene in TOML; errors call the text `file_name`.
 ///
 /// # Errors
 /// What is wrong: the syntax; or all wrong names, missing tables and keys, and wrong values; or else what does not go
@@ -35,8 +35,8 @@ pub fn parse(text: &str, file_name: &str) -> Result<Scene, SceneError> {
     parse_with_settings::<&str>(text, file_name, &[])
 }
 
-/// Reads a scene from TOML with settings of the form `section.key=value` applied to it before it is checked, as if
-/// the file said so; the last setting of a key holds. A value is TOML, but a word needs no quotes.
+/// Parses and checks a scene in TOML with settings of the form `section.key=value`, which replace what the file has;
+/// the last setting of a key holds. A value is TOML, but a word needs no quotes.
 ///
 /// # Errors
 /// As [`parse`]; what is wrong with a setting is shown in the setting.

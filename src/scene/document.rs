@@ -39,12 +39,12 @@ pub(super) struct Written<'t> {
 }
 
 impl<'t> Written<'t> {
-    /// The value of a key.
+    /// Returns the entry with this key.
     pub fn entry(&self, name: &str) -> Option<&Entry<'t>> {
         self.entries.iter().find(|entry| entry.name == name)
     }
 
-    /// What errors call it: `[geometry]`, `[[support]] 2`, `[[support]] "root"`.
+    /// The name of the table in errors: `[geometry]`, `[[support]] 2`, `[[support]] "root"`.
     pub fn title(&self) -> String {
         let name = self.entry("name").and_then(|entry| entry.value.get_ref().as_str());
         match (self.number, name) {
@@ -56,7 +56,7 @@ impl<'t> Written<'t> {
 }
 
 impl<'t> Document<'t> {
-    /// Reads the file (source 0) and then each setting (sources 1, 2, …) over it.
+    /// Reads the file (source 0), and then each setting (sources 1, 2, …) in place of what the file has.
     pub fn read<S: AsRef<str>>(text: &'t str, settings: &'t [S], sections: &'static [Section]) -> Checked<Self> {
         let root =
             DeTable::parse(text).map_err(|error| syntax::fault(&error, text, &TextSpan { source: 0, span: 0..0 }))?;
@@ -72,12 +72,12 @@ impl<'t> Document<'t> {
         Ok(document)
     }
 
-    /// What may stand in a table of this name.
+    /// The description of tables of this name.
     pub fn section(&self, name: &str) -> Option<&'static Section> {
         self.sections.iter().find(|section| section.name == name)
     }
 
-    /// Where a line can be added to a table: the end of the line of its last entry, or of its header.
+    /// Where a line can be added to a table: at the end of the line of its last entry, or of its header.
     pub fn line_end(&self, table: &Written<'_>) -> Option<TextSpan> {
         if !table.own_line {
             return None;

@@ -18,7 +18,7 @@ pub(super) struct Entry<'t> {
 }
 
 impl Entry<'static> {
-    /// The entry that a key's default stands for.
+    /// Creates the entry that represents a key's default.
     ///
     /// # Errors
     /// Where the default is not TOML.
@@ -30,17 +30,17 @@ impl Entry<'static> {
 }
 
 impl Entry<'_> {
-    /// A word as the value would be written: a setting needs no quotes, and a shell would take them away.
+    /// Writes a word as the value would be written: a setting needs no quotes, which a shell would remove.
     pub fn written(&self, word: &str) -> String {
         if self.base.source == 0 { format!("\"{word}\"") } else { word.into() }
     }
 
-    /// Where the value stands.
+    /// The span of the value in its source.
     pub fn value_place(&self) -> TextSpan {
         self.place_of(self.value.span())
     }
 
-    /// Where a part of the value stands.
+    /// The span of a part of the value in its source.
     pub fn place_of(&self, span: Range<usize>) -> TextSpan {
         let start = self.base.span.start;
         TextSpan { source: self.base.source, span: start + span.start..start + span.end }

@@ -6,7 +6,8 @@ use super::keys::number;
 use super::table::{Table, data};
 use crate::spline::{Grid, KnotFlaw, check_knots, control_count};
 
-/// Largest scene file, and largest file of a surface, bytes: a log holds the one with the other, and reads no larger ones.
+/// Size of the largest scene file, and of the largest file of a surface, bytes: a log holds the one with the other, and
+/// reads no larger ones.
 pub const SCENE_BYTES_LIMIT: u64 = 8 << 20;
 
 /// Knots that differ by less than this share of their range are meant to be one: text of six digits does not say more, and

@@ -3,7 +3,7 @@
 use super::data::Stage;
 use super::keys::{Form, Key, Section};
 
-/// Type of a TOML value.
+/// The type of a TOML value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueType {
     /// `"text"`
@@ -32,11 +32,11 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// In the order of pairs.
+    /// Both directions, in the order of pairs.
     pub const BOTH: [Direction; 2] = [Direction::Length, Direction::Arc];
 }
 
-/// A common way of not writing TOML.
+/// A common mistake in writing TOML.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SyntaxSlip {
     /// A key or a table stands twice.

@@ -10,7 +10,7 @@ use super::key_table::SECTIONS;
 use super::keys::{Choice, Form, Key, Kind, Length, Limits, Presence, Section};
 use super::regions::EDGES;
 
-/// The schema of a scene file (draft 7), pretty-printed.
+/// Generates the JSON schema (draft 7) of a scene file, pretty-printed.
 pub fn json_schema() -> String {
     format!("{:#}\n", of_scene(SECTIONS))
 }

@@ -11,7 +11,8 @@ use super::table::Table;
 pub(super) struct Tables(Vec<Table>);
 
 impl Tables {
-    /// Reads them. What is wrong comes as in the text where it is a name, and else in the order of the table of keys.
+    /// Reads all tables of a document. Faults of names come in the order of the text, others in the order of the table
+    /// of keys.
     pub fn read(document: &Document<'_>) -> CheckedWhole<Self> {
         let wrong_names = names::check(document);
         let is_told = |name: &str| wrong_names.iter().any(|fault| fault.problem.meant().as_deref() == Some(name));
@@ -39,13 +40,13 @@ impl Tables {
         if faults.is_empty() { Ok(Self(tables)) } else { Err(faults) }
     }
 
-    /// The table of this name, of which there is one.
+    /// The only table of this name.
     pub fn one(&self, name: &str) -> &Table {
         let mut tables = self.all(name);
         tables.next().unwrap_or_else(|| unreachable!("there is no table [{name}]"))
     }
 
-    /// The tables of this name.
+    /// All tables of this name.
     pub fn all(&self, name: &str) -> impl Iterator<Item = &Table> {
         self.0.iter().filter(move |table| table.section.name == name)
     }

@@ -16,7 +16,7 @@ use crate::study::timed_run::timed_run;
 /// Parameters closer than this, relatively, are one.
 const SAME: f64 = 1e-9;
 
-/// A run, as far as it is compared: moment, or first probe, over the parameter.
+/// The results of a run that are compared with others: moment, or first probe, against the parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     curve: Vec<CurvePoint>,
@@ -43,7 +43,7 @@ struct CurvePoint {
     behind: bool,
 }
 
-/// A run compared with the reference.
+/// The errors of one run, relative to a reference run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AccuracyRow {
     /// Elements (along u, along v) of the model at the end.
@@ -114,7 +114,7 @@ pub enum AccuracyError {
     },
 }
 
-/// Whether two scenes are of one structure, as far as their keys say: geometry, material, sense of the bending.
+/// Checks that two scenes describe one structure, as far as their keys show: geometry, material, sense of the bending.
 ///
 /// # Errors
 /// Where they differ.
@@ -130,7 +130,7 @@ pub fn is_one_structure(scene: &Scene, reference: &Scene) -> Result<(), Accuracy
     }
 }
 
-/// Runs a scene to its end.
+/// Runs a scene to its end and measures its results and its time.
 ///
 /// # Errors
 /// Where the run stops before, or measures nothing.
@@ -183,7 +183,7 @@ fn curve(path: &[PathPoint], parameter: Parameter) -> Vec<CurvePoint> {
 }
 
 impl Measured {
-    /// What is compared: the moment of turning ends, or the name of the first probe with its unit.
+    /// Name of the quantity that is compared: the moment of turning ends, or the name of the first probe with its unit.
     pub fn quantity(&self) -> &str {
         &self.quantity
     }

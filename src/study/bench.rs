@@ -50,7 +50,7 @@ pub struct Figure {
     pub fraction_of_peak: Option<f64>,
 }
 
-/// Why there are no figures.
+/// Why nothing could be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum BenchError {
     /// The scene cannot be made discrete.
@@ -67,7 +67,7 @@ pub enum BenchError {
     Run(#[from] Box<RunError>),
 }
 
-/// Times the kernels on the scene's own starting mesh, deformed; `repeats` of each.
+/// Times the kernels on the scene's own starting mesh, deformed, `repeats` times each.
 ///
 /// # Errors
 /// Where the scene has no deformed state to time at.
@@ -128,7 +128,7 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     Ok(figures.into_iter().map(|figure| Figure { scene: name.to_string(), ..figure }).collect())
 }
 
-/// Times a whole run of a scene, with nothing logged.
+/// Times a whole run of a scene, without a log.
 ///
 /// # Errors
 /// Where the run stops before its end.

@@ -17,7 +17,7 @@ const PARTS: usize = 2000;
 /// Limit points are located to this, degrees: a hundredth of what is asked of them.
 const LOCATED_DEG: f64 = 1e-4;
 
-/// Results of one mesh.
+/// The results of a scene on one mesh.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct ConvergenceRow {
     /// Degree each way.
@@ -80,7 +80,7 @@ pub fn check_spring(scene: &Scene) -> Result<(), ConvergenceError> {
     }
 }
 
-/// Follows the path of a scene on the uniform mesh that it starts with, and reads off it.
+/// Follows the path of a scene on the uniform mesh that it starts with, and evaluates its critical points and moments.
 ///
 /// # Errors
 /// Where the scene is not one of a tape spring, or its path is lost.

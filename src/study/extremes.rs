@@ -23,7 +23,7 @@ const MOST_ASYMMETRY: f64 = 1e-12;
 /// What running an equilibrium again from its state may change of its energy, relatively.
 const STANDS: f64 = 1e-9;
 
-/// What came of a scene. Numbers are `None` where the scene did not get so far.
+/// The results of one scene of a suite. Numbers are `None` where the scene did not get so far.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExtremeRow {
     /// Name of the scene.
@@ -93,12 +93,12 @@ pub struct ExtremesSuite {
 }
 
 impl ExtremesSuite {
-    /// Scenes by their file names; each run may take `limit`.
+    /// Creates a suite of scenes by their file names; each run may take `limit`.
     pub fn new(scenes: BTreeMap<String, Scene>, limit: Duration) -> Self {
         Self { scenes, curves: BTreeMap::new(), limit }
     }
 
-    /// Runs a scene and looks at what came of it; `None` where the suite has none of this name. Panics end the scene
+    /// Runs a scene and checks its results; `None` where the suite has none of this name. A panic ends that scene
     /// alone.
     pub fn run(&mut self, name: &str) -> Option<ExtremeRow> {
         let scene = self.scenes.get(name)?.clone();
@@ -205,7 +205,7 @@ fn stands(scene: &Scene, state: &State, record: &Record, row: &mut ExtremeRow) {
         again.effort.iterations <= 1 && (again.balance.stored - energy).abs() <= STANDS * energy.abs()
     });
     if !same {
-        row.faults.push(ExtremeFault::DoesNotStand { step: record.report.step });
+        row.faults.push(ExtremeFault::NotFoundAgain { step: record.report.step });
     }
 }
 

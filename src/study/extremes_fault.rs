@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 use crate::equilibrium::SolveError;
 use crate::scene::{ExpectedOutcome, Stage};
 
-/// One thing that is wrong.
+/// A fault found in a run that is checked against its `[expect]` table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExtremeFault {
     /// It did not end as it states.
@@ -30,7 +30,7 @@ pub enum ExtremeFault {
     },
     /// The last equilibrium is none when it is run again from its state.
     #[error("the equilibrium of step {step} is not found again from its own state")]
-    DoesNotStand {
+    NotFoundAgain {
         /// Load step.
         step: u64,
     },

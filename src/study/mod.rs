@@ -31,5 +31,5 @@ pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;
 pub use path::{Passed, PathPoint, Snap, equilibria, equilibrium_path, snaps};
-pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, Said, StageWork, Summary};
+pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, StageWork, Summary, WarningCount};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

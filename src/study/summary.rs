@@ -9,7 +9,8 @@ use crate::units::rounded;
 /// flat to 0.1 N·mm beyond 40°).
 const FAR_FROM_ENDS_DEG: f64 = 40.0;
 
-/// What a run found. Every number comes from the records; `Display` lays them out beside the closed-form laws.
+/// The results and the cost of a run. Every number is computed from the records; `Display` prints them with the
+/// closed-form laws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// The tape spring, for the laws that the run is compared with.
@@ -47,7 +48,7 @@ pub struct Summary {
     /// What each stage that ran has cost, in the order of [`Stage::ALL`].
     pub work: Vec<StageWork>,
     /// Where the mesh cannot show what the shell does, a line for each kind of warning.
-    pub warnings: Vec<Said>,
+    pub warnings: Vec<WarningCount>,
     /// Whether a warning says that the peak is wrong.
     pub peak_in_doubt: bool,
     /// Solves that were rejected.
@@ -69,7 +70,7 @@ pub struct MeasuredPeak {
     pub found: PeakFound,
 }
 
-/// How a peak was found.
+/// How the peak of the moment was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PeakFound {
     /// The top of a parabola through the largest moment and its neighbours.
@@ -80,7 +81,7 @@ pub enum PeakFound {
     LoadStep,
 }
 
-/// Mean moment of the fold.
+/// The mean moment of the fold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoldMean {
     /// Mean, N·mm.
@@ -91,16 +92,16 @@ pub struct FoldMean {
     pub points: usize,
 }
 
-/// A kind of warning, and how often it was said.
+/// A kind of warning, and the number of load steps that reported it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Said {
+pub struct WarningCount {
     /// The first one.
     pub first: Warning,
     /// Load steps in which it was said.
     pub steps: usize,
 }
 
-/// A mesh, and where the run came to it.
+/// A mesh of the run, and the rotation at which the run came to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshChange {
     /// Rotation of each end at which it was made, degrees; 0 for the mesh that the run starts with.
@@ -111,7 +112,7 @@ pub struct MeshChange {
     pub unknowns: usize,
 }
 
-/// Work against strain energy, up to the first jump.
+/// Work compared with strain energy, up to the first jump.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
     /// Rotation of the last equilibrium that is counted, degrees.
@@ -131,25 +132,26 @@ pub struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    /// Energy that accounts for the work, N·mm.
+    /// The energy that accounts for the work, N·mm.
     pub fn accounted_n_mm(&self) -> f64 {
         self.strain_energy_n_mm + self.taken_out_by_refinement_n_mm + self.released_in_ripples_n_mm
     }
 
-    /// Work that has gone nowhere, relative to the largest energy that took part: a shell that is unloaded again stores none,
-    /// and one that takes its natural shape neither stores any nor takes work.
-    pub fn off(&self) -> f64 {
-        (self.work_n_mm - self.accounted_n_mm()) / self.measure_n_mm()
+    /// The part of the work for which no energy accounts, relative to the largest energy involved. The strain energy
+    /// itself is no measure: a shell that is unloaded again stores none, and one that takes its natural shape neither
+    /// stores any nor takes work.
+    pub fn relative_error(&self) -> f64 {
+        (self.work_n_mm - self.accounted_n_mm()) / self.largest_n_mm()
     }
 
-    /// The largest energy that took part, N·mm.
-    pub fn measure_n_mm(&self) -> f64 {
+    /// The largest energy involved, N·mm.
+    pub fn largest_n_mm(&self) -> f64 {
         let energies = [self.largest_energy_n_mm, self.put_in_n_mm, self.accounted_n_mm().abs(), self.work_n_mm.abs()];
         energies.into_iter().fold(0.0, f64::max)
     }
 }
 
-/// Number and wall time of the runs of one stage.
+/// Number of runs of one stage, and what they cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageWork {
     /// The stage.
@@ -165,7 +167,7 @@ pub struct StageWork {
 }
 
 impl Summary {
-    /// Sums up `records`, the stages of a run of `scene` from its first one on. An unfinished run has a summary too.
+    /// Summarizes `records`, the stages of a run of `scene` from its first one on. The run may be unfinished.
     pub fn new(scene: &Scene, records: &[Record]) -> Self {
         let path = equilibrium_path(records);
         let snaps = snaps(records);
@@ -345,7 +347,7 @@ fn fold_mean(path: &[PathPoint], snap: Option<&Snap>) -> Option<FoldMean> {
 }
 
 /// Each kind of warning once, in the order in which they were first said.
-fn warnings(records: &[Record]) -> Vec<Said> {
+fn warnings(records: &[Record]) -> Vec<WarningCount> {
     let mut firsts: Vec<Warning> = Vec::new();
     for warning in records.iter().flat_map(|record| &record.report.warnings) {
         if firsts.iter().all(|first| first.name() != warning.name()) {
@@ -358,7 +360,7 @@ fn warnings(records: &[Record]) -> Vec<Said> {
         steps.dedup();
         steps.len()
     };
-    firsts.into_iter().map(|first| Said { steps: steps_with(&first), first }).collect()
+    firsts.into_iter().map(|first| WarningCount { steps: steps_with(&first), first }).collect()
 }
 
 /// Warnings up to the load step of the first jump: those of the equilibria before it are said there.

@@ -4,7 +4,7 @@ use std::fmt::{self, Display, Formatter};
 
 use super::Summary;
 use super::TapeSpring;
-use super::summary::{FoldMean, MeshChange, PeakFound, Said};
+use super::summary::{FoldMean, MeshChange, PeakFound, WarningCount};
 use crate::record::{Parameter, Reading, released_in_words};
 use crate::scene::Sense;
 use crate::spline::Grid;
@@ -102,7 +102,7 @@ impl Summary {
         }
         self.write_passed(f)?;
         let Some(balance) = self.balance else { return Ok(()) };
-        let (measure, larger) = (balance.measure_n_mm(), balance.work_n_mm.abs().max(balance.accounted_n_mm().abs()));
+        let (measure, larger) = (balance.largest_n_mm(), balance.work_n_mm.abs().max(balance.accounted_n_mm().abs()));
         let measured_by = match measure > 1.01 * larger {
             true => format!(" of the {} N·mm that took part", reading(measure, 6).trim()),
             false => String::new(),
@@ -117,7 +117,7 @@ impl Summary {
             "work",
             reading(balance.work_n_mm, 6),
             reading(balance.accounted_n_mm(), 6),
-            signed(100.0 * balance.off(), 2)
+            signed(100.0 * balance.relative_error(), 2)
         )
     }
 
@@ -268,7 +268,7 @@ impl Summary {
 
     /// Each kind of warning once.
     fn write_warnings(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        for Said { first, steps } in &self.warnings {
+        for WarningCount { first, steps } in &self.warnings {
             let more = match steps {
                 1 => String::new(),
                 n => format!(" (the first of {n} load steps)"),

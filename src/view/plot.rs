@@ -65,8 +65,9 @@ const SNAP: RGBColor = RGBColor(0xb7, 0x37, 0x79);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The curve of `records`, a run of `scene`, as SVG text: measured moment, Wuest's law for uniform curvature (dashed),
-/// the equal-energy plateau, the jumps; below, elements of the model on a logarithmic axis. `title` stands on top.
+/// Plots the curve of `records`, a run of `scene`, as SVG text: measured moment, Wuest's law for uniform curvature
+/// (dashed), the equal-energy plateau, the jumps; below, elements of the model on a logarithmic axis. `title` is
+/// printed on top.
 ///
 /// # Errors
 /// Where there is no equilibrium yet.
@@ -228,8 +229,8 @@ fn draw_path(chart: &mut Chart, path: &[PathPoint], points: &[(f64, f64)]) -> Re
     Ok(())
 }
 
-/// Load factor over the first probe of `records`, a run of `scene`, as SVG text: unstable equilibria dashed. `None` where
-/// the scene has no probe. `title` stands on top.
+/// Plots the load factor over the first probe of `records`, a run of `scene`, as SVG text: unstable equilibria dashed.
+/// `None` where the scene has no probe. `title` is printed on top.
 ///
 /// # Errors
 /// Where there is no equilibrium yet.

@@ -54,9 +54,9 @@ impl SurfaceSamples {
         cells_of(counts).len()
     }
 
-    /// A surface of `counts` points each way, at least 2. `points` are in mm, the second direction fastest
-    /// (index = i₁ · n₂ + i₂); `cell_values` likewise with n − 1 cells each way, and not-a-number where there is no
-    /// value; `knot_lines` are polylines on the surface, mm. `quantity` names what the values are, with its unit.
+    /// Creates a surface of `counts` points in each direction, at least 2. `points` are in mm, the second direction
+    /// fastest (index = i₁ · n₂ + i₂); `cell_values` likewise with n − 1 cells in each direction, and NaN where there
+    /// is no value; `knot_lines` are polylines on the surface, mm. `quantity` names the values, with their unit.
     ///
     /// # Errors
     /// Where the lengths do not fit each other, or a coordinate is not finite.

@@ -13,7 +13,7 @@ pub enum ParametricDirection {
 }
 
 impl ParametricDirection {
-    /// Its place in pairs of numbers each way: 0 for u, 1 for v.
+    /// Index of the direction: 0 for u, 1 for v.
     pub fn index(self) -> usize {
         match self {
             ParametricDirection::U => 0,
@@ -37,7 +37,7 @@ pub enum Edge {
 }
 
 impl Edge {
-    /// The direction that is constant along the edge, and whether it is at its end.
+    /// The direction that is constant along the edge, and whether the edge is at its end.
     pub fn side(self) -> (ParametricDirection, bool) {
         match self {
             Edge::UStart => (ParametricDirection::U, false),
@@ -63,7 +63,7 @@ pub enum Region {
     Whole,
 }
 
-/// A part of the shell that is held or moved.
+/// A support: a region of the shell that is held or moved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Support {
     /// What reports and errors call it; no two supports have the same name.
@@ -109,7 +109,7 @@ pub enum Hold {
     },
 }
 
-/// One motion of a rigid section.
+/// The motion of a rigid section along or about one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Motion {
@@ -119,7 +119,7 @@ pub enum Motion {
     Free(FreeWord),
 }
 
-/// The word `free`.
+/// The word `free`, as the value of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FreeWord {
@@ -128,11 +128,11 @@ pub enum FreeWord {
 }
 
 impl Motion {
-    /// A free motion.
+    /// A motion that is left free.
     pub const FREE: Self = Motion::Free(FreeWord::Free);
 }
 
-/// Forces, moments and pressures.
+/// A load: forces, moments, pressures or a change of temperature, and their history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Action {
     /// What errors call it.
@@ -145,7 +145,7 @@ pub struct Action {
     pub history: History,
 }
 
-/// What acts, at factor 1.
+/// What acts, at a factor of 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum ActionKind {
@@ -205,7 +205,7 @@ pub enum ActionKind {
     },
 }
 
-/// A dead force, or force per length or area.
+/// A dead force, or a dead force per length or area.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ForceVector {
@@ -221,7 +221,7 @@ impl From<[f64; 3]> for ForceVector {
     }
 }
 
-/// A direction that a point of the undeformed surface has.
+/// A direction that is defined at every point of the undeformed surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SurfaceDirection {
@@ -233,7 +233,7 @@ pub enum SurfaceDirection {
     Outward,
 }
 
-/// The area that a force per area is meant by.
+/// The area to which a force per area refers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LoadedArea {
@@ -245,21 +245,21 @@ pub enum LoadedArea {
 }
 
 impl LoadedArea {
-    /// Whether it is the default.
+    /// Whether the area is the undeformed one, which is the default.
     pub fn is_undeformed(&self) -> bool {
         *self == LoadedArea::Undeformed
     }
 }
 
 impl ActionKind {
-    /// Whether it turns with the shell, so that it need not have a potential.
+    /// Whether the load turns with the shell, so that it need not have a potential.
     pub fn follows(&self) -> bool {
         matches!(self, Self::EdgeMoment { .. } | Self::Pressure { follower: true, .. })
     }
 }
 
-/// Factor over the load factor: straight between (load factor, factor) pairs, constant beyond the last. Empty: the
-/// load factor itself.
+/// The factor of a load or motion as a function of the load factor: piecewise linear through (load factor, factor)
+/// pairs, constant beyond the last. Without pairs it is the load factor itself.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct History(pub Vec<[f64; 2]>);
@@ -270,7 +270,7 @@ impl History {
         self.0.is_empty()
     }
 
-    /// Factor at a load factor.
+    /// Returns the factor at a load factor.
     pub fn at(&self, load_factor: f64) -> f64 {
         let points = &self.0;
         let Some(first) = points.first() else { return load_factor };
@@ -282,7 +282,7 @@ impl History {
         }
     }
 
-    /// Derivative of the factor at a load factor; at a kink, that beyond it.
+    /// Returns the derivative of the factor at a load factor; at a kink, the derivative beyond it.
     pub fn rate(&self, load_factor: f64) -> f64 {
         let points = &self.0;
         if points.is_empty() {
@@ -295,9 +295,9 @@ impl History {
         }
     }
 
-    /// The load factor up to which two histories are one by the points that they begin with; beyond it, or at it where its rate
-    /// counts, they may differ.
-    pub fn parts_at(&self, other: &Self) -> f64 {
+    /// The load factor up to which two histories are the same because they begin with the same points. They may differ
+    /// beyond it, or at it where the rate counts.
+    pub fn same_up_to(&self, other: &Self) -> f64 {
         let in_common = self.0.iter().zip(&other.0).take_while(|(one, other)| one == other).count();
         match in_common.checked_sub(1) {
             _ if self == other => f64::INFINITY,
@@ -306,7 +306,7 @@ impl History {
         }
     }
 
-    /// Load factors at which the factor has a kink.
+    /// The load factors at which the factor has a kink.
     pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
         self.0.iter().map(|point| point[0])
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Undeformed mid-surface.
+/// The undeformed mid-surface of the shell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Geometry {
@@ -75,8 +75,8 @@ pub enum Geometry {
 }
 
 impl Geometry {
-    /// Vector to a point from the axis of a cylinder or an annulus, or from the centre of a sphere, mm; `None` for shapes
-    /// that have neither.
+    /// Vector to a point from the axis of a cylinder or an annulus, or from the centre of a sphere, mm; `None` for
+    /// shapes that have neither.
     pub fn away_from_centre(&self, [x, y, z]: [f64; 3]) -> Option<[f64; 3]> {
         match self {
             Geometry::TapeSpring { .. } | Geometry::CylinderPanel { .. } => Some([0.0, y, z]),
@@ -87,7 +87,7 @@ impl Geometry {
     }
 }
 
-/// What a full turn does where it meets itself.
+/// What happens where a full turn meets itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Seam {
@@ -97,7 +97,7 @@ pub enum Seam {
     Free,
 }
 
-/// A NURBS surface as the user gives it.
+/// A NURBS surface given by knots, control points and weights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NurbsPatch {
     /// Polynomial degree of the geometry in u and v, 1 to 5; the mesh may be of a higher one.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Constitutive law and thickness.
+/// The constitutive law of the shell and its thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Material {
@@ -51,7 +51,7 @@ pub enum Material {
 }
 
 impl Material {
-    /// Total thickness, mm.
+    /// Total thickness of the shell, mm.
     pub fn thickness_mm(&self) -> f64 {
         match self {
             Material::Isotropic { thickness_mm, .. } | Material::Orthotropic { thickness_mm, .. } => *thickness_mm,
@@ -81,7 +81,7 @@ impl Material {
         }
     }
 
-    /// Whether it is said how much the material expands when it is heated.
+    /// Whether the scene gives the thermal expansion of the material.
     pub fn expands(&self) -> bool {
         match self {
             Material::Isotropic { thermal_expansion_per_k, .. } => thermal_expansion_per_k.is_some(),
@@ -98,7 +98,7 @@ fn is_zero(number: &f64) -> bool {
 /// A cubic millimetre in cubic metres.
 const CUBIC_METRES: f64 = 1e-9;
 
-/// Moduli of an orthotropic layer in plane stress.
+/// The moduli of an orthotropic layer in plane stress.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OrthotropicLaw {
     /// Young's modulus E₁ along material axis 1 (the fibres).
@@ -124,7 +124,7 @@ impl OrthotropicLaw {
     }
 }
 
-/// A ply of a laminate.
+/// One ply of a laminate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ply {
     /// Thickness of the ply.

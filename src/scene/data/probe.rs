@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Region;
 
-/// A quantity that every equilibrium reports.
+/// A quantity of the scene that every equilibrium reports by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Probe {
     /// Its name in reports; no two probes have the same.
@@ -14,7 +14,7 @@ pub struct Probe {
     pub kind: ProbeKind,
 }
 
-/// What a probe measures.
+/// The quantity that a probe measures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum ProbeKind {
@@ -49,7 +49,7 @@ pub enum ProbeKind {
     BendingStrain,
 }
 
-/// A component of a vector, or its length.
+/// A component of a vector, or its magnitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Component {
@@ -67,7 +67,7 @@ pub enum Component {
     Radial,
 }
 
-/// A component of a vector.
+/// An axis of the global frame, as a component of a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Axis {
@@ -79,7 +79,7 @@ pub enum Axis {
     Z,
 }
 
-/// A component of force and moment.
+/// A component of a reaction: of its force or its moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reaction {

@@ -16,7 +16,7 @@ mod structure;
 
 use super::keys::{Key, Section};
 
-/// The tables of a scene file, in the order in which one would write them.
+/// The tables of a scene file, in the order in which they are usually written.
 pub static SECTIONS: &[Section] = &[
     one("geometry", true, "The undeformed mid-surface.", geometry::GEOMETRY),
     one("material", true, "Constitutive law and thickness.", material::MATERIAL),
@@ -43,7 +43,8 @@ pub static SECTIONS: &[Section] = &[
     one("expect", false, "How the run is to end; `foldline extremes` alone looks at it.", output::EXPECT),
 ];
 
-/// The keys of a scene file, table by table; those of one name stand once for each kind of table that has its own.
+/// The keys of a scene file, table by table. A name occurs once for each kind of table that has its own key of that
+/// name.
 pub fn all_keys() -> impl Iterator<Item = &'static Key> + Clone {
     SECTIONS.iter().flat_map(|section| section.keys)
 }

@@ -3,7 +3,7 @@
 use super::unit::Unit;
 use super::wording::{join_or, number};
 
-/// Type and limits of a key's value.
+/// The type and limits of a key's value.
 #[derive(Debug, PartialEq)]
 pub enum Kind {
     /// One of some words, in quotes.
@@ -72,7 +72,7 @@ fn quoted(choices: &[Choice]) -> Vec<String> {
     choices.iter().map(|choice| format!("\"{}\"", choice.word)).collect()
 }
 
-/// How many items a list has.
+/// The number of items of a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
     /// No fewer and no more.
@@ -81,7 +81,7 @@ pub enum Length {
     Any,
 }
 
-/// A form of a part of the surface.
+/// The ways to describe a region of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// A whole edge.
@@ -93,7 +93,7 @@ pub enum Form {
 }
 
 impl Form {
-    /// How it is written.
+    /// How a region of this form is written.
     pub fn words(self) -> &'static str {
         match self {
             Form::Edge => "an edge (\"u-start\", \"u-end\", \"v-start\" or \"v-end\")",
@@ -103,7 +103,7 @@ impl Form {
     }
 }
 
-/// One of the words that a key takes.
+/// One of the words that a key accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// As it stands in the scene, without the quotes.
@@ -113,13 +113,13 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// The first clause of its meaning.
+    /// The first clause of the choice's meaning.
     pub fn in_short(&self) -> &'static str {
         self.meaning.split([':', ';']).next().unwrap_or_default()
     }
 }
 
-/// Between which numbers a value must lie.
+/// The range of numbers to which a value is limited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// The lower end.
@@ -128,7 +128,7 @@ pub struct Limits {
     pub high: Limit,
 }
 
-/// One end of the allowed numbers.
+/// One end of a range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// The limit; infinite where there is none.
@@ -140,25 +140,25 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// The value itself is not allowed.
+    /// A limit at which the value itself is not allowed.
     pub const fn excluded(value: f64, reason: &'static str) -> Self {
         Self { value, included: false, reason }
     }
 
-    /// The value itself is allowed.
+    /// A limit at which the value itself is allowed.
     pub const fn included(value: f64, reason: &'static str) -> Self {
         Self { value, included: true, reason }
     }
 
-    /// No upper limit.
+    /// The absence of an upper limit.
     pub const NONE: Self = Self::excluded(f64::INFINITY, "");
 }
 
 impl Limits {
-    /// Any finite number.
+    /// The range of all finite numbers.
     pub const ANY: Self = Self { low: Limit::excluded(f64::NEG_INFINITY, ""), high: Limit::NONE };
 
-    /// The limit that `value` is past, if any. A value that is not a number is past both; the caller has asked before.
+    /// The limit that `value` exceeds, if any. NaN exceeds both limits; callers reject it before.
     pub fn broken_by(&self, value: f64) -> Option<&Limit> {
         let above = value > self.low.value || (self.low.included && value == self.low.value);
         let below = value < self.high.value || (self.high.included && value == self.high.value);

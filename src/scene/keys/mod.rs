@@ -32,33 +32,33 @@ pub struct Section {
 }
 
 impl Section {
-    /// Its name in brackets.
+    /// The name of the table in brackets.
     pub fn title(&self) -> String {
         if self.many { format!("[[{}]]", self.name) } else { format!("[{}]", self.name) }
     }
 
-    /// The key that says of which kind the table is, where other keys depend on it.
+    /// The key that gives the kind of the table, where other keys depend on it.
     pub fn kind_key(&self) -> Option<&'static Key> {
         let has_kinds = self.keys.iter().any(|key| !key.kinds.is_empty());
         self.keys.iter().find(|key| key.name == "kind").filter(|_| has_kinds)
     }
 
-    /// The kind that examples are of.
+    /// The kind of table that examples show.
     pub fn example_kind(&self) -> Option<&'static str> {
         self.kind_key().map(|key| key.example.trim_matches('"'))
     }
 
-    /// The keys of a table of this kind; those of every kind where it is `None`.
+    /// The keys of a table of this kind, or those of every kind where it is `None`.
     pub fn keys_of<'k>(&self, kind: Option<&'k str>) -> impl Iterator<Item = &'static Key> + Clone + use<'k> {
         self.keys.iter().filter(move |key| kind.is_none_or(|kind| key.belongs_to(kind)))
     }
 
-    /// The key of this name in a table of this kind.
+    /// Finds the key of this name in a table of this kind.
     pub fn key(&self, kind: Option<&str>, name: &str) -> Option<&'static Key> {
         self.keys_of(kind).find(|key| key.name == name)
     }
 
-    /// How far the widest-reaching of its keys reaches.
+    /// The widest reach of any of the table's keys.
     pub fn reach(&self) -> Reach {
         self.keys.iter().map(|key| key.reach).max().unwrap_or(Reach::Everything)
     }
@@ -136,7 +136,7 @@ impl Key {
 }
 
 impl Key {
-    /// Section and name, as in `solver.tolerance`.
+    /// The path of the key: section and name, as in `solver.tolerance`.
     pub fn path(&self) -> String {
         format!("{}.{}", self.section, self.name)
     }
@@ -147,12 +147,12 @@ impl Key {
         choices.iter().map(|choice| choice.word)
     }
 
-    /// Whether tables of this kind have it.
+    /// Whether tables of this kind have the key.
     pub fn belongs_to(&self, kind: &str) -> bool {
         self.kinds.is_empty() || self.kinds.contains(&kind)
     }
 
-    /// The name without the unit.
+    /// The name of the key without its unit.
     pub fn stem(&self) -> &'static str {
         match self.name.strip_suffix(self.unit.suffix()) {
             Some(stem) if !self.unit.suffix().is_empty() => stem.trim_end_matches('_'),
@@ -160,13 +160,13 @@ impl Key {
         }
     }
 
-    /// What is allowed, in words, with the unit.
+    /// Describes the values that are allowed, with their unit.
     pub fn allowed(&self) -> String {
         self.kind.words(self.unit)
     }
 }
 
-/// How far a change of a key reaches into a run.
+/// How much of a run a change of the key affects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reach {
     /// No state changes: what is written beside the states, and where the run stops.
@@ -181,7 +181,7 @@ pub enum Reach {
     Everything,
 }
 
-/// What holds where a key is missing.
+/// What applies where the key is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
     /// It must be there.
@@ -197,7 +197,7 @@ pub enum Presence {
 }
 
 impl Presence {
-    /// A sentence about it.
+    /// Describes what applies where the key is missing, in a sentence.
     pub fn words(self) -> String {
         match self {
             Presence::Required => "Required.".into(),
