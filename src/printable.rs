@@ -8,7 +8,7 @@ pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     shown(text, is_obeyed)
 }
 
-/// The same for text that stands in a line, such as a name: it breaks none.
+/// The same for text within a line, such as a name: it breaks none.
 pub(crate) fn one_line(text: &str) -> Cow<'_, str> {
     shown(text, breaks_a_line)
 }

@@ -48,7 +48,7 @@ pub struct Refinement {
     pub changed_n_mm: f64,
     /// Elements that it added, as a share of those before.
     pub growth: f64,
-    /// What the refinement before it said of the whole mesh ([`Self::of_all_n_mm`]), N·mm.
+    /// The estimate of the refinement before it for the whole mesh ([`Self::of_all_n_mm`]), N·mm.
     pub expected_n_mm: Option<f64>,
     /// What the last ripple of the mesh released, N·mm; 0 where there was none since the last jump.
     pub ripple_n_mm: f64,
@@ -93,6 +93,7 @@ impl DriveMemory {
 /// How equilibria led to the present one, for the predictor of the next. The memory of an earlier drive stays until the
 /// next drive has made a step.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Course {
     /// In no way that continues: the shell is undeformed, or it jumped since.
     #[default]
@@ -183,6 +184,7 @@ pub struct StepControl {
 
 /// Why an attempted load step was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Rejection {
     /// The solver found no equilibrium.
     NoEquilibrium,

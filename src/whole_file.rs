@@ -107,7 +107,7 @@ pub(crate) fn room_for(path: &Path) -> Option<u64> {
     Some(disk.f_bavail.saturating_mul(disk.f_frsize))
 }
 
-/// How much is missing, where that can be known: a quota or a limit on the size of files says nothing.
+/// How many bytes are missing, where that can be known: a quota or a limit on the size of files does not show it.
 pub(crate) fn shortage(wanted: u64, room: Option<u64>) -> String {
     match room {
         Some(room) if room < wanted => format!(" ({wanted} bytes more, where there is room for {room})"),

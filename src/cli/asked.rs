@@ -18,7 +18,7 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// Opens a log, and says what of it is lost.
+    /// Opens a log, and reports what of it is lost.
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         let log = AskedLog::open(path).map_err(unreadable(path))?;
         let (scene, scene_is_older) = end_scene(log.end(), path)?;

@@ -14,7 +14,7 @@ use crate::study::{BenchError, Figure, kernel_figures, run_figure};
 /// The scene that is timed where none is named.
 const BASELINE: &str = include_str!("../../pipelines/baseline.toml");
 
-/// What stands below the options in the help.
+/// The text below the options in the help.
 const LIMITS: &str = "\
 The column `limit` is the share of what the machine does at best, measured in the same run: for assemble and factor the \
 rate of operations of a dense product on one thread, times the threads that can work on them (a factorization is shared \

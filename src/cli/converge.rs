@@ -14,7 +14,7 @@ use crate::study::{ConvergenceRow, check_spring, converge};
 /// size asked for: peak, limit rotation and moments of each, beside its run time
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// Scene of a tape spring whose ends turn (TOML); its rotation says how far up the fold the path is followed
+    /// Scene of a tape spring whose ends turn (TOML); its rotation gives how far up the fold the path is followed
     scene: PathBuf,
     /// Degree both ways; may be repeated
     #[arg(long, value_name = "P", default_values_t = [3, 4], value_parser = clap::value_parser!(u16).range(2..=5))]

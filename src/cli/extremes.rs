@@ -14,10 +14,10 @@ use crate::scene::Scene;
 use crate::study::{ExtremeRow, ExtremesSuite};
 use crate::units::{count, duration};
 
-/// Run scenes at and beyond the edge, and say whether each ends as it states
+/// Run scenes at and beyond the edge, and report whether each ends as it states
 ///
 /// A scene states its end in a table `[expect]`; see `foldline help scene`. A line is printed as soon as its scene has
-/// ended; what is wrong with it stands below.
+/// ended; what is wrong with it follows below.
 #[derive(Args, Debug)]
 #[command(after_help = COLUMNS)]
 pub(super) struct Arguments {
@@ -40,12 +40,12 @@ pub(super) struct Arguments {
 /// Below the options in `--help`.
 const COLUMNS: &str = "\
 Columns:
-  outcome    finished, or the kind of stop; an error stands below
+  outcome    finished, or the kind of stop; an error follows below
   as stated  whether it ended as its [expect] says, and all numbers are sound
   error      largest error of the peak before the first jump and of the last result (moment, first probe,
-             strain energy) against those that [expect] states; above 2 % the reason stands below
+             strain energy) against those that [expect] states; above 2 % the reason follows below
   steps      load steps with an equilibrium
-  iter       Newton iterations, those of solves that were turned down included
+  iter       Newton iterations, those of solves that were rejected included
   residual   largest |residual| of all equilibria over the forces
   W - E      work less strain energy over the load steps that did not jump, relative to the largest
              strain energy; what jumps release and refinement changes is not counted

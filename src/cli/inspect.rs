@@ -11,7 +11,7 @@ use super::log_file::{Gathered, ReadLog, ask_long, first_and_last, read_log, rea
 use super::output::{path_in_line, print};
 use super::probe_table::probe_table;
 use super::stage_table::{stage_table, step_in_full};
-use crate::history::{keep_apart, redefined_probes, stages_of_step};
+use crate::history::{redefined_probes, remove_redefined, stages_of_step};
 use crate::journal::{Log, LongLog, LongLogError};
 use crate::record::Record;
 use crate::study::Summary;
@@ -113,7 +113,7 @@ fn all_stages(path: &Path, probes: bool) -> Result<(ReadLog, Vec<Record>, Vec<us
         gathered.take(portion);
         keep_states(portion.log(), from..gathered.records.len());
     })?;
-    keep_apart(&redefined_probes(&read.log), &mut gathered.records);
+    remove_redefined(&redefined_probes(&read.log), &mut gathered.records);
     Ok((read, gathered.records, states))
 }
 
@@ -133,7 +133,7 @@ fn overview(path: &Path, probes: bool) -> Result<String, Failure> {
         text += &format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states));
     }
     if !read.is_finished() {
-        text += &format!("\nunfinished; go on with: foldline resume {}\n", path_in_line(path));
+        text += &format!("\nunfinished; continue with: foldline resume {}\n", path_in_line(path));
     }
     Ok(text)
 }

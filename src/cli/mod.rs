@@ -51,9 +51,13 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::{EXIT_CODES, Failure};
 
+#[doc(hidden)]
 pub use extremes::ExtremesTable;
+#[doc(hidden)]
 pub use json_line::json_line;
+#[doc(hidden)]
 pub use progress::{ProgressSink, ProgressStyle};
+#[doc(hidden)]
 pub use stage_table::{stage_table, step_in_full};
 
 /// Thin shells that fold, simulated as a pipeline of restartable stages
@@ -88,7 +92,7 @@ impl Command {
     /// The exit code of a command that did what it was asked to.
     fn run(self) -> Result<u8, Failure> {
         session::outlive_file_limits()?;
-        // Commands that compute without being told on how many threads.
+        // Commands that compute without an argument for the number of threads.
         if matches!(
             self,
             Command::Plot(_) | Command::Bisect(_) | Command::Stability(_) | Command::Recover(_) | Command::Converge(_)
@@ -129,7 +133,7 @@ pub fn main() -> ExitCode {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
             match &failure {
-                // Its lines are rendered for a terminal where there is one, and what stands in them is made printable there.
+                // Its lines are rendered for a terminal where there is one, and what they quote is made printable there.
                 Failure::WrongScene { .. } => output::eprint_rendered(&failure.in_full()),
                 _ => output::eprint(&failure.in_full()),
             }

@@ -151,7 +151,7 @@ impl<'a, S: Sink> ProgressSink<'a, S> {
 }
 
 impl<S> ProgressSink<'_, S> {
-    /// Lines for warnings of kinds that were not shown yet; how often each was said stands in the summary.
+    /// Lines for warnings of kinds that were not shown before; how often each was reported is in the summary.
     fn new_warnings(&mut self, record: &Record) -> Vec<String> {
         let mut lines = Vec::new();
         for warning in &record.report.warnings {
@@ -199,7 +199,7 @@ fn live_bar(driven_by: Parameter, target: f64, start: f64) -> ProgressBar {
     bar
 }
 
-/// What stands before the bar.
+/// The text before the bar.
 fn live_prefix(driven_by: Parameter, parameter: f64, target: f64) -> String {
     match driven_by {
         Parameter::Rotation => format!("{parameter:.3}° of {}°", rounded(target)),
@@ -207,7 +207,7 @@ fn live_prefix(driven_by: Parameter, parameter: f64, target: f64) -> String {
     }
 }
 
-/// What stands after the bar: the last stage and the numbers of the state that it made.
+/// The text after the bar: the last stage and the numbers of the state that it made.
 fn live_message(report: &Report) -> String {
     let Report { stage, moment_n_mm, elements: [n1, n2], .. } = report;
     let degree = if report.driven_by == Parameter::Rotation { "°" } else { "" };
@@ -215,16 +215,16 @@ fn live_message(report: &Report) -> String {
         Outcome::Done if report.iterations > 0 => format!(", {}", count(report.iterations, "iteration")),
         Outcome::Done => String::new(),
         Outcome::RejectedJump => {
-            format!(" turned down at {:.3}{degree}: unstable on the way", report.attempted_parameter)
+            format!(" rejected at {:.3}{degree}: unstable on the way", report.attempted_parameter)
         }
         Outcome::RejectedCriticalPoint => {
-            format!(" turned down at {:.3}{degree}: past a critical point", report.attempted_parameter)
+            format!(" rejected at {:.3}{degree}: past a critical point", report.attempted_parameter)
         }
         Outcome::RejectedSharpTurn => {
-            format!(" turned down at {:.3}{degree}: too sharp a turn", report.attempted_parameter)
+            format!(" rejected at {:.3}{degree}: too sharp a turn", report.attempted_parameter)
         }
         Outcome::RejectedNoEquilibrium => {
-            format!(" turned down at {:.3}{degree}: no equilibrium", report.attempted_parameter)
+            format!(" rejected at {:.3}{degree}: no equilibrium", report.attempted_parameter)
         }
     };
     match report.driven_by {
@@ -270,7 +270,7 @@ mod tests {
         assert_eq!(live_prefix(Parameter::Rotation, report.parameter, 20.0), "9.600° of 20°");
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve, 5 iterations");
         report.outcome = Outcome::RejectedJump;
-        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve turned down at 9.615°: unstable on the way");
+        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve rejected at 9.615°: unstable on the way");
         report = Report { outcome: Outcome::Done, stage: Stage::RefineKnots, iterations: 0, ..report };
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  refine-knots");
     }

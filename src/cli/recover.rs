@@ -21,14 +21,14 @@ pub(super) struct Arguments {
     /// Log to write
     #[arg(short, long, value_name = "NEW", value_parser = file_name())]
     output: PathBuf,
-    /// Run lost stages again where whole ones stand behind them, which then follow on them; that they are the same say the
+    /// Run lost stages again where whole ones follow behind them; that they are the same is shown by the
     /// hashes of those
     #[arg(long)]
     remake: bool,
 }
 
 impl Arguments {
-    /// Recovers and says what became of it.
+    /// Recovers the log and reports the result.
     pub(super) fn run(self) -> Result<u8, Failure> {
         let Self { log, output, remake } = self;
         let mut made = 0;

@@ -78,7 +78,7 @@ impl Arguments {
         Ok(worst)
     }
 
-    /// Replays a stage, and says what came of it: the exit code.
+    /// Replays a stage, reports the result, and returns the exit code.
     fn replay(
         &self,
         states: &mut States,

@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     /// from there
     #[arg(long, value_name = "AT", value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Go on with the log if there is one, as far as it stands for this scene
+    /// Continue the log if there is one, as far as its stages are valid for this scene
     #[arg(long)]
     resume: bool,
     /// Show no progress, only the summary
@@ -80,13 +80,13 @@ impl Job {
             if let Some(old) = OldLog::open_unless_empty(&options.log)? {
                 return resume::go_on(old, scene, manifest, &options);
             }
-            eprint(&format!("{} holds nothing: begun anew", path_in_line(&options.log)));
+            eprint(&format!("{} holds nothing: started again", path_in_line(&options.log)));
         }
         let mut stages = Stages::new(scene.clone());
         let start = stages.start()?;
         let raised = watch_signals()?;
         make_default_folder(&options.log)?;
-        let begin = if is_there { JournalWriter::create_anew } else { JournalWriter::create };
+        let begin = if is_there { JournalWriter::create_over_empty } else { JournalWriter::create };
         let writer = begin(&options.log, &manifest, scene.output.sync)
             .map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         if options.is_shown() {
@@ -97,7 +97,7 @@ impl Job {
             };
             eprint(&format!("to {to} → {}", path_in_line(&options.log)));
         }
-        // What looks odd is said however quiet the run is.
+        // What looks odd is reported however quiet the run is.
         stages.remarks(&start)?.iter().for_each(|remark| eprint(remark));
         if scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
             eprint(

@@ -128,7 +128,7 @@ pub(super) fn watch_signals() -> Result<Arc<AtomicBool>, Failure> {
     Ok(raised)
 }
 
-/// Whether this process was started with a signal ignored, as `nohup` does; known on Linux, where /proc tells it.
+/// Whether this process was started with a signal ignored, as `nohup` does; known on Linux, from /proc.
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -1,4 +1,4 @@
-//! Bisection as pure state machines: they say what to look at next and are told what was seen; they look at nothing
+//! Bisection as pure state machines: they name what to examine next and take what was seen; they examine nothing
 //! themselves.
 
 /// A bisection for the first index in `0..len` from which on a property holds. It must hold at every index after one at

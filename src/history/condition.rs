@@ -47,6 +47,7 @@ const OPERATORS: [(&str, Operator); 6] = [
 
 /// Why the text of a condition is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConditionError {
     /// No operator.
     #[error(

@@ -1,4 +1,4 @@
-//! What a long log is asked without reading all of it: its index says where to look, and what is found there counts.
+//! Questions to a long log that are answered without reading all of it: its index gives the places, and what is found there counts.
 
 use crate::history::Condition;
 use crate::journal::{LongLog, LongLogError};

@@ -12,8 +12,9 @@ use crate::scene::{Probe, Scene, shown_values};
 
 /// Why the probes of a scene cannot be evaluated on a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProbeError {
-    /// The state cannot be had.
+    /// The state is not available.
     #[error(transparent)]
     State(#[from] RemakeError),
     /// The stages were run with other terms of the caller's own.
@@ -42,7 +43,7 @@ pub fn read_probes(log: &Log, stages: &mut Stages, records: &mut [Record]) -> Re
 
 /// A probe of which earlier stages of the log hold readings of something else under the same name.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Redefined {
+pub struct RedefinedProbe {
     /// Ordinals of the stages that were run with another one.
     pub stages: Range<u64>,
     /// What it was there.
@@ -51,7 +52,7 @@ pub struct Redefined {
     pub is: Probe,
 }
 
-impl fmt::Display for Redefined {
+impl fmt::Display for RedefinedProbe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [was, is] = [&self.was, &self.is].map(|probe| serde_json::to_value(&probe.kind).ok());
         let [was, is] = shown_values(&was, &is);
@@ -67,7 +68,7 @@ impl fmt::Display for Redefined {
 }
 
 /// The probes of the last scene of a log that earlier stretches define otherwise under the same name.
-pub fn redefined_probes(log: &Log) -> Vec<Redefined> {
+pub fn redefined_probes(log: &Log) -> Vec<RedefinedProbe> {
     let [before @ .., last] = log.manifests() else { return Vec::new() };
     let probes = |manifest: &Manifest| manifest.scene(&[]).map_or_else(|_| Vec::new(), |scene: Scene| scene.probes);
     let mut found = Vec::new();
@@ -82,14 +83,14 @@ pub fn redefined_probes(log: &Log) -> Vec<Redefined> {
     {
         for was in probes(manifest) {
             let is = wanted.iter().find(|is| is.name == was.name && **is != was);
-            found.extend(is.map(|is| Redefined { stages: manifest.first_ordinal..end, is: is.clone(), was }));
+            found.extend(is.map(|is| RedefinedProbe { stages: manifest.first_ordinal..end, is: is.clone(), was }));
         }
     }
     found
 }
 
 /// Removes readings from records that were made by other probes of the same names.
-pub fn keep_apart(redefined: &[Redefined], records: &mut [Record]) {
+pub fn remove_redefined(redefined: &[RedefinedProbe], records: &mut [Record]) {
     for Record { report, commit, .. } in records {
         let here = redefined.iter().filter(|other| other.stages.contains(&commit.ordinal));
         here.for_each(|other| report.probes.retain(|reading| reading.name != other.is.name));

@@ -15,10 +15,11 @@ pub const TOLERATED_BITS: f64 = 20.0;
 
 /// The result of running a stage of a log again.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Replayed {
     /// The state that it made now.
     pub state: State,
-    /// What it said now.
+    /// The report of the second run.
     pub report: Report,
     /// Beside the state in the log.
     pub comparison: Comparison,
@@ -37,8 +38,9 @@ pub enum Verdict {
 
 /// Why a stage could not be run again.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReplayError {
-    /// The state before it, or its own, cannot be had.
+    /// The state before it, or its own, is not available.
     #[error(transparent)]
     State(#[from] RemakeError),
     /// The stage failed.
@@ -50,7 +52,7 @@ pub enum ReplayError {
 /// called with every iterate and its mesh. Only this stage is run with other settings.
 ///
 /// # Errors
-/// Where a state cannot be had or the stage fails.
+/// Where a state is not available or the stage fails.
 pub fn replay_stage(
     states: &mut States,
     index: usize,

@@ -26,6 +26,7 @@ pub struct Basis {
 
 /// Why a log gives no state to continue from.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BasisError {
     /// The log's own state cannot be used.
     #[error(transparent)]
@@ -48,8 +49,9 @@ pub fn basis(log: &Log, keep: usize, stages: &mut Stages) -> Result<Basis, Basis
 
 /// How much of a log a changed scene can continue from.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ResumePlan {
-    /// Stages that stand, counted from the start of the log.
+    /// Stages that are kept, counted from the start of the log.
     pub keep: usize,
     /// What changed and what that means, a line each; empty where the scene is the same.
     pub changes: Vec<String>,
@@ -103,7 +105,7 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     Ok(Ok(ResumePlan { keep, changes: changes.collect() }))
 }
 
-/// What a change leaves of a log of which the first `keep` stages stand.
+/// What a change leaves of a log of which the first `keep` stages are kept.
 fn what_stands(log: &Log, keep: usize, difference: &Difference) -> String {
     let Difference { path, reach, .. } = difference;
     let changes_stages = match reach {
@@ -113,18 +115,18 @@ fn what_stands(log: &Log, keep: usize, difference: &Difference) -> String {
     };
     // What is written beside the states is as it was up to here.
     if path == "output.mesh_history" || path.starts_with("probe") {
-        return format!("every stage stands, and the {keep} in the log keep what they were written with");
+        return format!("every stage is kept, and the {keep} in the log keep what they were written with");
     }
     if !changes_stages || (keep == log.commits() && *reach != Reach::Steps) {
-        return "every stage stands".to_owned();
+        return "every stage is kept".to_owned();
     }
     let kept = log.entries().iter().take(keep.saturating_sub(log.first()));
     let done = kept.map(|entry| &entry.record.report).filter(|it| it.outcome == Outcome::Done);
     match done.map(|report| report.step).max().unwrap_or(0) {
-        0 => "no complete step stands".to_owned(),
+        0 => "no complete step is kept".to_owned(),
         last => {
             let mixed = if *reach == Reach::Steps { ": the log is mixed from there on" } else { "" };
-            format!("steps 1 to {last} stand, {} on is new{mixed}", last + 1)
+            format!("steps 1 to {last} are kept, {} on is new{mixed}", last + 1)
         }
     }
 }
@@ -170,12 +172,12 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
     for (index, entry) in log.entries().iter().enumerate().skip(1) {
         let report = &entry.record.report;
         if report.stage == Stage::Solve && is_beyond(old, report.attempted_parameter, nearer) {
-            // Whether it was cut short cannot be told of a stage whose start was thinned out.
+            // Whether it was cut short is not known of a stage whose start was thinned out.
             if !log.keeps_state(index - 1) {
                 return Ok(index);
             }
             let parent = log.state(index - 1)?;
-            // A step along the path is as long as its memory says, but where it ends on the target.
+            // A step along the path is as long as its memory gives, but where it ends on the target.
             if parent.drive.path().is_some() || next_attempt(old, &parent) != next_attempt(new, &parent) {
                 return Ok(index);
             }

@@ -1,5 +1,5 @@
 //! Where exactly a run jumped or lost its stability: from the last stable state before, the load is halved until it is
-//! known. What kind of critical point it is says the path beyond it, followed by arc length.
+//! known. The path beyond it, followed by arc length, shows what kind of critical point it is.
 
 use crate::equilibrium::{
     Configuration, Continuation, Equilibrium, Iterate, Observer, Sense, SoftMode, SolveError, Workspace, WorkspaceError,
@@ -16,6 +16,7 @@ use crate::state::State;
 
 /// A jump or loss of stability, located.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SnapReport {
     /// Last value of the parameter at which the shell is stable where it was, and the first at which it is not.
     pub bracket: [f64; 2],
@@ -40,14 +41,15 @@ pub struct SnapReport {
 
 /// Why a jump could not be located.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SnapError {
     /// The log holds no jump, and no equilibrium in it is unstable.
-    #[error("no stage of this log jumped or lost its stability; the farthest state in it stands at {farthest}")]
+    #[error("no stage of this log jumped or lost its stability; the farthest state in it is at {farthest}")]
     NoJump {
-        /// Where the farthest state stands.
+        /// Parameter of the farthest state.
         farthest: String,
     },
-    /// A state of the log cannot be had.
+    /// A state of the log is not available.
     #[error(transparent)]
     State(#[from] RemakeError),
     /// It was made with other terms of the caller's own.
@@ -64,7 +66,7 @@ pub enum SnapError {
          the mesh; run the scene from a finer mesh to bisect it"
     )]
     OnRefinedMesh {
-        /// Where the last stable state stands.
+        /// Parameter of the last stable state.
         from: String,
         /// Where the jump was.
         to: String,

@@ -8,6 +8,7 @@ use crate::state::State;
 
 /// The softest mode of a state in a log.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct StabilityReport {
     /// The state.
     pub state: State,
@@ -19,8 +20,9 @@ pub struct StabilityReport {
 
 /// Why the softest mode of a state cannot be computed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StabilityError {
-    /// The state cannot be had.
+    /// The state is not available.
     #[error(transparent)]
     State(#[from] RemakeError),
     /// It was made with other terms of the caller's own.
@@ -37,7 +39,7 @@ pub enum StabilityError {
 /// Computes the softest mode of the state that stage `index` made.
 ///
 /// # Errors
-/// Where the state cannot be had, was made with other terms, or its stiffness has no factor.
+/// Where the state is not available, was made with other terms, or its stiffness has no factor.
 pub fn stability_at(states: &mut States, index: usize, scene: &Scene) -> Result<StabilityReport, StabilityError> {
     check_terms(states.log(), index, states.own_terms())?;
     let state = states.at(index)?;

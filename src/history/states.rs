@@ -12,11 +12,12 @@ use crate::state::{Hash, State};
 
 /// Why the state of a stage cannot be read or made again.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RemakeError {
     /// What the log holds cannot be used.
     #[error(transparent)]
     State(#[from] StateError),
-    /// The part of a long log that it stands in cannot be read.
+    /// The part of a long log that holds it cannot be read.
     #[error(transparent)]
     Part(#[from] LongLogError),
     /// The scene of a stage that has to run again is lost.
@@ -64,7 +65,7 @@ pub struct States<'l> {
     log: &'l Log,
     /// Terms of the caller's own that the run was made with.
     own: Vec<Arc<dyn TermSource>>,
-    /// Stages of the scene of one stretch: which one says its first ordinal and the hash of the scene.
+    /// Stages of the scene of one stretch: identified by its first ordinal and the hash of the scene.
     stages: Option<((u64, Hash), Stages)>,
     /// The last state that was made again, behind so many stages.
     made: Option<(usize, State)>,

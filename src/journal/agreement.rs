@@ -1,4 +1,4 @@
-//! Whether a report says what its state says: every number that both hold, bit for bit.
+//! Whether a report agrees with its state: every number that both hold, bit for bit.
 
 use crate::record::{Parameter, Report};
 use crate::scene::Stage;
@@ -6,11 +6,11 @@ use crate::state::State;
 
 /// A number of a report that differs from the number in the state that the stage made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the report says {field} {said}, and the state has {held}")]
+#[error("the report has {field} {said}, and the state has {held}")]
 pub struct Disagreement {
     /// Name of the field.
     pub field: &'static str,
-    /// What the report says.
+    /// The value in the report.
     pub said: String,
     /// What the state holds.
     pub held: String,
@@ -23,7 +23,7 @@ pub(super) fn disagreement(report: &Report, state: &State) -> Option<Disagreemen
         differ.then(|| Disagreement { field, said: said.to_string(), held: held.to_string() })
     };
     let turns = report.driven_by == Parameter::Rotation;
-    // A refined mesh is what the stage that made it tells of, and the spans that asked for it are not marked any more.
+    // A refined mesh is what the stage that made it reports, and the spans that asked for it are not marked any more.
     let counted = state.refined.as_ref().filter(|_| report.stage == Stage::RefineKnots).unwrap_or(&state.mesh);
     let marked = match report.stage {
         Stage::RefineKnots => report.marked,

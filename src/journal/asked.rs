@@ -1,4 +1,4 @@
-//! A log of any length that is asked for some of its stages: of a long one only those are read.
+//! A log of any length of which some stages are needed: of a long one only those are read.
 
 use std::ops::Range;
 use std::path::Path;
@@ -9,7 +9,7 @@ use super::long::{LongLog, LongLogError};
 use super::reader::ReadError;
 use crate::record::Record;
 
-/// Stages of a long log that are read together where all of them are asked for.
+/// Stages of a long log that are read together where all of them are needed.
 const STAGES_AT_ONCE: usize = 512;
 
 /// A log of any length, of which single stages are read.

@@ -6,7 +6,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
-use super::still_ours::{Estranged, still_ours};
+use super::still_ours::{LogChanged, still_ours};
 pub(super) use crate::whole_file::beside;
 use crate::whole_file::{WholeFile, sync_folder_of};
 
@@ -17,7 +17,7 @@ pub trait Backend: Send {
     ///
     /// # Errors
     /// Where it is not: nothing must be appended then.
-    fn check(&self, length: u64, commits: u64) -> Result<(), Estranged> {
+    fn check(&self, length: u64, commits: u64) -> Result<(), LogChanged> {
         let _ = (length, commits);
         Ok(())
     }
@@ -208,7 +208,7 @@ impl FileBackend {
 }
 
 impl Backend for FileBackend {
-    fn check(&self, length: u64, commits: u64) -> Result<(), Estranged> {
+    fn check(&self, length: u64, commits: u64) -> Result<(), LogChanged> {
         match &self.coming {
             Coming::Named => {
                 let length = self.cut_first.map_or(length, |cut| cut.found);
@@ -269,7 +269,7 @@ fn ended(syncing: Option<Syncing>) -> io::Result<()> {
     syncing.map_or(Ok(()), |thread| thread.join().unwrap_or_else(died))
 }
 
-/// Whether the open file is still the one that the path names; where that cannot be told, it is not.
+/// Whether the open file is still the one that the path names; where that is not known, it is not.
 pub(super) fn is_at(file: &File, path: &Path) -> bool {
     let (Ok(open), Ok(named)) = (file.metadata(), std::fs::symlink_metadata(path)) else { return false };
     (open.dev(), open.ino()) == (named.dev(), named.ino())

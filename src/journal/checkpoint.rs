@@ -6,7 +6,7 @@ use super::log::Log;
 use super::stretch::Stretches;
 use crate::state::Hash;
 
-/// A commit in the middle of a log, and what stands before it.
+/// A commit in the middle of a log, and what precedes it.
 #[derive(Clone, Debug)]
 pub(super) struct Checkpoint {
     /// First byte of its chunk.
@@ -21,7 +21,7 @@ pub(super) struct Checkpoint {
     pub channels: Channels,
     /// Stretches up to its own.
     pub stretches: Stretches,
-    /// The mesh that its state stands on; not there where that was thinned out.
+    /// The mesh of its state; not there where that was thinned out.
     pub mesh: Option<StoredPiece>,
     /// The fields of its state; not there where they were thinned out.
     pub fields: Vec<StoredPiece>,

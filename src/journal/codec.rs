@@ -4,7 +4,7 @@
 //! fields (vectors at the control points: displacements, those of the equilibrium before, the heading of a path) lie apart from
 //! the state and are named in it: the mesh by its content hash, a field by the hash of its bytes. So a solve writes its
 //! displacements, and those of the equilibrium before are there already. Nothing decoded leaves this file before its content
-//! hash is what the commit says and [`soundness`](super::soundness) has passed it.
+//! hash is that of the commit and [`soundness`](super::soundness) has passed it.
 
 mod bytes;
 mod older;

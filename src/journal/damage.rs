@@ -1,6 +1,6 @@
 //! What can be wrong with the bytes of a log, and what that leaves of it.
 //!
-//! Each of these errors says all there is to say in one line, its cause with it, because they come in lists.
+//! Each of these errors fits one line, its cause with it, because they come in lists.
 
 use super::format::{CHUNK_BYTES_LIMIT, MANIFEST_BYTES_LIMIT, MANIFESTS_BYTES_LIMIT, REPORT_BYTES_LIMIT};
 use super::frame::Kind;
@@ -20,6 +20,7 @@ pub struct Problem {
 
 /// What is wrong with a record of a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Damage {
     /// The file ends inside a record's first nine bytes.
     #[error("the file ends {left} bytes into a record")]
@@ -32,7 +33,7 @@ pub enum Damage {
     CutRecord {
         /// MCAP's code for the kind of record.
         opcode: u8,
-        /// Length that the record says it has, bytes.
+        /// Length that the record states, bytes.
         claims: u64,
         /// Bytes of it that are there.
         left: u64,
@@ -47,7 +48,7 @@ pub enum Damage {
     #[error("the file does not begin with the MCAP magic bytes")]
     Magic,
     /// A record where none of its kind can be.
-    #[error("a {} of {bytes} bytes stands where none belongs", Kind(*opcode))]
+    #[error("a {} of {bytes} bytes is where none belongs", Kind(*opcode))]
     Misplaced {
         /// MCAP's code for the kind of record.
         opcode: u8,
@@ -59,7 +60,7 @@ pub enum Damage {
     Unreadable {
         /// MCAP's code for the kind of record.
         opcode: u8,
-        /// What MCAP says.
+        /// The error of the MCAP library.
         cause: mcap::McapError,
     },
     /// A chunk whose lengths disagree, or that is compressed, which no log of this program is.
@@ -118,7 +119,7 @@ pub enum Damage {
         messages: usize,
     },
     /// Something behind the commit or the end of the run, in the same chunk.
-    #[error("the chunk goes on after its commit")]
+    #[error("the chunk continues after its commit")]
     AfterCommit,
     /// The commit is not as it was sealed.
     #[error("the commit cannot be trusted: {0}")]
@@ -168,7 +169,7 @@ pub enum Damage {
     #[error("the report is not about the state that the commit names")]
     OtherReport,
     /// A state on a mesh that the log does not hold up to here.
-    #[error("the state stands on mesh {mesh}, which the log does not hold up to here")]
+    #[error("the state is on mesh {mesh}, which the log does not hold up to here")]
     UnknownMesh {
         /// Content hash of the mesh.
         mesh: Hash,
@@ -183,7 +184,7 @@ pub enum Damage {
         field: Hash,
     },
     /// A commit out of its order.
-    #[error("commit {found} stands where commit {expected} belongs")]
+    #[error("commit {found} is where commit {expected} belongs")]
     OutOfOrder {
         /// Ordinal that the commit should have.
         expected: u64,
@@ -201,7 +202,7 @@ pub enum Damage {
         found: Hash,
     },
     /// A commit whose chain hash does not follow from the one before it.
-    #[error("commit {ordinal} has chain hash {found}, and {expected} follows from what stands before it")]
+    #[error("commit {ordinal} has chain hash {found}, and {expected} follows from what precedes it")]
     BrokenChain {
         /// Ordinal of the commit.
         ordinal: u64,
@@ -211,7 +212,7 @@ pub enum Damage {
         found: Hash,
     },
     /// An end that does not belong to the commits before it.
-    #[error("the record of the end is about {claims} commits, and {found} stand before it")]
+    #[error("the record of the end is about {claims} commits, and {found} precede it")]
     OtherEnd {
         /// Commits that the record counts.
         claims: u64,
@@ -219,7 +220,7 @@ pub enum Damage {
         found: u64,
     },
     /// Something after the end of the run.
-    #[error("the log goes on after the record of its end")]
+    #[error("the log continues after the record of its end")]
     AfterEnd,
 }
 
@@ -232,6 +233,7 @@ impl Damage {
 
 /// How complete a log is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Completeness {
     /// Every commit is good, and the run reached its end.
     Finished,

@@ -7,6 +7,7 @@ use super::format::{CHUNK_BYTES_LIMIT, MANIFEST_BYTES_LIMIT, REPORT_BYTES_LIMIT,
 
 /// Why a stage cannot be encoded for a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum EncodeError {
     /// The state has no place in a log.
     #[error("the state cannot be kept")]

@@ -12,7 +12,7 @@
 //! A state names its mesh and its fields (displacements, those of the equilibrium before, the heading of a path) by hash, so a
 //! stage that changes none (indicators that mark nothing, a solve that is rejected) writes some hundred bytes and its report.
 //!
-//! Before the first chunk, and again wherever a run was taken up again, stands a metadata record `foldline.manifest`: it
+//! Before the first chunk, and again wherever a run was resumed, lies a metadata record `foldline.manifest`: it
 //! begins a *stretch* of the run.
 //!
 //! # Versions
@@ -20,7 +20,7 @@
 //! | version | what is new |
 //! |---|---|
 //! | 1 | |
-//! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest says which revision of the numerics wrote the stretch; a chunk may lack a state, and a mesh or displacements that no state needs, in a log that was thinned and says so in a metadata record `foldline.thinned` |
+//! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest names the revision of the numerics that wrote the stretch; a chunk may lack a state, and a mesh or displacements that no state needs, in a log that was thinned and says so in a metadata record `foldline.thinned` |
 //!
 //! | 3 | a state names each of its fields by its own hash, and a commit names them all; before, the displacements and those of the equilibrium before were one |
 //!
@@ -34,7 +34,7 @@
 //! states repeat is named by its hash instead.
 //!
 //! # Times
-//! `log_time` is the place in the run, not the clock: stage k stands at (k + 1) · 100 ms after 1970. A viewer then
+//! `log_time` is the place in the run, not the clock: stage k is at (k + 1) · 100 ms after 1970. A viewer then
 //! plays ten stages a second, whatever a stage cost and however many nights lie between an interruption and the
 //! resume, and equal runs have equal times. The clock goes into `publish_time` (nanoseconds since 1970), which nothing
 //! reads back. No hash covers either.
@@ -86,7 +86,7 @@ pub const REPORT_BYTES_LIMIT: usize = 1 << 20;
 /// Largest manifest that is written or read, bytes: room for the net of a hundred thousand control points.
 pub const MANIFEST_BYTES_LIMIT: usize = crate::scene::SCENE_BYTES_LIMIT as usize;
 
-/// Most values of a scene in a log: the parser takes 160 bytes for each, where two may stand for it in the text.
+/// Most values of a scene in a log: the parser takes 160 bytes for each, where two bytes of the text may make one.
 pub(super) const SCENE_VALUES_LIMIT: usize = 350_000;
 
 /// Most bytes of manifests that are kept of one log.

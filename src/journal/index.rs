@@ -33,7 +33,7 @@ const BLOCK_BYTES: u64 = 32 << 20;
 /// The largest head that is read, bytes.
 const HEAD_LIMIT: usize = 4 << 20;
 
-/// Columns that say where chunks lie.
+/// Columns with the places of chunks.
 const PLACES: [&str; 3] = ["#at", "#bytes", "#pattern"];
 
 /// What a block begins with.
@@ -71,7 +71,7 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// Whether it asks for no more than a log can hold, and for nothing twice.
+    /// Whether it lists no more than a log can hold, and nothing twice.
     fn is_sound(&self) -> bool {
         let follow = self.metadata.windows(2).all(|pair| pair[0].0.saturating_add(pair[0].1) <= pair[1].0);
         self.fields.len() <= FIELDS_LIMIT && follow && self.described_at.is_sorted_by(|a, b| a < b)

@@ -21,6 +21,7 @@ use crate::whole_file::{room_for, shortage};
 
 /// Why a process may not write a log, or may no longer.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LockError {
     /// Another process writes this log.
     #[error("{log} is being written by {holder}: wait for it or stop it. Nothing was changed")]
@@ -30,9 +31,9 @@ pub enum LockError {
         /// Who has the lease.
         holder: String,
     },
-    /// Another process may write this log; whether it still runs cannot be told from here.
+    /// Another process may write this log; whether it still runs is not known here.
     #[error(
-        "{log} is leased to {holder}, and nothing here can tell whether that still runs: wait for it or stop it, or, if it is gone, \
+        "{log} is leased to {holder}, and nothing here shows whether that still runs: wait for it or stop it, or, if it is gone, \
          delete {lease}. Nothing was changed"
     )]
     Leased {
@@ -56,7 +57,7 @@ pub enum LockError {
     },
     /// The lease is not there any more.
     #[error(
-        "{lease} is gone, which says that this run may write {log}: its folder was moved or removed, or another run took the log over \
+        "{lease} is gone, which shows that this run may write {log}: its folder was moved or removed, or another run took the log over \
          and is done. This run stops; put the folder back, then `foldline resume {log}`"
     )]
     Gone {
@@ -67,7 +68,7 @@ pub enum LockError {
     },
     /// The lease cannot be read any more.
     #[error(
-        "{lease} cannot be read any more, which says whether this run may still write {log}: this run stops. When it can be read \
+        "{lease} can no longer be read, which shows whether this run may still write {log}: this run stops. When it can be read \
          again, `foldline resume {log}`"
     )]
     Unreadable {
@@ -75,7 +76,7 @@ pub enum LockError {
         log: String,
         /// The lease.
         lease: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -86,7 +87,7 @@ pub enum LockError {
         path: String,
         /// Bytes that the disk has room for, where that is known.
         room: Option<u64>,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -95,7 +96,7 @@ pub enum LockError {
     Io {
         /// The file.
         path: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },

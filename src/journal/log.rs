@@ -1,4 +1,4 @@
-//! A log that was read: its stages, and their states when they are asked for.
+//! A log that was read: its stages, and their states when they are needed.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -17,9 +17,9 @@ use crate::state::{Hash, Mesh, State};
 /// commit follows from the one before it.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// What the stage said, where it stands, and how long it took.
+    /// The report of the stage, its place in the run, and how long it took.
     pub record: Record,
-    /// Content hash of the mesh that its state stands on.
+    /// Content hash of the mesh of its state.
     pub mesh_hash: Hash,
     /// Hashes of the bytes of its state's fields.
     pub(super) fields: Box<[Hash]>,
@@ -44,11 +44,12 @@ pub struct Note {
 
 /// Why a state of a log cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StateError {
     /// No such stage.
     #[error("there is no stage {index} in this log: it holds {len}, counted from 0")]
     NoSuchStage {
-        /// What was asked for.
+        /// The number that was requested.
         index: usize,
         /// Stages in the log.
         len: usize,

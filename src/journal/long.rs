@@ -1,4 +1,4 @@
-//! A long log, of which only the end is read: where the rest lies says its index.
+//! A long log, of which only the end is read: its index gives the place of the rest.
 
 use std::fs::File;
 use std::io;
@@ -18,6 +18,7 @@ use crate::record::Record;
 
 /// Why stages of a long log cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LongLogError {
     /// The log or its index cannot be read.
     #[error("the log or its index cannot be read")]
@@ -25,14 +26,14 @@ pub enum LongLogError {
     /// No such stage.
     #[error("there is no stage {ordinal} in this log: it holds {commits}, counted from 0")]
     NoSuchStage {
-        /// What was asked for.
+        /// The number that was requested.
         ordinal: usize,
         /// Stages in the log.
         commits: usize,
     },
-    /// A commit that is not what the index says: damaged, or of another log.
+    /// A commit that is not what the index lists: damaged, or of another log.
     #[error(
-        "commit {ordinal} at byte {at} is not what it was when the index was written: `foldline verify` tells more"
+        "commit {ordinal} at byte {at} is not what it was when the index was written: `foldline verify` reports more"
     )]
     Changed {
         /// Ordinal of the commit.
@@ -210,7 +211,7 @@ impl LongLog {
     }
 }
 
-/// What a block says about its last commit.
+/// The mark of the last commit of a block.
 pub(super) fn mark(log: &Log, ledger: &Ledger, entry: &Entry) -> Option<Mark> {
     let at = entry.bytes.start;
     let piece = |places: &std::collections::HashMap<_, Range<usize>>, hash| {

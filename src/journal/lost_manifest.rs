@@ -20,7 +20,7 @@ impl Log {
         let LostManifest { at, ordinal, .. } = lost;
         let what = match stages_in_words(&self.stages_without_scene(lost)) {
             Some(stages) => format!("the scene of {stages}"),
-            None => format!("what the run was asked for from stage {ordinal} on"),
+            None => format!("what the run was to compute from stage {ordinal} on"),
         };
         format!(
             "the manifest at byte {at} is lost, and with it {what}: no other scene takes its place. `foldline run SCENE -o LOG --resume` \

@@ -2,7 +2,7 @@
 //!
 //! A metadata record lies outside the chunks and has no checksum in MCAP, so it carries one of its own over all its
 //! entries. That hash is the name by which the commits of the stretch call their manifest. A manifest that does not check
-//! is lost, and never guessed at: states do not depend on it, but what the run was asked for does.
+//! is lost, and never guessed at: states do not depend on it, but what the run was to compute does.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -32,10 +32,10 @@ pub struct Manifest {
     pub cpu: String,
     /// Vector instructions that the processor has.
     pub cpu_features: Vec<String>,
-    /// Build of the element kernel that ran; empty in logs that do not say. Those for AVX2 and AVX-512 give the same
+    /// Build of the element kernel that ran; empty in logs that do not state it. Those for AVX2 and AVX-512 give the same
     /// bits.
     pub kernel: String,
-    /// Revision of the numerics; 0 in logs that do not say. Stretches of one revision and one kind of kernel have the same
+    /// Revision of the numerics; 0 in logs that do not state it. Stretches of one revision and one kind of kernel have the same
     /// bits.
     pub numerics: u32,
     /// Threads that the run used.
@@ -54,6 +54,7 @@ pub struct Manifest {
 
 /// Why a metadata record cannot be read as a manifest.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ManifestError {
     /// An entry is not there.
     #[error("the manifest has no entry `{key}`")]
@@ -76,8 +77,9 @@ pub enum ManifestError {
 
 /// Why the text in a manifest cannot be read as a scene.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SceneInLogError {
-    /// It does not stand for itself.
+    /// It names another file.
     #[error(
         "the scene in the log names a file for its geometry: logs hold theirs whole, and no file is opened for one"
     )]
@@ -154,7 +156,7 @@ impl Manifest {
         match (before.numerics, self.numerics) {
             (was, is) if was == is => None,
             (0, is) => Some(format!(
-                "another revision of the numerics may have written it: the log does not say which, this is {is}"
+                "another revision of the numerics may have written it: the log does not state which, this is {is}"
             )),
             (was, is) => Some(format!("another revision of the numerics: {was} before, {is} now")),
         }
@@ -283,7 +285,7 @@ pub(super) const LIBRARY: &str = "library";
 /// What the entries of terms of the caller's own begin with; their number in the order of the terms follows.
 const OWN_TERM: &str = "own_term_";
 
-/// Entry of a stretch that is not the first. It comes first in the record, so that even a torn one says whether its scene was
+/// Entry of a stretch that is not the first. It comes first in the record, so that even a torn one shows whether its scene was
 /// that of the stretch before.
 const AGAIN: &str = "again";
 const SAME_SCENE: &str = "same scene";

@@ -1,4 +1,4 @@
-//! Stages that a log has lost, put back: whole ones that stand behind them follow on them again. That they are the right ones says
+//! Stages that a log has lost, put back: whole ones behind them follow on them again. That they are the right ones is shown by
 //! the chain.
 
 use super::codec::{EncodedState, encode_mesh, encode_state_on};
@@ -12,6 +12,7 @@ use crate::state::State;
 
 /// Why lost stages cannot be put back into a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MendError {
     /// They have no place in a log.
     #[error(transparent)]

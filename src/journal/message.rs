@@ -79,6 +79,7 @@ impl MessageHash {
 
 /// The message on `/foldline/commit`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct CommitMessage {
     /// Version of the log's layout.
     pub format: u32,
@@ -96,7 +97,7 @@ pub struct CommitMessage {
     pub scene_hash: HexHash,
     /// Hash of (chain so far, scene hash, stage, state hash).
     pub chain_hash: HexHash,
-    /// Hash of the mesh that the state stands on, which this chunk or an earlier one holds.
+    /// Hash of the mesh of the state, which this chunk or an earlier one holds.
     pub mesh_hash: HexHash,
     /// Hashes of the bytes of the state's fields, its displacements first, which this chunk or earlier ones hold; not there
     /// before version 3.
@@ -157,6 +158,7 @@ impl CommitMessage {
 
 /// The message on `/foldline/finished`: the run reached its end.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct FinishedMessage {
     /// Version of the log's layout.
     pub format: u32,
@@ -189,6 +191,7 @@ impl FinishedMessage {
 ///
 /// JSON has no NaN and no infinities; such a number is `null` in its place and spelt out in `not_finite`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct ReportMessage {
     /// What the stage reported.
     #[serde(flatten)]
@@ -346,6 +349,7 @@ const SEAL_LEN: usize = 64 + 2;
 
 /// Why a sealed message is rejected.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SealError {
     /// Too short to hold a seal.
     #[error("{bytes} bytes are too few for a sealed message")]
@@ -354,7 +358,7 @@ pub enum SealError {
         bytes: usize,
     },
     /// The bytes before the seal do not have the hash that it holds.
-    #[error("the bytes before the seal hash to {found}, and the seal says otherwise")]
+    #[error("the bytes before the seal hash to {found}, and the seal differs")]
     Broken {
         /// Hash of the bytes.
         found: Hash,
@@ -428,7 +432,7 @@ fn one_object(schema: &Value) -> Option<Value> {
     Some(json!({ "description": schema["description"], "type": "object", "properties": entries }))
 }
 
-/// Turns `oneOf` constants into one `enum` of words, and `oneOf` objects that a constant tells apart into one object with the
+/// Turns `oneOf` constants into one `enum` of words, and `oneOf` objects that a constant distinguishes into one object with the
 /// entries of all.
 fn plain_choices(schema: &mut Value) {
     if let Some(whole) = one_object(schema) {

@@ -18,6 +18,7 @@ pub(super) const BATCH_BYTES: usize = 1 << 20;
 
 /// Why a new log cannot be made from another.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum NewLogError {
     /// There is a file where it should go.
     #[error("{new} exists and is not overwritten: choose another name")]
@@ -30,12 +31,12 @@ pub enum NewLogError {
     Write {
         /// The new log.
         new: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
     /// MCAP refused a record of the log.
-    #[error("cannot write {new} anew from the log, which is as it was")]
+    #[error("cannot write {new} from the log, which is as it was")]
     Encode {
         /// The new log.
         new: String,

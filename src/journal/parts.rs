@@ -39,7 +39,7 @@ pub(super) fn read_in_parts(
 }
 
 /// Reads a part of the first `length` bytes of a log, from a checkpoint or from its start, and enters all chunks before its last
-/// commit: so many bytes, or as many more as the next number says where there is no commit in them to continue from. Gives
+/// commit: so many bytes, or as many more as the next number gives where there is no commit in them to continue from. Gives
 /// back the checkpoint to continue from too; none where the log ends there, or where something is not as it was written.
 pub(super) fn read_part(
     file: &File,

@@ -59,6 +59,7 @@ pub(super) fn copy(log: &Log, keep: usize, encoder: &mut Encoder, backend: &mut 
 
 /// The outcome of recovering a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RecoverOutcome {
     /// Every commit that the log ever held is in the new one.
     Lossless {
@@ -87,6 +88,7 @@ pub enum RecoverOutcome {
 
 /// Why a log cannot be recovered.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecoverError {
     /// The log cannot be read at all.
     #[error(transparent)]
@@ -159,7 +161,7 @@ fn recover_with(path: &Path, new: &Path, mut mend: Option<Mend>) -> Result<Recov
     }
 }
 
-/// Times that a log is mended: the first time may put back what tells how more is to be read.
+/// Times that a log is mended: the first time may put back what is needed to read more.
 const MOST_MENDS: usize = 4;
 
 /// A copy of a mended log with that log; `None` where no copy reads as its log does. What a copy lacks that was not described

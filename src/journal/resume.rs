@@ -1,4 +1,4 @@
-//! Going on with a log.
+//! Continuing a log.
 //!
 //! A log that is as it was written is continued in place: what a killed process left half done, the summary and the record
 //! of the end are cut off, that is made durable, and then the new stretch is added with its first commit, in one write. Before
@@ -41,13 +41,14 @@ use crate::whole_file::write_new;
 
 /// Why a log cannot be continued.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ResumeError {
     /// There is no such file.
     #[error("cannot resume {log}: there is no such file")]
     NoLog {
         /// The log.
         log: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -70,7 +71,7 @@ pub enum ResumeError {
         log: String,
         /// The copy, or the part that is kept beside it.
         path: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },

@@ -28,7 +28,7 @@ const PARSED_IN_VAIN: usize = 4;
 const HEADER_BYTES_LIMIT: usize = 4 << 10;
 
 /// Reading under way. Places in `entries`, `parts`, `meshes` and `fields` count from the first byte that is walked
-/// over, those that are told from the start of the file.
+/// over, those in the report from the start of the file.
 #[derive(Default)]
 pub(super) struct Scan {
     /// Place of the first byte in the file.
@@ -144,7 +144,7 @@ impl Scan {
         if !more_follows || self.closed {
             self.stretches.end(good, self.problems.last().map(|problem| problem.at));
             if let Some(at) = self.stretches.unused {
-                let text = "the log ends in a manifest that cannot be read: no stage was run under it, and what it asked for is not \
+                let text = "the log ends in a manifest that cannot be read: no stage was run under it, and what it demanded is not \
                             known; the scene before it holds";
                 self.note(at, text.to_owned());
             }
@@ -305,7 +305,7 @@ impl Scan {
         Ok(())
     }
 
-    /// What is damaged of a chunk beside its messages; that channels are not described is told once.
+    /// Damage of a chunk outside its messages; that channels are not described is reported once.
     fn beside(&mut self, at: usize, beside: Option<Damage>) {
         let is_told = |problem: &Problem| matches!(problem.damage, Damage::UnknownChannel { .. });
         let again = matches!(beside, Some(Damage::UnknownChannel { .. })) && self.problems.iter().any(is_told);
@@ -361,7 +361,7 @@ impl Scan {
     }
 }
 
-/// Whether what stands behind a record is one that may stand behind a manifest, or the end.
+/// Whether the record behind another is one that may follow a manifest, or the end.
 fn is_before_another(bytes: &[u8], frame: &Frame) -> bool {
     match frame::next(bytes, frame.body.end) {
         None => true,

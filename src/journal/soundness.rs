@@ -6,6 +6,7 @@ use crate::state::{Course, CriticalAhead, DriveMemory, Mesh, PathMemory, Previou
 
 /// What is wrong with a decoded mesh or state.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Flaw {
     /// A degree that no kernel is built for.
     #[error("degree {degree} in direction {} (it must be {} to {})", direction + 1, DEGREES.start(), DEGREES.end())]
@@ -36,7 +37,7 @@ pub enum Flaw {
         value: f64,
     },
     /// A knot repeated so often that the surface falls apart, or a knot vector that is not open.
-    #[error("knot {value} in direction {} stands {found} times for degree {degree}", direction + 1)]
+    #[error("knot {value} in direction {} occurs {found} times for degree {degree}", direction + 1)]
     KnotMultiplicity {
         /// Parametric direction, 0 or 1.
         direction: usize,
@@ -44,7 +45,7 @@ pub enum Flaw {
         degree: usize,
         /// The knot.
         value: f64,
-        /// How often it stands.
+        /// How often it occurs.
         found: usize,
     },
     /// A sequence of the wrong length.

@@ -17,7 +17,8 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
 /// Why a log is no longer the file that this process wrote.
 #[derive(Debug, thiserror::Error)]
-pub enum Estranged {
+#[non_exhaustive]
+pub enum LogChanged {
     /// It has no name any more.
     #[error("was removed while it was written, and its {} with it", stages(*.commits))]
     Removed {
@@ -37,7 +38,7 @@ pub enum Estranged {
     Replaced,
     /// Something else has written to it, or cut it.
     #[error(
-        "has {found} bytes where {expected} were written: something else writes to it or has cut it. `foldline verify` tells what is left"
+        "has {found} bytes where {expected} were written: something else writes to it or has cut it. `foldline verify` reports what is left"
     )]
     Length {
         /// Bytes that it has.
@@ -45,10 +46,10 @@ pub enum Estranged {
         /// Bytes that it had when it was last written.
         expected: u64,
     },
-    /// Nobody can tell.
+    /// It cannot be found out.
     #[error("cannot be looked at any more")]
     Unknown {
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -59,20 +60,24 @@ fn stages(commits: u64) -> String {
 }
 
 /// Looks whether `path` still leads to `file`, which had `length` bytes when it was last written, and `commits` stages.
-pub(super) fn still_ours(file: &File, path: &Path, length: u64, commits: u64) -> Result<(), Estranged> {
-    let unknown = |source| Estranged::Unknown { source };
+pub(super) fn still_ours(file: &File, path: &Path, length: u64, commits: u64) -> Result<(), LogChanged> {
+    let unknown = |source| LogChanged::Unknown { source };
     let ours = patiently(|| file.metadata()).map_err(unknown)?;
     let named = match patiently(|| fs::metadata(path)) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Err(if ours.nlink() == 0 { Estranged::Removed { commits } } else { Estranged::Moved { commits } });
+            return Err(if ours.nlink() == 0 {
+                LogChanged::Removed { commits }
+            } else {
+                LogChanged::Moved { commits }
+            });
         }
         named => named.map_err(unknown)?,
     };
     if (ours.dev(), ours.ino()) != (named.dev(), named.ino()) {
-        return Err(Estranged::Replaced);
+        return Err(LogChanged::Replaced);
     }
     if ours.len() != length {
-        return Err(Estranged::Length { found: ours.len(), expected: length });
+        return Err(LogChanged::Length { found: ours.len(), expected: length });
     }
     Ok(())
 }

@@ -12,9 +12,9 @@ use crate::state::Hash;
 /// A manifest that a log should hold and does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LostManifest {
-    /// Where it stood, or where its loss shows, bytes.
+    /// Where it was, or where its loss shows, bytes.
     pub at: u64,
-    /// Ordinal of the first commit that it would say something about.
+    /// Ordinal of the first commit that it would describe.
     pub ordinal: u64,
     /// Manifests before it that are there.
     pub(super) before: usize,

@@ -28,6 +28,7 @@ pub enum Level {
 
 /// One result of checking a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Finding {
     /// How much it matters.
     pub level: Level,
@@ -134,7 +135,7 @@ fn of_the_whole(log: &Log) -> Vec<Finding> {
             false => {
                 let at = lost.at;
                 let text = format!(
-                    "the manifest at byte {at} is lost; a scene that was given anew behind it makes the same states"
+                    "the manifest at byte {at} is lost; a scene that was given again behind it makes the same states"
                 );
                 (Level::Info, text)
             }
@@ -266,6 +267,6 @@ fn not_written(error: &EncodeError) -> Finding {
 
 fn other_byte(at: u64) -> Finding {
     let text = "not the byte that would be written here; no state depends on it, but viewers may. \
-                `foldline recover` writes the log anew";
+                `foldline recover` writes the log again";
     finding(Level::Warning, format!("byte {at}"), text)
 }

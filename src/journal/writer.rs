@@ -15,7 +15,7 @@ use super::lock::LogLock;
 use super::log::Log;
 use super::manifest::Manifest;
 use super::reader::{ReadError, open_regular};
-use super::still_ours::Estranged;
+use super::still_ours::LogChanged;
 use super::write_error::WriteError;
 use crate::record::{Commit, Record, Sink, SinkError};
 use crate::scene::SyncPolicy;
@@ -90,9 +90,9 @@ impl JournalWriter {
     ///
     /// # Errors
     /// As for [`Self::create`]; a file that holds more is left alone.
-    pub fn create_anew(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
+    pub fn create_over_empty(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
         let log = path.display().to_string();
-        let begin = |source| WriteError::Io { action: "begin anew", log: log.clone(), commits: 0, source };
+        let begin = |source| WriteError::Io { action: "start", log: log.clone(), commits: 0, source };
         // Through links, as it was found to hold nothing.
         let path = path.canonicalize().map_err(begin)?;
         let lock = LogLock::take(&path)?;
@@ -194,7 +194,7 @@ impl JournalWriter {
     /// commits gets no such record.
     ///
     /// # Errors
-    /// Where it could not be written; the commits stand.
+    /// Where it could not be written; the commits are kept.
     pub fn finish(mut self) -> Result<(), WriteError> {
         if let Some(last) = self.last {
             self.encoder.finished(&last).map_err(|source| self.encode_error(last.ordinal, source))?;
@@ -206,7 +206,7 @@ impl JournalWriter {
     /// be resumed.
     ///
     /// # Errors
-    /// Where it could not be written; the commits stand.
+    /// Where it could not be written; the commits are kept.
     pub fn close(mut self) -> Result<(), WriteError> {
         if self.given_up {
             return Err(WriteError::GivenUp { log: self.log.clone(), commits: self.commits() });
@@ -298,7 +298,7 @@ impl JournalWriter {
         if let Some(lock) = &self.lock {
             lock.check()?;
         }
-        let estranged = |estranged| WriteError::Estranged { log: self.log.clone(), estranged };
+        let estranged = |estranged| WriteError::LogChanged { log: self.log.clone(), estranged };
         self.backend.check(self.length, self.commits()).map_err(estranged)
     }
 
@@ -307,7 +307,7 @@ impl JournalWriter {
     fn take_back(&mut self, appended: u64) {
         let ours = match self.check() {
             Ok(()) => true,
-            Err(WriteError::Estranged { estranged: Estranged::Length { found, .. }, .. }) => {
+            Err(WriteError::LogChanged { estranged: LogChanged::Length { found, .. }, .. }) => {
                 (self.length..=self.length + appended).contains(&found)
             }
             Err(_) => false,

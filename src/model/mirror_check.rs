@@ -116,7 +116,7 @@ fn shear_coupling(material: &Material, [a1, a2]: [[f64; 3]; 2], tangent: [f64; 3
 fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
     let axis = place(mirror.normal);
     let normal = axis.trim_end_matches(" mm");
-    let is_on = |on: &Place| match on {
+    let is_on = |on: &Region| match on {
         Region::Edge(edge) => Some(*edge) == mirror.edge,
         Region::Line(direction, fraction) => {
             let way = direction.index();
@@ -126,7 +126,7 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
         Region::Whole => false,
     };
     // A line the other way meets the plane in a point.
-    let meets = |on: &Place| match on {
+    let meets = |on: &Region| match on {
         Region::Edge(edge) => side(*edge).0 != mirror.way,
         Region::Line(direction, _) => direction.index() != mirror.way,
         Region::Point(_) | Region::Whole => false,

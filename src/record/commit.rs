@@ -55,9 +55,9 @@ impl Commit {
 /// A finished stage as the loop hands it to sinks, and as `--json` prints it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// What the stage said.
+    /// The report of the stage.
     pub report: Report,
-    /// Where it stands in the run.
+    /// Its place in the run.
     pub commit: Commit,
     /// Wall time of the stage, seconds; the only number here that differs between equal runs.
     pub wall_s: f64,

@@ -9,7 +9,7 @@ pub fn fields_of(report: &Report) -> Vec<(String, Value)> {
     let Ok(Value::Object(object)) = serde_json::to_value(report) else { return Vec::new() };
     let mut fields = Vec::new();
     for (name, value) in object {
-        // Probes are asked for by their own names, below.
+        // Probes are listed by their own names, below.
         if name == "probes" {
             continue;
         }

@@ -1,4 +1,4 @@
-//! What a stage says of what it did: a function of model and state.
+//! What a stage reports of what it did: a function of model and state.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -69,7 +69,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Of a state as it stands, on a mesh with so many free unknowns; the stage fills in what it did.
+    /// The report of a state, on a mesh with so many free unknowns; the stage fills in what it did.
     pub(crate) fn of(scene: &Scene, state: &State, unknowns: usize) -> Self {
         Self {
             step: state.step,
@@ -281,6 +281,7 @@ impl From<Report> for WrittenReport {
 /// How a stage ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Outcome {
     /// The stage did its work.
     Done,

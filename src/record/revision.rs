@@ -5,5 +5,5 @@
 /// so that stages that come out differently are blamed on the program and not on the machine.
 ///
 /// `tests/restart/numerics.rs` runs small scenes and holds their chain hashes against those stored for this revision: it
-/// fails where bits have changed and this has not, and says what to do.
+/// fails where bits have changed and this has not, and its message states what to do.
 pub const NUMERICS_REVISION: u32 = 1;

@@ -20,7 +20,7 @@ pub trait Sink {
     /// it.
     ///
     /// # Errors
-    /// Where the stage could not be kept; the loop stops, and the stages taken before stand.
+    /// Where the stage could not be kept; the loop stops, and the stages taken before are kept.
     fn take(&mut self, state: &State, record: &Record) -> Result<(), SinkError>;
 }
 

@@ -1,4 +1,4 @@
-//! What a stage says of the worth of its numbers: where its mesh cannot show what the shell does.
+//! What a stage reports of the worth of its numbers: where its mesh cannot show what the shell does.
 //!
 //! | warning | measure | looked for |
 //! |---|---|---|
@@ -16,16 +16,17 @@ use crate::adapt::Blocked;
 use crate::state::State;
 use crate::units::{count, signed, significant};
 
-/// Change of the strain energy, relative to it, from which on it is said.
+/// Change of the strain energy, relative to it, from which on there is a warning.
 pub(crate) const LARGE: f64 = 0.05;
 
 /// A reason to doubt numbers of the run, with the numbers that show it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Warning {
     /// Halving every element would change the strain energy by much.
     CoarseElements {
-        /// The scene's parameter at the equilibrium that this is said of.
+        /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// Elements each way of the model there.
         elements: [usize; 2],
@@ -34,7 +35,7 @@ pub enum Warning {
     },
     /// A probe would read another value with every element halved.
     ProbeOff {
-        /// The scene's parameter at the equilibrium that this is said of.
+        /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// Elements each way of the model there.
         elements: [usize; 2],
@@ -51,7 +52,7 @@ pub enum Warning {
     },
     /// With every element halved the shell would have buckled before.
     LateBuckling {
-        /// The scene's parameter at the equilibrium that this is said of.
+        /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// Elements each way of the model there.
         elements: [usize; 2],
@@ -60,7 +61,7 @@ pub enum Warning {
     },
     /// Strains that the material law is not meant for.
     LargeStrains {
-        /// The scene's parameter at the equilibrium that this is said of.
+        /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// The largest magnitude of a Green–Lagrange strain along u or v in a surface of the shell.
         strain: f64,

@@ -30,12 +30,12 @@ fn vector(table: &Table, name: &str, force: Value, geometry: &Geometry) -> Check
         (None, true) => Ok(force),
         (None, false) => Err(table.wrong_at(
             name,
-            format!("`{name}` is one number, and says no direction"),
+            format!("`{name}` is one number, and gives no direction"),
             format!("write three components, such as `{name} = [0.0, 0.0, 1.0]`, or add `along = \"normal\"` (or \"radial\", or \"outward\" on an edge)"),
         )),
         (Some(_), true) => Err(table.wrong_at(
             "along",
-            format!("`{name}` has components, which say the direction already"),
+            format!("`{name}` has components, which give the direction already"),
             format!("take `along` out, or write one number, such as `{name} = 1.0`"),
         )),
         (Some(direction), false) => {

@@ -294,7 +294,7 @@ fn continuation(tables: &Tables, load: &Load) -> Checked<Option<ArcLength>> {
     }
 }
 
-/// The error for two values that do not go together; either may be a default, which stands nowhere.
+/// The error for two values that do not go together; either may be a default, which is not in the text.
 fn between(problem: Problem, first: Option<TextSpan>, second: Option<TextSpan>, table: &Table) -> Box<Fault> {
     match (first, second) {
         (Some(first), second) => Fault::new(problem, &first).also(second.as_ref()),
@@ -313,7 +313,7 @@ mod tests {
     fn every_key_stands_in_a_section_of_the_table_and_ends_in_its_unit() {
         for key in all_keys() {
             let section = SECTIONS.iter().find(|section| section.name == key.section).unwrap();
-            assert!(section.keys.contains(key), "{} stands in another table", key.path());
+            assert!(section.keys.contains(key), "{} is in another table", key.path());
             assert!(key.name.ends_with(key.unit.suffix()), "{}", key.path());
             assert!(!key.meaning.is_empty(), "{}", key.path());
             let words: Vec<&str> = section.kind_key().into_iter().flat_map(|kind| kind.words()).collect();
@@ -321,7 +321,7 @@ mod tests {
             let same = section.keys.iter().filter(|other| other.name == key.name);
             let beside =
                 same.filter(|other| other.kinds.is_empty() || other.kinds.iter().any(|kind| key.belongs_to(kind)));
-            assert_eq!(beside.count(), 1, "{} stands twice", key.path());
+            assert_eq!(beside.count(), 1, "{} occurs twice", key.path());
         }
     }
 

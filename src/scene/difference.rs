@@ -10,7 +10,7 @@ use super::keys::Reach;
 /// A key that has different values in two scenes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// The key as it stands in a scene file: `solver.tolerance`; of a table that has a name `support.hinge.on`.
+    /// The key as written in a scene file: `solver.tolerance`; of a table that has a name `support.hinge.on`.
     pub path: String,
     /// Its value in the first scene; `None` where that has no use for it.
     pub a: Option<Value>,
@@ -66,7 +66,7 @@ fn named<'v>(list: &'v [Value], table: &Value) -> Option<&'v Value> {
     list.iter().find(|other| other["name"] == table["name"])
 }
 
-/// Differences of two tables, a key each; of one alone, or of two kinds, the whole table. How far each reaches says `reach`.
+/// Differences of two tables, a key each; of one alone, or of two kinds, the whole table. `reach` gives how far each reaches.
 fn of_table(
     table: &str,
     was: Option<&Value>,
@@ -141,7 +141,7 @@ mod tests {
         assert_differ("probes", fewer, both, &[("probe.a", Reach::Free)]);
     }
 
-    /// A history means the same only where all else stands in its place.
+    /// A history means the same only where nothing else has changed.
     #[test]
     fn histories_reach_as_far_as_the_loads() {
         let push = |name: &str, end: f64| json!({ "name": name, "kind": "force", "history": [[0.0, 0.0], [1.0, end]] });

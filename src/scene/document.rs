@@ -12,11 +12,11 @@ use super::problem::Problem;
 use super::{meant, syntax};
 use crate::printable::one_line;
 
-/// What stands in a scene file, with settings applied.
+/// The content of a scene file, with settings applied.
 pub(super) struct Document<'t> {
-    /// What may stand there.
+    /// The descriptions of the tables that are allowed.
     pub sections: &'static [Section],
-    /// The tables, in the order of the text; those that settings add stand behind.
+    /// The tables, in the order of the text; those that settings add come last.
     pub tables: Vec<Written<'t>>,
     /// Keys and values in front of all tables, and tables of the wrong form.
     pub strays: Vec<Entry<'t>>,
@@ -144,7 +144,7 @@ impl<'t> Document<'t> {
         if self.is_array(section) {
             let problem = Problem::Table {
                 table: format!("[[{section}]]"),
-                problem: "a setting cannot say which of several tables it means".into(),
+                problem: "a setting cannot name one of several tables".into(),
                 remedy: "change it in the scene file".into(),
             };
             return Err(Fault::new(problem, &section_place));

@@ -5,6 +5,7 @@ use crate::units::rounded;
 
 /// What advances a run from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Drive<'s> {
     /// The load: a step is an increment of the parameter.
     Load(Parameter),
@@ -49,6 +50,7 @@ impl<'s> Drive<'s> {
 
 /// The quantity that the parameter of a run measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Parameter {
     /// Rotation of each end, degrees.
     Rotation,

@@ -1,4 +1,4 @@
-//! A key with its value, and where they stand.
+//! A key with its value, and their places in the text.
 
 use std::ops::Range;
 

@@ -1,14 +1,14 @@
-//! A problem, and where it stands in the text.
+//! A problem, and its place in the text.
 
 use std::ops::Range;
 
 use super::problem::Problem;
 
-/// A problem, where it stands, and the edits that would mend it.
+/// A problem, its place, and the edits that would mend it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {
     pub problem: Problem,
-    /// The table that it stands in, where there may be several of its name.
+    /// The table that holds it, where there may be several of its name.
     pub item: Option<String>,
     pub place: TextSpan,
     /// A second place that the problem hangs on.

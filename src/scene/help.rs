@@ -87,7 +87,7 @@ fn of_key(key: &Key) -> String {
     text
 }
 
-/// One scene with every key of a tape spring that can stand beside the others.
+/// One scene with every key of a tape spring that can be combined with the others.
 pub(super) fn example_scene() -> String {
     let mut text = String::new();
     for section in SECTIONS.iter().filter(|section| !section.many) {

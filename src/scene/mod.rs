@@ -16,7 +16,7 @@
 //! | `table`, `tables` | one table, and all of them, with every default filled in |
 //! | `geometries`, `nurbs`, `materials`, `supports`, `actions`, `histories`, `probes` | tables to data, and what must hold between their keys |
 //! | `check`, `structure`, `stage_order`, `nearness` | tables to a scene; what must hold between tables, between supports and actions, between stages, between places |
-//! | `problem`, `fault` | what can be wrong, and where it stands |
+//! | `problem`, `fault` | what can be wrong, and where |
 //! | `explain`, `render`, `error` | that in words, with the text underlined, as callers see it |
 //! | `identity`, `difference` | hash and differences of scenes; how a difference is shown |
 //! | `write` | a scene as TOML |
@@ -70,7 +70,8 @@ pub use data::{
     Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Ply, Probe, ProbeKind,
     Quadrature, Reaction, Region, Scene, Seam, Sense, Solver, Stage, Support, SurfaceDirection, Symmetry, SyncPolicy,
 };
-pub use difference::{Difference, shown_values};
+pub use difference::Difference;
+pub(crate) use difference::shown_values;
 pub use drive::{Drive, Parameter};
 pub use error::SceneError;
 pub use help::{help_on_topic, help_text, help_topics};

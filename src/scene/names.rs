@@ -94,7 +94,7 @@ impl Names<'_, '_> {
         })
     }
 
-    /// The keys that may stand here.
+    /// The keys that are allowed here.
     fn here(&self) -> impl Iterator<Item = &'static Key> + Clone + use<'_> {
         self.section.keys_of(self.kind)
     }

@@ -35,7 +35,7 @@ fn of_section(section: &Section) -> Value {
     if section.many { json!({ "type": "array", "description": section.meaning, "items": table }) } else { table }
 }
 
-/// All keys of a table, and what its kind says of them: editors complete the former, and tell which of the latter is broken.
+/// All keys of a table, and the rules of its kind for them: editors complete the former, and show which of the latter is broken.
 fn of_table(section: &Section) -> Value {
     let mut properties = Map::new();
     for key in section.keys {

@@ -12,7 +12,7 @@ use super::keys::{Key, Presence, Section};
 use super::problem::Problem;
 use super::read;
 
-/// What one table says.
+/// The content of one table.
 pub(super) struct Table {
     pub section: &'static Section,
     /// What errors call it.

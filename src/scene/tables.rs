@@ -16,7 +16,7 @@ impl Tables {
     pub fn read(document: &Document<'_>) -> CheckedWhole<Self> {
         let wrong_names = names::check(document);
         let is_told = |name: &str| wrong_names.iter().any(|fault| fault.problem.meant().as_deref() == Some(name));
-        // Of a table that is most likely of another kind nothing can be said.
+        // Of a table that is most likely of another kind nothing is reported.
         let of_other_kind = |fault: &&Fault| matches!(fault.problem, Problem::OfOtherKind { .. });
         let unread: Vec<&TextSpan> = wrong_names.iter().filter(of_other_kind).map(|fault| &fault.place).collect();
         let is_read = |table: &&Written<'_>| !table.entries.iter().any(|entry| unread.contains(&&entry.place));

@@ -2,7 +2,7 @@
 //!
 //! Both are compared at the load steps that end at the same parameter, before their first jumps and behind them: the largest
 //! difference, as a share of the largest value of the reference on that side. Where one has jumped and the other has not they
-//! stand on different branches, and what differs is where they jump.
+//! are on different branches, and what differs is where they jump.
 
 use serde::Serialize;
 
@@ -45,6 +45,7 @@ struct CurvePoint {
 
 /// The errors of one run, relative to a reference run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct AccuracyRow {
     /// Elements (along u, along v) of the model at the end.
     pub elements: [usize; 2],
@@ -74,6 +75,7 @@ pub struct AccuracyRow {
 
 /// Why runs cannot be compared.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AccuracyError {
     /// The scene cannot be made discrete.
     #[error(transparent)]
@@ -85,7 +87,7 @@ pub enum AccuracyError {
     #[error("the scene has no moment and no probe to compare: turn its ends, or write a [[probe]]")]
     NothingMeasured,
     /// Another structure than the reference.
-    #[error("it is another structure than the reference, so that nothing says how accurate it is: {}", differences.join("; "))]
+    #[error("it is another structure than the reference, so that nothing shows how accurate it is: {}", differences.join("; "))]
     OtherStructure {
         /// Keys with the value of the reference and its own.
         differences: Vec<String>,
@@ -263,7 +265,7 @@ mod tests {
     fn branches_are_compared_apart() {
         let reference =
             measured(&[(1.0, 10.0, false), (2.0, 20.0, false), (3.0, 5.0, true), (4.0, 5.0, true), (5.0, 6.0, true)]);
-        // Jumps later: at 3 it stands on the other branch. The fold is largest at 5, which it does not reach.
+        // Jumps later: at 3 it is on the other branch. The fold is largest at 5, which it does not reach.
         let run = measured(&[
             (1.0, 10.5, false),
             (1.5, 99.0, false),

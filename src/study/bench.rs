@@ -4,7 +4,7 @@
 //! Limits: the floating-point rate of a dense product (faer), for the assembly and the factorization; the rate of a
 //! memory copy, for the solve, which reads the factor twice, and for the residual, which reads the tables of functions
 //! and points; each on as many threads as the kernel can use. What lies in the caches beats the copy, which does not. An
-//! iteration stands as the time that assembly, factorization and solve would take at their limits.
+//! iteration is given as the time that assembly, factorization and solve would take at their limits.
 //! Floating-point operations are those that the method needs (the upper half of Fᵀ H F with the Hessian's own cost left
 //! out, the squares of the column counts of the factor), not those that padding adds.
 
@@ -52,6 +52,7 @@ pub struct Figure {
 
 /// Why nothing could be measured.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BenchError {
     /// The scene cannot be made discrete.
     #[error(transparent)]

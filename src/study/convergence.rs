@@ -19,6 +19,7 @@ const LOCATED_DEG: f64 = 1e-4;
 
 /// The results of a scene on one mesh.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct ConvergenceRow {
     /// Degree each way.
     pub degree: [usize; 2],
@@ -32,7 +33,7 @@ pub struct ConvergenceRow {
     pub limit: Option<[f64; 2]>,
     /// Lowest limit point, where the unstable path ends in the fold: rotation and moment.
     pub fold_begins: Option<[f64; 2]>,
-    /// Moment on the unstable path at the rotation that was asked for, N·mm.
+    /// Moment on the unstable path at the requested rotation, N·mm.
     pub unstable_n_mm: Option<f64>,
     /// Moment on the fold at the last rotation, N·mm.
     pub fold_n_mm: Option<f64>,
@@ -46,6 +47,7 @@ pub struct ConvergenceRow {
 
 /// Why a mesh gives no results.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConvergenceError {
     /// Not a tape spring whose ends turn.
     #[error(

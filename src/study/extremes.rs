@@ -1,4 +1,4 @@
-//! Scenes at and beyond the edge, each run to see whether it ends as its `[expect]` says, with what the numbers are
+//! Scenes at and beyond the edge, each run to see whether it ends as its `[expect]` states, with what the numbers are
 //! worth: residuals, balance of work and energy, condition and symmetry of the stiffness, digits that survive.
 
 use std::collections::BTreeMap;
@@ -196,7 +196,7 @@ fn diagnose(scene: &Scene, state: &State, row: &mut ExtremeRow) {
     }
 }
 
-/// An equilibrium stands where its state alone gives it again, within an iteration.
+/// An equilibrium is confirmed where its state alone gives it again, within an iteration.
 fn stands(scene: &Scene, state: &State, record: &Record, row: &mut ExtremeRow) {
     let Ok(mut work) = Workspace::new(scene, &state.mesh) else { return };
     let again = Equilibrium::new(scene, &mut work).relax(Configuration::of(state), &mut |_| false);

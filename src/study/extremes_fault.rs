@@ -7,6 +7,7 @@ use crate::scene::{ExpectedOutcome, Stage};
 
 /// A fault found in a run that is checked against its `[expect]` table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ExtremeFault {
     /// It did not end as it states.
     #[error("the scene states that it ends `{}` (within {limit_s} s)", expected.name())]
@@ -63,7 +64,7 @@ pub enum ExtremeFault {
     /// The stiffness at the end has no factor.
     #[error("no condition at the end: {cause}")]
     NoFactor {
-        /// What the solver said.
+        /// The error of the solver.
         cause: Box<SolveError>,
     },
     /// The stiffness at the end is singular.

@@ -12,6 +12,7 @@ use crate::study::extremes_fault::ExtremeFault;
 
 /// How the run of a scene ended.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ExtremeEnd {
     /// At its target.
     Finished,
@@ -31,7 +32,7 @@ pub enum ExtremeEnd {
     OutOfTime,
     /// In a panic.
     Panicked {
-        /// What it said.
+        /// The message of the error.
         message: String,
     },
 }

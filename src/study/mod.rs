@@ -1,4 +1,4 @@
-//! What a run says when it is compared with theory: the closed-form laws of tape springs, the summary of a run, and suites
+//! What a run shows when it is compared with theory: the closed-form laws of tape springs, the summary of a run, and suites
 //! of scenes that state how they end.
 //!
 //! | file | what |

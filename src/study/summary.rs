@@ -1,17 +1,18 @@
-//! The summary of a run: what it found, beside what theory says, and what it cost.
+//! The summary of a run: what it found, compared with theory, and what it cost.
 
 use crate::record::{Outcome, Parameter, Reading, Record, Warning};
 use crate::scene::{Geometry, Scene, Stage};
 use crate::study::{Passed, PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
 use crate::units::rounded;
 
-/// From this rotation on a fold is far from the ends, and its moment is compared as it stands (theory: the plateau is
+/// From this rotation on a fold is far from the ends, and its moment is compared directly (theory: the plateau is
 /// flat to 0.1 N·mm beyond 40°).
 const FAR_FROM_ENDS_DEG: f64 = 40.0;
 
 /// The results and the cost of a run. Every number is computed from the records; `Display` prints them with the
 /// closed-form laws.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Summary {
     /// The tape spring, for the laws that the run is compared with.
     pub spring: Option<TapeSpring>,
@@ -21,7 +22,7 @@ pub struct Summary {
     pub shell: String,
     /// The scene's probes at the last equilibrium.
     pub probes: Vec<Reading>,
-    /// Rotation that the scene asks for, degrees.
+    /// Target of the run: rotation in degrees, or load factor.
     pub target: f64,
     /// Elements of the whole shell for each element of the model: 1, 2 or 4.
     pub symmetric_parts: usize,
@@ -49,7 +50,7 @@ pub struct Summary {
     pub work: Vec<StageWork>,
     /// Where the mesh cannot show what the shell does, a line for each kind of warning.
     pub warnings: Vec<WarningCount>,
-    /// Whether a warning says that the peak is wrong.
+    /// Whether a warning casts doubt on the peak.
     pub peak_in_doubt: bool,
     /// Solves that were rejected.
     pub rejections: usize,
@@ -97,7 +98,7 @@ pub struct FoldMean {
 pub struct WarningCount {
     /// The first one.
     pub first: Warning,
-    /// Load steps in which it was said.
+    /// Number of load steps that reported it.
     pub steps: usize,
 }
 
@@ -346,7 +347,7 @@ fn fold_mean(path: &[PathPoint], snap: Option<&Snap>) -> Option<FoldMean> {
     })
 }
 
-/// Each kind of warning once, in the order in which they were first said.
+/// Each kind of warning once, in the order in which they were first reported.
 fn warnings(records: &[Record]) -> Vec<WarningCount> {
     let mut firsts: Vec<Warning> = Vec::new();
     for warning in records.iter().flat_map(|record| &record.report.warnings) {
@@ -363,7 +364,7 @@ fn warnings(records: &[Record]) -> Vec<WarningCount> {
     firsts.into_iter().map(|first| WarningCount { steps: steps_with(&first), first }).collect()
 }
 
-/// Warnings up to the load step of the first jump: those of the equilibria before it are said there.
+/// Warnings up to the load step of the first jump: those of the equilibria before it are reported there.
 fn before_jump_and_with_it(records: &[Record]) -> impl Iterator<Item = &Warning> {
     let jump = records.iter().find(|record| record.report.jumped).map(|record| record.report.step);
     let in_time = records.iter().take_while(move |record| jump.is_none_or(|jump| record.report.step <= jump));

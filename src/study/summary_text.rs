@@ -58,7 +58,7 @@ impl Summary {
         let Some(last) = self.last else {
             let turned_down = match self.rejections {
                 0 => String::new(),
-                n => format!(": {} turned down", count(n, "solve")),
+                n => format!(": {} rejected", count(n, "solve")),
             };
             return writeln!(f, "no equilibrium yet{turned_down}");
         };
@@ -315,7 +315,7 @@ impl Summary {
         let sum = |number: fn(&super::summary::StageWork) -> usize| self.work.iter().map(number).sum();
         row(f, "all", [self.stages(), sum(|work| work.iterations), sum(|work| work.factorizations)], total)?;
         if self.rejections > 0 {
-            writeln!(f, "  {} turned down on the way", count(self.rejections, "solve"))?;
+            writeln!(f, "  {} rejected on the way", count(self.rejections, "solve"))?;
         }
         Ok(())
     }

@@ -73,7 +73,7 @@ fn bending_strain(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) 
 }
 
 impl SampleGrid {
-    /// A line of points on which direction `direction` stands still.
+    /// A line of points along which the parameter in `direction` is constant.
     fn line(&self, direction: usize, along: usize) -> impl DoubleEndedIterator<Item = [f64; 3]> + ExactSizeIterator {
         Grid::new(self.counts).line(direction, along).map(|point| self.points[point])
     }

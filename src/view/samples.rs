@@ -14,6 +14,7 @@ pub struct SurfaceSamples {
 
 /// Why samples do not make a surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SamplesError {
     /// Fewer than 2 points one way.
     #[error("a surface needs 2 points each way, not {} × {}", counts[0], counts[1])]

@@ -251,8 +251,8 @@ fn an_empty_log_is_begun_anew() {
         let place = Place::new();
         place.write("run.mcap", &whole.bytes[..left]);
         place.foldline("resume run.mcap").ends(1).says(&["no stage is in it. Delete it and start the run again"]);
-        place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["run.mcap holds nothing: begun anew"]);
-        assert_ends_with(&place.log("run.mcap"), whole.chain, "begun anew");
+        place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["run.mcap holds nothing: started again"]);
+        assert_ends_with(&place.log("run.mcap"), whole.chain, "started again");
     }
     let place = Place::new();
     place.write("run.mcap", "a diary");

@@ -24,7 +24,7 @@ fn kill_and_resume(random: &mut Random, trial: usize, took: Duration, hits: &mut
         // The same command from the start and after every kill.
         let command = format!("run small.toml -o run.mcap --resume --quiet --threads {threads}");
         let mut child = place.command(&command).spawn().unwrap();
-        // Every fourth in the first hundredth of a second, where the log comes to be or is copied.
+        // Every fourth in the first hundredth of a second, where the log is created or copied.
         let range = if random.below(4) == 0 { Duration::from_millis(10) } else { took.mul_f64(1.1) };
         let delay = Duration::from_micros(random.below(range.as_micros() as usize) as u64);
         std::thread::sleep(delay);

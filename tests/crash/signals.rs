@@ -63,7 +63,7 @@ fn the_first_signal_ends_after_the_stage_in_hand() {
         let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), stages);
         run.send(signal);
         let (said, reported) = run.end();
-        said.ends(75).says(&["interrupted; go on with: foldline resume run.mcap"]);
+        said.ends(75).says(&["interrupted; continue with: foldline resume run.mcap"]);
         let log = place.log("run.mcap");
         assert_eq!(log.completeness(), Completeness::Unfinished);
         assert_eq!(log.entries().len(), reported);
@@ -89,7 +89,7 @@ fn signals_that_come_again_and_one_that_is_ignored() {
     let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), 5);
     (0..5).for_each(|_| run.send("HUP"));
     let (said, reported) = run.end();
-    said.ends(75).says(&["interrupted; go on with: foldline resume run.mcap"]);
+    said.ends(75).says(&["interrupted; continue with: foldline resume run.mcap"]);
     assert_eq!(place.log("run.mcap").entries().len(), reported);
 
     let whole = Straight::small();

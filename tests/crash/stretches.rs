@@ -226,7 +226,7 @@ fn an_older_scene_is_said_to_be_one() {
     place.write("whole.mcap", &whole.bytes);
     for command in ["inspect log.mcap", "bisect log.mcap whole.mcap", "bisect whole.mcap log.mcap"] {
         let said = place.foldline(command);
-        assert!(said.out.contains("what the run was asked for from stage"), "{command}: {}", said.out);
+        assert!(said.out.contains("what the run was to compute from stage"), "{command}: {}", said.out);
     }
 }
 

@@ -13,7 +13,7 @@ fn end_of_step(log: &Log, step: u64) -> usize {
     log.entries().iter().rposition(|entry| entry.record.report.step == step).unwrap()
 }
 
-/// What is written beside the states may change: every stage stands.
+/// What is written beside the states may change: every stage is kept.
 #[test]
 fn output_alone() {
     let whole = Straight::small();
@@ -21,7 +21,7 @@ fn output_alone() {
     place.write("run.mcap", whole.cut_after(17));
     place.write("small.toml", format!("{SMALL}\n[output]\nsync = \"each-stage\"\n"));
     let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
-    said.says(&["the log holds 17 stages, all good", "output.sync changed", "every stage stands"]);
+    said.says(&["the log holds 17 stages, all good", "output.sync changed", "every stage is kept"]);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "output changed");
 }
 
@@ -35,7 +35,7 @@ fn new_probes_and_a_mesh_history() {
         format!("{SMALL}\n[output]\nmesh_history = true\n\n[[probe]]\nname = \"strain energy\"\nkind = \"energy\"\n");
     place.write("small.toml", &probed);
     let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
-    let stand = format!("every stage stands, and the {} in the log keep what they were written with", whole.stages);
+    let stand = format!("every stage is kept, and the {} in the log keep what they were written with", whole.stages);
     let lines: Vec<&str> = said.err.lines().filter(|line| line.contains(&stand)).collect();
     assert!(
         lines.len() == 2 && lines[0].contains("mesh_history") && lines[1].contains("probe.strain energy changed"),
@@ -98,8 +98,12 @@ fn a_probe_that_is_another_under_the_same_name() {
     assert_eq!(probes(&place, "inspect run.mcap --json --probes"), right);
     assert_ne!(probes(&place, "inspect run.mcap --json"), right, "the log keeps what it has");
     let cells = |table: &str, stage: usize| table.lines().nth(stage + 1).unwrap().split_whitespace().count();
-    let anew = place.foldline("inspect run.mcap --probes").ends(0).out;
-    assert_eq!((cells(&table, 0) + 1, cells(&table, first)), (cells(&anew, 0), cells(&anew, first)), "{table}{anew}");
+    let again = place.foldline("inspect run.mcap --probes").ends(0).out;
+    assert_eq!(
+        (cells(&table, 0) + 1, cells(&table, first)),
+        (cells(&again, 0), cells(&again, first)),
+        "{table}{again}"
+    );
     for place in [&place, &straight] {
         place.foldline("plot run.mcap -o pictures").ends(0);
     }
@@ -128,9 +132,9 @@ fn many_probes_are_a_line_and_a_column_each() {
     ]);
     let steps: Vec<&str> = said.err.lines().filter(|line| line.starts_with("step ")).collect();
     assert!(steps.len() > 3 && steps.iter().all(|line| line.contains("  crown ")), "{}", said.err);
-    let anew = place.foldline("inspect run.mcap --probes").ends(0);
-    assert!(!anew.err.contains("--probes") && !anew.out.contains("--probes"), "{}{}", anew.out, anew.err);
-    let heads = anew.out.lines().find(|line| line.contains("crown mm")).unwrap();
+    let again = place.foldline("inspect run.mcap --probes").ends(0);
+    assert!(!again.err.contains("--probes") && !again.out.contains("--probes"), "{}{}", again.out, again.err);
+    let heads = again.out.lines().find(|line| line.contains("crown mm")).unwrap();
     assert!(["left mm", "right mm", "end mm"].iter().all(|head| heads.contains(head)), "{heads}");
 }
 
@@ -144,8 +148,8 @@ fn names_and_later_loads() {
     let renamed = was.replace("left hinge", "links").replace("[[action]]", "[[action]]\nname = \"pull\"");
     let states = |log: &Log| log.entries().iter().map(|entry| entry.record.commit.state_hash).collect::<Vec<_>>();
     for (what, is, until, kept) in [
-        ("renamed", &renamed, 0.6, "every stage stands"),
-        ("changed beyond", &later, 0.6, "every stage stands"),
+        ("renamed", &renamed, 0.6, "every stage is kept"),
+        ("changed beyond", &later, 0.6, "every stage is kept"),
         ("changed before the last stages", &later, 0.9, "is new"),
     ] {
         let (place, straight) = (Place::new(), Place::new());
@@ -195,7 +199,7 @@ fn a_farther_target() {
         assert_ends_with(&place.log("run.mcap"), whole.chain, &format!("target {near} and then 16"));
         assert_eq!(place.logs().len(), 1 + usize::from(clipped), "{near}: {:?}", place.logs());
         if clipped {
-            assert!(!said.err.contains("every stage stands"), "{near}: stages go, and yet: {}", said.err);
+            assert!(!said.err.contains("every stage is kept"), "{near}: stages go, and yet: {}", said.err);
             said.says(&[
                 "load.rotation_deg changed",
                 "stand,",
@@ -203,7 +207,7 @@ fn a_farther_target() {
             ]);
             assert_eq!(place.logs(), ["run.mcap", "run.mcap.replaced-1"]);
         } else {
-            said.says(&["load.rotation_deg changed", "every stage stands"]);
+            said.says(&["load.rotation_deg changed", "every stage is kept"]);
         }
     }
 }
@@ -240,7 +244,7 @@ fn solver_tolerance() {
         place.write("small.toml", &tighter);
         let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
         if last_step == 0 {
-            said.says(&["solver.tolerance changed", "no complete step stands"]);
+            said.says(&["solver.tolerance changed", "no complete step is kept"]);
         } else {
             let stand =
                 format!("steps 1 to {last_step} stand, {} on is new: the log is mixed from there on", last_step + 1);
@@ -323,7 +327,7 @@ fn another_machine() {
     }
     drop(writer);
     let said = place.foldline("resume run.mcap").ends(0);
-    said.says(&["another machine: written on elsewhere (abacus", "goes on on", "the log records it"]);
+    said.says(&["another machine: written on elsewhere (abacus", "continues on", "the log records it"]);
     let resumed = place.log("run.mcap");
     let machines: Vec<_> =
         resumed.manifests().iter().map(|manifest| (&*manifest.cpu, manifest.first_ordinal)).collect();

@@ -44,13 +44,13 @@ fn a_resume_says_what_it_found() {
     let whole = Straight::small();
     let place = Place::new();
     place.write("cut.mcap", whole.cut_after(9));
-    place.foldline("resume cut.mcap").ends(0).says(&["the log holds 9 stages, all good", "goes on from 6° with"]);
+    place.foldline("resume cut.mcap").ends(0).says(&["the log holds 9 stages, all good", "continues from 6° with"]);
 
     let mut torn = whole.cut_after(9).to_vec();
     torn.extend_from_slice(&whole.bytes[torn.len()..torn.len() + 700]);
     place.write("torn.mcap", &torn);
     let said = place.foldline("resume torn.mcap").ends(0);
-    said.says(&["the log holds 9 stages, all good", "cut off: good up to byte", "goes on from 6° with"]);
+    said.says(&["the log holds 9 stages, all good", "cut off: good up to byte", "continues from 6° with"]);
     assert_ends_with(&place.log("torn.mcap"), whole.chain, "torn");
 
     let mut flipped = whole.bytes.clone();
@@ -111,7 +111,7 @@ fn the_same_scene_again_goes_on_with_its_log() {
     place.foldline("run small.toml -o run.mcap --resume --until 9").ends(0);
     place.foldline("run small.toml -o run.mcap").ends(2).says(&["run.mcap exists and is not overwritten", "resume"]);
     place.write("small.toml", format!("# another comment\n{SMALL}"));
-    place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["goes on from 10° with solve"]);
+    place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["continues from 10° with solve"]);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "run --resume");
 }
 

@@ -63,7 +63,7 @@ fn begun(place: &Place, scene: &Scene, own: &[Arc<dyn TermSource>], count: usize
     path
 }
 
-/// Goes on with a log to the end of its run, as a program that has the terms does.
+/// Continues a log to the end of its run, as a program that has the terms does.
 fn gone_on_with(path: &Path, own: &[Arc<dyn TermSource>]) -> Log {
     let claim = Resume::open(path).unwrap();
     let log = claim.log();

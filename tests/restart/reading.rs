@@ -29,9 +29,9 @@ fn cases() -> Vec<Case> {
         bytes[in_commit(&whole.log(), behind)] ^= 1;
         bytes
     };
-    let unfinished = &["unfinished; go on with: foldline resume"][..];
-    let cut = &["cut off: good up to byte", "unfinished; go on with: foldline resume"][..];
-    let damaged = &["damaged at byte", "behind what is lost", "unfinished; go on with"][..];
+    let unfinished = &["unfinished; continue with: foldline resume"][..];
+    let cut = &["cut off: good up to byte", "unfinished; continue with: foldline resume"][..];
+    let damaged = &["damaged at byte", "behind what is lost", "unfinished; continue with"][..];
     vec![
         Case { name: "whole", bytes: bytes.clone(), stages: all, inspect: &["16°"], verify: 0, recover: 0 },
         Case {
@@ -88,7 +88,7 @@ fn what_each_log_gives() {
     }
 }
 
-/// Garbage behind a log, and a manifest that is lost, are wrong, even where every stage stands.
+/// Garbage behind a log, and a manifest that is lost, are wrong, even where every stage is kept.
 #[test]
 fn whatever_is_wrong_is_an_exit_code() {
     let whole = Straight::small();

@@ -46,8 +46,8 @@ fn every_stage_stays_and_some_states() {
     // What it has no state of any more can be made again, and is not said to be nothing.
     let said = place.foldline("thin thin.mcap -o again.mcap --keep 2,5,every=2,400").ends(0);
     let again = said.says(&[
-        "--keep 2: the log was thinned before, and has no state any more of 1 load step, the first of them 2",
-        "--keep every=2: the log was thinned before, and has no state any more of 4 load steps",
+        "--keep 2: the log was thinned before, and no longer has the state of 1 load step, the first of them 2",
+        "--keep every=2: the log was thinned before, and no longer has the state of 4 load steps",
         "`foldline stability thin.mcap --step 2`",
         "--keep 400 keeps nothing",
     ]);

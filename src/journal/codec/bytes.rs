@@ -11,6 +11,7 @@ pub const CODEC_VERSION: u8 = 7;
 
 /// Why bytes do not decode to a usable state or mesh.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CodecError {
     /// No bytes at all.
     #[error("the message is empty")]
@@ -29,7 +30,7 @@ pub enum CodecError {
         /// Version of its kind.
         expected: u8,
     },
-    /// Not what the encoding says.
+    /// Bytes that the encoding does not allow.
     #[error("the message does not decode")]
     Decode(#[from] bincode::error::DecodeError),
     /// Too large, or a failure of the encoder.
@@ -44,7 +45,7 @@ pub enum CodecError {
         total: usize,
     },
     /// The state names another mesh than the commit.
-    #[error("the state stands on mesh {found}, and its commit says {expected}")]
+    #[error("the state is on mesh {found}, and its commit has {expected}")]
     OtherMesh {
         /// Mesh that the commit names.
         expected: Hash,
@@ -64,7 +65,7 @@ pub enum CodecError {
         found: usize,
     },
     /// Decoded, but not the content that was committed.
-    #[error("the {what} hashes to {found}, and its commit says {expected}")]
+    #[error("the {what} hashes to {found}, and its commit has {expected}")]
     ContentHash {
         /// "state" or "mesh".
         what: &'static str,

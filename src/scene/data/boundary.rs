@@ -81,6 +81,7 @@ pub struct Support {
 /// How a support holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Hold {
     /// Components of the displacement are given (0: held), others are free; slopes are free. Anywhere. The words
     /// `hinged` (all three 0), `fixed` (those that `hold` lists are 0) and `displacement` of a scene all come to this.
@@ -148,6 +149,7 @@ pub struct Action {
 /// What acts, at a factor of 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum ActionKind {
     /// A dead force on a point.
     Force {
@@ -192,7 +194,7 @@ pub enum ActionKind {
         /// undeformed shell (dead).
         follower: bool,
     },
-    /// A change of temperature, the same in the whole shell. The material says how much it expands.
+    /// A change of temperature, the same in the whole shell. The material states how much it expands.
     Temperature {
         /// Kelvin.
         change_k: f64,

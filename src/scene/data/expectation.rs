@@ -1,4 +1,4 @@
-//! What a scene says of its own end, for suites that run scenes to see whether they still end so.
+//! The end that a scene expects of its run, for suites that run scenes to see whether they still end so.
 
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +47,7 @@ impl Expectation {
 /// The ways for a run to end that a scene can expect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum ExpectedOutcome {
     /// At its target.
     #[default]

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The undeformed mid-surface of the shell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Geometry {
     /// Open circular cylinder: axis along x, apex of the arc up (+z), edges down. u runs along the axis, v along the
     /// arc towards +y; the normal points outwards.
@@ -91,7 +92,7 @@ impl Geometry {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Seam {
-    /// Closed: displacement and slope go on across it.
+    /// Closed: displacement and slope continue across it.
     Smooth,
     /// Slit: both lips are free edges.
     Free,

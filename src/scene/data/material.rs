@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The constitutive law of the shell and its thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Material {
     /// St. Venant–Kirchhoff, isotropic.
     Isotropic {

@@ -78,6 +78,7 @@ pub struct MeshSpec {
 /// The integration rule on an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Quadrature {
     /// Gauss–Legendre with degree + 1 points each way.
     Full,
@@ -200,7 +201,7 @@ pub struct LoadSteps {
     pub longest_increment: Option<f64>,
     /// Increments are not cut below this; then the run stops with all good steps kept.
     pub least_increment: f64,
-    /// A jump is located to this load factor before the run goes on beyond it.
+    /// A jump is located to this load factor before the run continues beyond it.
     pub snap_tolerance: f64,
 }
 
@@ -252,7 +253,7 @@ pub struct Solver {
     pub max_iterations: usize,
     /// [`Load::EndRotation`]: increments are not cut below this; then the run stops with all good steps kept (degrees).
     pub least_increment_deg: Option<f64>,
-    /// [`Load::EndRotation`]: a jump is located to this rotation before the run goes on beyond it (degrees).
+    /// [`Load::EndRotation`]: a jump is located to this rotation before the run continues beyond it (degrees).
     pub snap_tolerance_deg: Option<f64>,
 }
 
@@ -266,7 +267,7 @@ pub struct ArcLength {
     pub longest_step: f64,
     /// No step is cut below this; then the run stops with all good steps kept.
     pub shortest_step: f64,
-    /// Load steps after which the run stops, wherever it stands: a path may close in itself.
+    /// Load steps after which the run stops, wherever it is: a path may close in itself.
     pub most_steps: usize,
 }
 
@@ -351,7 +352,7 @@ mod one_or_pair {
         if pair[0] == pair[1] { pair[0].serialize(serializer) } else { pair.serialize(serializer) }
     }
 
-    /// Reads one number, which stands for two equal ones, or a pair.
+    /// Reads one number, which means two equal ones, or a pair.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {
         Ok(match OneOrPair::deserialize(deserializer)? {
             OneOrPair::One(both) => [both; 2],
@@ -363,6 +364,7 @@ mod one_or_pair {
 /// A stage of the pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Stage {
     /// Move the load on by one increment and find equilibrium.
     Solve,

@@ -17,6 +17,7 @@ pub struct Probe {
 /// The quantity that a probe measures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum ProbeKind {
     /// Displacement of a point, mm.
     Displacement {

@@ -54,7 +54,7 @@ impl Explanation {
         self
     }
 
-    /// Sets the text that stands for the explanation where nothing is marked.
+    /// Sets a note that is shown where there is no second marked text.
     pub fn alone(mut self, text: impl Into<String>) -> Self {
         self.alone = text.into();
         self

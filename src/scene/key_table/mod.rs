@@ -1,4 +1,4 @@
-//! Every key of a scene file: its type, unit, limits, default, meaning and reach stand here alone.
+//! Every key of a scene file: its type, unit, limits, default, meaning and reach are given here alone.
 //!
 //! | file | tables |
 //! |---|---|

@@ -124,7 +124,7 @@ pub(super) static ACTION: &[Key] = &[
         choice("pressure", "on the whole surface, positive along n: on a cylinder or a sphere it acts from within"),
         choice(
             "temperature",
-            "a change of temperature of the whole shell, which expands as its material says; layers that differ curve it. \
+            "a change of temperature of the whole shell, which expands as its material states; layers that differ curve it. \
              Sections keep their angles: expansion through the thickness is taken to be that along the surface",
         ),
         choice(
@@ -133,7 +133,7 @@ pub(super) static ACTION: &[Key] = &[
              With no other action it comes to rest there without stress",
         ),
     ]), "\"line-force\"")
-        .means("What acts. Forces act on the model as it is: on half a shell put half the force that stands on its cut.")
+        .means("What acts. Forces act on the model as it is: on half a shell put half the force that acts on its cut.")
         .also_called(TYPES),
     action("on", Kind::Region(&[Form::Point]), "[1.0, 0.5]")
         .of(&["force"])
@@ -295,7 +295,7 @@ const FREE: &str = "this component is free";
 const COMPONENTS: &str = "the force has components";
 const FORCE: &str = "Force in x, y and z; or one number and `along`, a direction that the undeformed surface has.";
 const HISTORY: &str = "Rows of [load factor, factor], straight in between, constant beyond the last. By arc length a history that \
-                       ends, or stands still, ends the path there; below its first point it stands still too.";
+                       ends, or is constant, ends the path there; below its first point it is constant too.";
 
 const LABELS: &[&str] = &["id", "label", "title"];
 const TYPES: &[&str] = &["type"];

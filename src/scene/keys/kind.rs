@@ -106,9 +106,9 @@ impl Form {
 /// One of the words that a key accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// As it stands in the scene, without the quotes.
+    /// The word as written in the scene, without the quotes.
     pub word: &'static str,
-    /// What it chooses; empty where the word says it.
+    /// The meaning of the choice; empty where the word is enough.
     pub meaning: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! What can be said about a key of a scene file. The keys themselves stand in `key_table`; reading, checking,
+//! The description of a key of a scene file. The keys themselves are in `key_table`; reading, checking,
 //! suggesting, explaining, comparing, writing, the help text and the schema all draw on that one table.
 //!
 //! | file | what |
@@ -67,7 +67,7 @@ impl Section {
 /// A key of a scene file, and all that is known about it.
 #[derive(Debug, PartialEq)]
 pub struct Key {
-    /// The table in which it stands.
+    /// The table of the key.
     pub section: &'static str,
     /// The kinds of that table that have it; all where it is empty.
     pub kinds: &'static [&'static str],
@@ -83,13 +83,13 @@ pub struct Key {
     pub reach: Reach,
     /// What it means.
     pub meaning: &'static str,
-    /// A value as it would stand in a scene file.
+    /// A value as written in a scene file.
     pub example: &'static str,
     /// What else people call it: symbols, and names in other programs; in lower case.
     pub aliases: &'static [&'static str],
 }
 
-/// Keys as the key table writes them down: required, reaching everything and of every kind of table, unless it says
+/// Keys as the key table writes them down: required, reaching everything and of every kind of table, unless it states
 /// otherwise.
 impl Key {
     /// A key whose unit is the ending of its name.
@@ -186,11 +186,11 @@ pub enum Reach {
 pub enum Presence {
     /// It must be there.
     Required,
-    /// A default, as it would stand in a scene.
+    /// A default, as written in a scene.
     Default(&'static str),
     /// A default that follows from other keys, in words.
     Follows(&'static str),
-    /// It stands in for another key of the same table; at most one of the two is given.
+    /// It replaces another key of the same table; at most one of the two is given.
     InsteadOf(&'static str),
     /// It must be there unless another key of the same table is.
     Unless(&'static str),

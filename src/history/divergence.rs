@@ -8,7 +8,7 @@ use crate::record::Commit;
 
 /// The first stage at which two runs differ, and how its states compare.
 #[derive(Clone, Debug)]
-pub struct Parting {
+pub struct Divergence {
     /// Ordinal of the stage.
     pub index: usize,
     /// Stages looked at.
@@ -25,8 +25,8 @@ pub struct Parting {
 /// parted do not meet again.
 ///
 /// # Errors
-/// Where a state cannot be had.
-pub fn find_parting(a: &AskedLog, b: &AskedLog) -> Result<Option<Parting>, RemakeError> {
+/// Where a state is not available.
+pub fn find_divergence(a: &AskedLog, b: &AskedLog) -> Result<Option<Divergence>, RemakeError> {
     let len = a.commits().min(b.commits());
     if len == 0 {
         return Ok(None);
@@ -50,5 +50,5 @@ pub fn find_parting(a: &AskedLog, b: &AskedLog) -> Result<Option<Parting>, Remak
     }
     let [x, y] = [a.part(index..index + 1)?, b.part(index..index + 1)?];
     let comparison = compare(&States::of(&x).at(index)?, &States::of(&y).at(index)?);
-    Ok(Some(Parting { index, looks, comparison }))
+    Ok(Some(Divergence { index, looks, comparison }))
 }
