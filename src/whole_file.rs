@@ -1,7 +1,7 @@
 //! Files that are whole or not there, and never in another's place.
 //!
 //! A file grows without a name where the system has such files (`O_TMPFILE`, Linux): a process that is killed leaves
-//! nothing of it. Elsewhere it grows under a name that nobody can guess. It comes to its name in one step, by a link,
+//! nothing of it. Elsewhere it grows under a name that nobody can guess. It gets its name in one step, by a link,
 //! which the system refuses where anything has that name already.
 
 use std::fs::{File, Permissions};

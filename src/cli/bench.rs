@@ -1,4 +1,4 @@
-//! `foldline bench`: how fast the kernels and whole runs are, beside what the machine can do.
+//! `foldline bench`: how fast the kernels and whole runs are, compared with what the machine can do.
 
 use std::path::PathBuf;
 

@@ -6,7 +6,7 @@
 //! | file | what |
 //! |---|---|
 //! | `run`, `resume` | a run from its start, and from where it stopped |
-//! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | what a log is asked |
+//! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `extremes` | suites, and how fast and exact runs are |
 //! | `help` | help on subcommands and topics |

@@ -42,7 +42,7 @@ impl Arguments {
         // Where the mended log does not read as it should, the good part of the log itself is what is kept.
         if made > 0 && matches!(outcome, RecoverOutcome::Lossless { .. }) {
             eprint(&format!(
-                "made again what was lost, {}: the stages behind follow on it; but how long it took is not known any more",
+                "made again what was lost, {}: the stages behind follow on it; but how long it took is no longer known",
                 count(made, "stage")
             ));
         }

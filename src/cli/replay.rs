@@ -178,7 +178,7 @@ fn line(verdict: &Verdict, replayed: &Replayed, ordinal: u64) -> String {
     format!("{ordinal:>5}  step {} {}{iterations}: {what}\n", report.step, report.stage)
 }
 
-/// What differs beside the worst field, by less.
+/// The fields that differ less than the worst one.
 fn further(comparison: &Comparison) -> String {
     let Comparison::Numbers(differences) = comparison else { return String::new() };
     let further: Vec<String> =

@@ -20,7 +20,7 @@ use crate::scene::Scene;
 use crate::study::Summary;
 use crate::view::MeshHistory;
 
-/// What a run is given beside its scene; none of it changes a state, except where the run stops.
+/// What a run is given besides its scene; none of it changes a state, except where the run stops.
 pub(super) struct RunOptions {
     /// Where the log goes.
     pub(super) log: PathBuf,

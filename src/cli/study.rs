@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::study::{AccuracyError, AccuracyRow, is_one_structure, measure};
 
 /// Run scenes with one setting after another, and hold each against a reference: the error of its moment (or first probe)
-/// before and after the first snap, beside its run time
+/// before and after the first snap, with its run time
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// Scenes (TOML)

@@ -1,4 +1,4 @@
-//! A damaged log whose lost stages are run again, so that the whole ones behind them are lost no more.
+//! A damaged log whose lost stages are run again, so that the whole ones behind them are no longer lost.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What a log can be asked: continue it, run its stages again, find where two runs part, where a run jumped.
+//! What can be done with a log: continue it, run its stages again, find where two runs part, where a run jumped.
 //!
 //! | file | what |
 //! |---|---|
@@ -11,7 +11,7 @@
 //! | `bisection`, `condition` | what to look at next; conditions on reports |
 //! | `snap`, `stability` | where a run jumped; how stable its states are |
 //! | `probes` | probes read after the run |
-//! | `long` | what a long log is asked through its index |
+//! | `long` | questions to a long log that its index answers |
 
 mod bisection;
 mod compare;

@@ -208,7 +208,7 @@ fn complete_steps(log: &Log, keep: usize, scene: &Scene) -> Result<usize, StateE
 }
 
 /// Returns the scene of a log's last stretch where the log has lost it and the scene of `stages`, which with their
-/// terms decides the same states, takes its place. Its target is not known any more; the attempted parameters show
+/// terms decides the same states, takes its place. Its target is no longer known; the attempted parameters show
 /// which steps it may have cut short.
 pub fn restored_scene(log: &Log, stages: &Stages) -> Option<Scene> {
     let last = log.last_commit()?;

@@ -62,7 +62,7 @@ impl AskedLog {
     /// Reads the part of the log with these stages and the one before them, so that they can be run again.
     ///
     /// # Errors
-    /// Where there are none such, or they are not what they were.
+    /// Where there are no such stages, or they have changed.
     pub fn part(&self, stages: Range<usize>) -> Result<Arc<Log>, LongLogError> {
         match self {
             Self::Whole(log) => Ok(log.clone()),

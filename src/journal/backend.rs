@@ -73,7 +73,7 @@ struct Cut {
     found: u64,
 }
 
-/// How a file comes to its name.
+/// How a file gets its name.
 #[derive(Debug)]
 enum Coming {
     /// It has its name.

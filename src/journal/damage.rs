@@ -141,7 +141,7 @@ pub enum Damage {
     MessageCount {
         /// Messages that the commit names.
         expected: usize,
-        /// Messages beside it.
+        /// The other messages.
         found: usize,
     },
     /// A message that is not the one its commit names.

@@ -64,7 +64,7 @@ impl IndexKeeper {
     }
 }
 
-/// An empty file for an index; never in the place of a file that is none.
+/// Creates an empty file for an index; never in place of a file that is not an index.
 fn begin(path: &Path) -> Option<File> {
     if path.symlink_metadata().is_ok() {
         if !is_index(path) {

@@ -1,7 +1,7 @@
 //! The lease on a log: a small file that names the process that may write it.
 //!
 //! It holds a random token, the process in words, and what distinguishes this process from all others of the machine: its boot,
-//! its name space, its number and when it started. Leases come to be whole, by a link or by renaming, so that no reader
+//! its name space, its number and when it started. Leases appear whole, by a link or by renaming, so that no reader
 //! meets half of one, and none is ever written through a link of that name.
 
 use std::fs::{self, File, OpenOptions};
@@ -26,7 +26,7 @@ pub(super) const LONGEST: u64 = 4096;
 /// Hexadecimal digits of a token.
 const TOKEN: usize = 32;
 
-/// A rival that takes longer to clear a lease away was killed over it.
+/// A process that takes longer to clear a lease away was killed while doing so.
 const LONGEST_CLEARING: Duration = Duration::from_secs(5);
 
 /// Between two looks whether it is through.
@@ -95,7 +95,7 @@ impl Lease {
     }
 
     /// Takes the lease of a process that is gone out of the way. One process at a time does so, and looks again before: what a
-    /// rival may have put there meanwhile stays.
+    /// other process may have put there meanwhile stays.
     fn clear(path: &Path, gone: &Holder) -> io::Result<()> {
         let clearing = beside(path, ".clearing");
         let began = Instant::now();

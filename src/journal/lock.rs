@@ -55,7 +55,7 @@ pub enum LockError {
         /// Who has the lease now.
         holder: String,
     },
-    /// The lease is not there any more.
+    /// The lease is gone.
     #[error(
         "{lease} is gone, which shows that this run may write {log}: its folder was moved or removed, or another run took the log over \
          and is done. This run stops; put the folder back, then `foldline resume {log}`"
@@ -66,7 +66,7 @@ pub enum LockError {
         /// The lease.
         lease: String,
     },
-    /// The lease cannot be read any more.
+    /// The lease can no longer be read.
     #[error(
         "{lease} can no longer be read, which shows whether this run may still write {log}: this run stops. When it can be read \
          again, `foldline resume {log}`"
@@ -118,7 +118,7 @@ impl LogLock {
     /// Acquires the right to write `log`, which need not exist.
     ///
     /// # Errors
-    /// Where another process has it, or the files beside the log cannot be made.
+    /// Where another process has it, or the files next to the log cannot be made.
     pub fn take(log: &Path) -> Result<Self, LockError> {
         let (lock_path, lease_path) = (beside(log, ".lock"), beside(log, ".lease"));
         let name = || log.display().to_string();

@@ -17,7 +17,7 @@ pub enum MendError {
     /// They have no place in a log.
     #[error(transparent)]
     Encode(#[from] EncodeError),
-    /// What comes of it is no log.
+    /// The result is not a log.
     #[error(transparent)]
     Read(#[from] ReadError),
 }

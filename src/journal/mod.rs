@@ -41,7 +41,7 @@
 //!
 //! # Long logs
 //!
-//! From some four thousand commits on, `LOG.index` lies beside a log: where its commits are and the numbers of their
+//! From some four thousand commits on, `LOG.index` lies next to a log: where its commits are and the numbers of their
 //! reports, written as the run continues. [`LongLog`] and [`Resume`] read the end of such a log alone, and through the index
 //! what they are asked for, and check the seals and hashes of what they read. The index is a cache: without it, or where it
 //! does not fit, the log is read through, in parts that fit in memory, and the index is written again. [`verify()`] reads all

@@ -10,7 +10,7 @@
 //! to `LOG.new`, which is forced to disk while the run already continues, and takes the log's place before the first new commit
 //! is added. A process that has lost the log only ever writes to the old file then.
 //!
-//! What a log loses when it is continued is kept beside it as `LOG.dropped-N` wherever it might still be worth something:
+//! What a log loses when it is continued is kept next to it as `LOG.dropped-N` wherever it might still be worth something:
 //! after damage always, after a cut only if whole commits lie behind it. The torn rest of the stage that was in flight is worth
 //! nothing, and goes.
 
@@ -69,7 +69,7 @@ pub enum ResumeError {
     Copy {
         /// The log.
         log: String,
-        /// The copy, or the part that is kept beside it.
+        /// The copy, or the part that is kept next to it.
         path: String,
         /// The error of the operating system.
         #[source]

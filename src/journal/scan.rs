@@ -27,8 +27,8 @@ const PARSED_IN_VAIN: usize = 4;
 /// Largest header, bytes: it names a profile and a program.
 const HEADER_BYTES_LIMIT: usize = 4 << 10;
 
-/// Reading under way. Places in `entries`, `parts`, `meshes` and `fields` count from the first byte that is walked
-/// over, those in the report from the start of the file.
+/// The state of a scan. Places in `entries`, `parts`, `meshes` and `fields` count from the first byte that is scanned,
+/// those in the report from the start of the file.
 #[derive(Default)]
 pub(super) struct Scan {
     /// Place of the first byte in the file.
@@ -56,7 +56,7 @@ pub(super) struct Scan {
     pub newer_format: Option<u32>,
     /// Where the zeros begin that the bytes end with.
     content_end: usize,
-    /// Bytes of records that were parsed in vain.
+    /// Bytes of records that were parsed without success.
     in_vain: usize,
     /// Bytes of the manifests that are kept.
     manifests_bytes: usize,

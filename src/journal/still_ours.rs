@@ -19,7 +19,7 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogChanged {
-    /// It has no name any more.
+    /// It was removed.
     #[error("was removed while it was written, and its {} with it", stages(*.commits))]
     Removed {
         /// Stages that were in it.
@@ -47,7 +47,7 @@ pub enum LogChanged {
         expected: u64,
     },
     /// It cannot be found out.
-    #[error("cannot be looked at any more")]
+    #[error("can no longer be accessed")]
     Unknown {
         /// The error of the operating system.
         #[source]
@@ -59,7 +59,7 @@ fn stages(commits: u64) -> String {
     if commits == 1 { "1 stage".to_owned() } else { format!("{commits} stages") }
 }
 
-/// Looks whether `path` still leads to `file`, which had `length` bytes when it was last written, and `commits` stages.
+/// Checks that `path` still leads to `file`, which had `length` bytes when it was last written, and `commits` stages.
 pub(super) fn still_ours(file: &File, path: &Path, length: u64, commits: u64) -> Result<(), LogChanged> {
     let unknown = |source| LogChanged::Unknown { source };
     let ours = patiently(|| file.metadata()).map_err(unknown)?;

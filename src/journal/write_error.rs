@@ -58,12 +58,12 @@ pub enum WriteError {
         #[source]
         source: io::Error,
     },
-    /// The log is not the file any more that was written, or not as it was left.
+    /// The log is no longer the file that was written, or not as it was left.
     #[error("{log} {estranged}. This run stops, and adds nothing to it")]
     LogChanged {
         /// The log.
         log: String,
-        /// What became of it.
+        /// What happened to it.
         estranged: LogChanged,
     },
     /// The disk is full.

@@ -184,7 +184,7 @@ impl JournalWriter {
     /// hash that the commit names.
     ///
     /// # Errors
-    /// Where it could not be kept. The log is good up to the last commit, and takes no more.
+    /// Where it could not be written. The log is good up to the last commit, and accepts no more stages.
     pub fn commit(&mut self, state: &State, record: &Record) -> Result<(), WriteError> {
         let found = state.hash_on(self.mesh_hash.of(&state.mesh));
         self.keep(state, record, found)
@@ -302,7 +302,7 @@ impl JournalWriter {
         self.backend.check(self.length, self.commits()).map_err(estranged)
     }
 
-    /// Takes off what a failed append left behind, which would only be dropped by the next reader; but nothing of a rival
+    /// Takes off what a failed append left behind, which would only be dropped by the next reader; but nothing of another process
     /// that has come in meanwhile.
     fn take_back(&mut self, appended: u64) {
         let ours = match self.check() {

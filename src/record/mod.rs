@@ -1,4 +1,4 @@
-//! What is kept of a run: every stage with its place in the chain of hashes, and who keeps it.
+//! What is kept of a run: every stage with its place in the chain of hashes, and what keeps it.
 //!
 //! | file | what |
 //! |---|---|

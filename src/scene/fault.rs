@@ -11,7 +11,7 @@ pub(super) struct Fault {
     /// The table that holds it, where there may be several of its name.
     pub item: Option<String>,
     pub place: TextSpan,
-    /// A second place that the problem hangs on.
+    /// A second place that is part of the problem.
     pub also: Option<TextSpan>,
     /// Replacements that mend it.
     pub edits: Vec<(TextSpan, String)>,

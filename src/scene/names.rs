@@ -99,7 +99,7 @@ impl Names<'_, '_> {
         self.section.keys_of(self.kind)
     }
 
-    /// Whether a key is given beside an entry. A setting takes the place of what is given; a line of the file does not.
+    /// Whether a key is given together with an entry. A setting takes the place of what is given; a line of the file does not.
     fn is_given(&self, key: &Key, entry: &Entry<'_>) -> bool {
         entry.place.source == 0 && self.table.entry(key.name).is_some()
     }

@@ -36,7 +36,7 @@ pub(super) fn check(tables: &Tables, supports: &[Support], actions: &[Action]) -
         if let Some((gap, other)) = gaps.next() {
             return Err(site.table.wrong_at(
                 "on",
-                format!("{} lies {} of a side beside {other}, which is almost the same place", site.name, significant(gap, 2)),
+                format!("{} lies {} of a side from {other}, which is almost the same place", site.name, significant(gap, 2)),
                 format!("no element resolves what is between them: write the same place for both, or put them {APART} of the side apart"),
             ));
         }

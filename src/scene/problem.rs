@@ -110,7 +110,7 @@ pub enum Problem {
     UnknownKey {
         /// The table.
         section: &'static Section,
-        /// Its kind, where its keys hang on that and it is known.
+        /// Its kind, where its keys depend on that and it is known.
         kind: Option<&'static str>,
         /// What was found.
         found: String,
@@ -317,7 +317,7 @@ impl Problem {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StageOrderProblem {
-    /// There is none.
+    /// The list is empty.
     Empty,
     /// No stage has this name.
     Unknown {

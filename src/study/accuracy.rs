@@ -1,4 +1,4 @@
-//! Error against run time: a run beside a reference run of the same structure.
+//! Error against run time: a run compared with a reference run of the same structure.
 //!
 //! Both are compared at the load steps that end at the same parameter, before their first jumps and behind them: the largest
 //! difference, as a share of the largest value of the reference on that side. Where one has jumped and the other has not they

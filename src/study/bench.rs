@@ -1,4 +1,4 @@
-//! How fast the kernels are, beside what the machine can do: each figure also as a fraction of a limit measured in the
+//! How fast the kernels are, compared with what the machine can do: each figure also as a fraction of a limit measured in the
 //! same run.
 //!
 //! Limits: the floating-point rate of a dense product (faer), for the assembly and the factorization; the rate of a

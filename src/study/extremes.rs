@@ -209,7 +209,7 @@ fn stands(scene: &Scene, state: &State, record: &Record, row: &mut ExtremeRow) {
     }
 }
 
-/// Numbers that are none, and those that say that the result is worth nothing.
+/// Results that are not numbers, and results that are worth nothing.
 fn judge_numbers(scene: &Scene, done: &Done, row: &mut ExtremeRow) {
     for (state, record) in &done.stages {
         let report = &record.report;

@@ -29,7 +29,7 @@ pub enum ExtremeFault {
         /// The first stage that differs.
         ordinal: u64,
     },
-    /// The last equilibrium is none when it is run again from its state.
+    /// The last equilibrium is not found again from its own state.
     #[error("the equilibrium of step {step} is not found again from its own state")]
     NotFoundAgain {
         /// Load step.
@@ -43,7 +43,7 @@ pub enum ExtremeFault {
         /// The stage.
         stage: Stage,
     },
-    /// An equilibrium is none.
+    /// The residual of an equilibrium is too large.
     #[error("an equilibrium has a residual of {residual:.1e} of the forces; solver.tolerance is {tolerance:e}")]
     OutOfBalance {
         /// |residual| over the forces that it is compared with.

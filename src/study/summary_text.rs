@@ -321,7 +321,7 @@ impl Summary {
     }
 }
 
-/// One finding beside the law that it is compared with.
+/// One result, with the law that it is compared with.
 struct Line<'a> {
     name: &'a str,
     measured: String,

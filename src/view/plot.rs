@@ -1,4 +1,4 @@
-//! The moment–rotation curve of a run beside Wuest's law, with the size of the mesh below it.
+//! The moment–rotation curve of a run with Wuest's law, with the size of the mesh below it.
 
 use plotters::chart::{ChartBuilder, ChartContext, SeriesLabelPosition};
 use plotters::coord::Shift;

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use foldline::journal::{Completeness, Log, ReadError};
 
 use crate::flips::{Random, seed};
-use crate::program::{Place, Straight, assert_ends_with};
+use crate::program::{Sandbox, Straight, assert_ends_with};
 
 /// What the default test may take.
 const BUDGET: Duration = Duration::from_secs(30);
@@ -17,7 +17,7 @@ const BUDGET: Duration = Duration::from_secs(30);
 fn kill_and_resume(random: &mut Random, trial: usize, took: Duration, hits: &mut Vec<usize>) -> usize {
     let whole = Straight::small();
     let straight = whole.log();
-    let place = Place::new();
+    let place = Sandbox::new();
     let mut kills = 0;
     loop {
         let threads = 1 + random.below(2);
@@ -67,7 +67,7 @@ fn killed_at_random_instants() {
     let wanted = std::env::var("FOLDLINE_KILLS").ok().map(|text| text.parse::<usize>().unwrap());
     let began = Instant::now();
     Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let start = Instant::now();
     place.foldline("run small.toml -o run.mcap --quiet").ends(0);
     let took = start.elapsed();

@@ -9,7 +9,7 @@ use foldline::record::Outcome;
 use foldline::scene::Stage;
 use foldline::state::Course;
 
-use crate::program::{Place, Straight, assert_resumes_from_every_cut, scene};
+use crate::program::{Sandbox, Straight, assert_resumes_from_every_cut, scene};
 
 /// A roof through its limit points, refined on the way.
 const ROOF: &str = include_str!("path.toml");
@@ -97,7 +97,7 @@ fn every_stage_comes_out_again() {
             let reports = [&replayed.report, &log.entries()[index].record.report];
             assert_eq!(format!("{:?}", reports[0]), format!("{:?}", reports[1]), "stage {index}");
         }
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", &whole.bytes);
         let said = place.foldline("replay run.mcap --from-scratch --threads 1").ends(0);
         assert_eq!(said.out.lines().filter(|line| line.ends_with("bit-identical")).count(), whole.stages);
@@ -148,7 +148,7 @@ fn another_longest_step() {
     let bisecting =
         stages_that(&log, |index| log.entries()[index].record.report.outcome == Outcome::RejectedCriticalPoint);
     for stages in [2, 3, bisecting[1] + 1] {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", whole.cut_after(stages));
         place.write("path.toml", &shorter);
         let said = place.foldline("run path.toml -o run.mcap --resume").ends(0);
@@ -175,7 +175,7 @@ fn another_longest_step() {
 fn from_load_control_to_arc_length() {
     let by_load = with(ROOF, &[("[continuation]\ncontrol = \"arc-length\"\nlongest_step = 8.0\n", "")]);
     for until in [0.4, 0.9] {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("path.toml", &by_load);
         place.foldline(&format!("run path.toml -o run.mcap --until {until}")).ends(0);
         let before = place.log("run.mcap");
@@ -201,7 +201,7 @@ fn from_load_control_to_arc_length() {
 #[test]
 fn most_steps() {
     let whole = roof();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("path.toml", with(ROOF, &[("longest_step = 8.0", "longest_step = 8.0\nmost_steps = 9")]));
     let said = place.foldline("run path.toml -o run.mcap --quiet").ends(1);
     said.says(&["load factor 1.6", "continuation.most_steps = 9", "raise most_steps", "--resume", "keeps every stage"]);

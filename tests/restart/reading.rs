@@ -2,7 +2,7 @@
 
 use foldline::journal::{Completeness, Log};
 
-use crate::program::{Place, Straight, assert_ends_with};
+use crate::program::{Sandbox, Straight, assert_ends_with};
 
 /// What each kind of log gives.
 struct Case {
@@ -52,7 +52,7 @@ fn cases() -> Vec<Case> {
 fn what_each_log_gives() {
     let whole = Straight::small();
     for Case { name, bytes, stages, inspect, verify, recover } in cases() {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", &bytes);
         let said = place.foldline("inspect run.mcap").ends(0);
         said.says(inspect);
@@ -92,7 +92,7 @@ fn what_each_log_gives() {
 #[test]
 fn whatever_is_wrong_is_an_exit_code() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     place.foldline("verify run.mcap").ends(0).says(&["run.mcap: good"]);
     place.write("run.mcap", [&whole.bytes[..], b"garbage"].concat());
@@ -108,7 +108,7 @@ fn whatever_is_wrong_is_an_exit_code() {
 #[test]
 fn all_findings_are_listed() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let mut bytes = whole.bytes.clone();
     for behind in [12, 30] {
         bytes[in_commit(&whole.log(), behind)] ^= 1;
@@ -123,7 +123,7 @@ fn all_findings_are_listed() {
 
 #[test]
 fn what_is_no_log() {
-    let place = Place::new();
+    let place = Sandbox::new();
     for command in ["verify none.mcap", "inspect none.mcap", "resume none.mcap", "replay none.mcap --step 1"] {
         place.foldline(command).ends(2).says(&["cannot read none.mcap", "No such file"]);
     }

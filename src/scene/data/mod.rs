@@ -56,7 +56,7 @@ pub struct Scene {
     pub continuation: Option<ArcLength>,
     /// The stages of one load step, in order.
     pub pipeline: Vec<Stage>,
-    /// What is written beside the states; never changes a state.
+    /// Which outputs are written besides the states; they never change a state.
     pub output: Output,
     /// How the run is to end; nothing but a test of the scene looks at it.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -39,7 +39,7 @@ pub static SECTIONS: &[Section] = &[
     one("solver", false, "Tolerances and limits of the equilibrium solver.", run::SOLVER),
     one("continuation", false, "How the path of equilibria is followed.", run::CONTINUATION),
     one("pipeline", false, "The stages of one load step.", run::PIPELINE),
-    one("output", false, "What is written beside the states; never changes a state.", output::OUTPUT),
+    one("output", false, "Which outputs are written besides the states; they never change a state.", output::OUTPUT),
     one("expect", false, "How the run is to end; `foldline extremes` alone looks at it.", output::EXPECT),
 ];
 

@@ -57,7 +57,9 @@ impl Kind {
             Kind::Numbers(Length::Exactly(length), limits) => format!("a list of {length} numbers{}", each(limits)),
             Kind::Numbers(Length::Any, limits) => format!("a list of numbers{}", each(limits)),
             Kind::Rows(length) => format!("a list of lists of {length} numbers{}", within(&Limits::ANY)),
-            Kind::Vector => format!("a list of 3 numbers{0}, or one number{0} beside `along`", within(&Limits::ANY)),
+            Kind::Vector => {
+                format!("a list of 3 numbers{0}, or one number{0} together with `along`", within(&Limits::ANY))
+            }
             Kind::Count(limits) => format!("a whole number {limits}"),
             Kind::Pair(limits) => format!("a whole number {limits}, or a pair of them"),
             Kind::Region(forms) => join_or(&forms.iter().map(|form| form.words().to_owned()).collect::<Vec<_>>()),

@@ -169,7 +169,7 @@ impl Key {
 /// How much of a run a change of the key affects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reach {
-    /// No state changes: what is written beside the states, and where the run stops.
+    /// No state changes: what is written besides the states, and where the run stops.
     Free,
     /// The steps taken change, not the problem solved: a state of one run can start the other.
     Steps,
