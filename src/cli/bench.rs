@@ -45,7 +45,7 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// Times and prints.
+    /// Times the kernels and whole runs and prints the figures.
     pub(super) fn run(self) -> Result<(), Failure> {
         use_threads(self.threads.map(usize::from))?;
         let mut scenes: Vec<(String, Scene)> = Vec::new();

@@ -109,7 +109,7 @@ pub(super) enum Failure {
 }
 
 impl Failure {
-    /// As in [`EXIT_CODES`].
+    /// The exit code, as listed in [`EXIT_CODES`].
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Failure::Read { .. }

@@ -70,7 +70,7 @@ impl Arguments {
 }
 
 impl Job {
-    /// Runs, and sums up.
+    /// Runs the scene and prints the summary.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Job { file, scene: SceneFile { scene, text }, options, resume } = self;
         let manifest = Manifest::here(&file, &text, options.use_threads()?);

@@ -49,7 +49,7 @@ const OPERATORS: [(&str, Operator); 6] = [
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConditionError {
-    /// No operator.
+    /// A term without an operator.
     #[error(
         "`{term}` compares nothing; write FIELD OPERATOR VALUE with one of < <= > >= == !=, such as moment_n_mm < 100"
     )]
@@ -57,7 +57,7 @@ pub enum ConditionError {
         /// The part of the condition.
         term: String,
     },
-    /// No such field.
+    /// The report has no such field.
     #[error("reports have no field `{field}`; they have {}", known.join(", "))]
     NoSuchField {
         /// What was written.
@@ -72,7 +72,7 @@ pub enum ConditionError {
         field: String,
         /// What was written.
         value: String,
-        /// What it can be.
+        /// The values that the field can have.
         known: Vec<String>,
     },
     /// A word compared by size, or with a field that holds numbers.

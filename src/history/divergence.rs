@@ -11,9 +11,9 @@ use crate::record::Commit;
 pub struct Divergence {
     /// Ordinal of the stage.
     pub index: usize,
-    /// Stages looked at.
+    /// Number of stages that were compared to find it.
     pub looks: usize,
-    /// The two states.
+    /// How the two states differ.
     pub comparison: Comparison,
 }
 

@@ -46,7 +46,7 @@ pub fn read_probes(log: &Log, stages: &mut Stages, records: &mut [Record]) -> Re
 pub struct RedefinedProbe {
     /// Ordinals of the stages that were run with another one.
     pub stages: Range<u64>,
-    /// What it was there.
+    /// The probe as it was defined there.
     pub was: Probe,
     /// What it is in the last scene of the log.
     pub is: Probe,

@@ -18,7 +18,7 @@ const TARGET_ROUNDING: f64 = 1e-12;
 /// The state that a run continues from, and the last commit before it.
 #[derive(Clone, Debug)]
 pub struct Basis {
-    /// The state.
+    /// The state that the run continues from.
     pub state: State,
     /// The commit that made it; `None` for the scene's start.
     pub commit: Option<Commit>,

@@ -35,7 +35,7 @@ pub struct SnapReport {
     pub mode_at: [f64; 3],
     /// The last stable state.
     pub stable: State,
-    /// Solves that it took.
+    /// Number of solves that the search took.
     pub solves: usize,
 }
 
@@ -68,17 +68,17 @@ pub enum SnapError {
     OnRefinedMesh {
         /// Parameter of the last stable state.
         from: String,
-        /// Where the jump was.
+        /// Parameter of the jump.
         to: String,
     },
     /// A solve failed.
     #[error("a solve from {from} to {to} failed")]
     Solve {
-        /// Where it started.
+        /// Parameter at which the solve started.
         from: String,
-        /// Where it was to end.
+        /// Parameter to which it was to lead.
         to: String,
-        /// Why.
+        /// The error of the solver.
         source: Box<SolveError>,
     },
     /// The equations do not fit in memory, or the scene not the mesh.

@@ -35,7 +35,7 @@ pub enum RemakeError {
         from: usize,
         /// What computes otherwise here than where the log was written.
         why: Option<String>,
-        /// How it fails.
+        /// The error of the stage.
         #[source]
         source: Box<StageError>,
     },

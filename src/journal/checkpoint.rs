@@ -11,9 +11,9 @@ use crate::state::Hash;
 pub(super) struct Checkpoint {
     /// First byte of its chunk.
     pub at: u64,
-    /// Its ordinal.
+    /// Ordinal of the commit.
     pub ordinal: u64,
-    /// Its chain hash.
+    /// Chain hash of the commit.
     pub chain_hash: Hash,
     /// What the header of the log names as its writer.
     pub library: String,

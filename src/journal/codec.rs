@@ -61,7 +61,7 @@ pub fn decode_mesh(bytes: &[u8], expected: Hash) -> Result<Mesh, CodecError> {
 pub struct EncodedField {
     /// Hash of the bytes.
     pub hash: Hash,
-    /// The field.
+    /// The encoded field.
     pub bytes: Vec<u8>,
 }
 

@@ -25,7 +25,7 @@ pub enum Damage {
     /// The file ends inside a record's first nine bytes.
     #[error("the file ends {left} bytes into a record")]
     CutPrefix {
-        /// Bytes that are there.
+        /// Number of bytes that are there.
         left: u64,
     },
     /// The file ends inside a record.
@@ -52,7 +52,7 @@ pub enum Damage {
     Misplaced {
         /// MCAP's code for the kind of record.
         opcode: u8,
-        /// Its length.
+        /// Length of the record, bytes.
         bytes: u64,
     },
     /// A record that MCAP cannot read, or a chunk whose checksum is wrong.
@@ -77,13 +77,13 @@ pub enum Damage {
     Description {
         /// "schema" or "channel".
         what: &'static str,
-        /// Its number.
+        /// Number of the channel or schema.
         id: u16,
-        /// Largest number.
+        /// Largest number that is allowed.
         ids: u16,
-        /// Its length.
+        /// Length of the description, bytes.
         bytes: usize,
-        /// Largest length.
+        /// Largest length that is allowed, bytes.
         limit: usize,
     },
     /// A manifest larger than any that is written, or more of them than are kept.
@@ -141,7 +141,7 @@ pub enum Damage {
     MessageCount {
         /// Messages that the commit names.
         expected: usize,
-        /// The other messages.
+        /// Number of other messages in the chunk.
         found: usize,
     },
     /// A message that is not the one its commit names.
@@ -159,7 +159,7 @@ pub enum Damage {
         topic: &'static str,
         /// How many there may be.
         expected: &'static str,
-        /// How many there are.
+        /// Number of messages on the topic.
         found: usize,
     },
     /// A report that is no report.
@@ -188,7 +188,7 @@ pub enum Damage {
     OutOfOrder {
         /// Ordinal that the commit should have.
         expected: u64,
-        /// Ordinal that it has.
+        /// Ordinal of the commit.
         found: u64,
     },
     /// A commit that does not start from the state that the one before it made.
@@ -262,10 +262,10 @@ pub enum Completeness {
 pub struct LaterCommit {
     /// First byte of its chunk.
     pub at: u64,
-    /// Its ordinal.
+    /// Ordinal of the commit.
     pub ordinal: u64,
-    /// Its stage.
+    /// The stage that was committed.
     pub stage: Stage,
-    /// Its load step.
+    /// Load step of the stage.
     pub step: u64,
 }

@@ -36,14 +36,14 @@ pub struct ViewerTopic {
     pub schema_name: String,
     /// Encoding of the schema, such as `protobuf`.
     pub schema_encoding: String,
-    /// The schema.
+    /// The schema of the messages.
     pub schema: Vec<u8>,
 }
 
 /// A message for viewers on one of their topics.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewerMessage {
-    /// Where it goes.
+    /// The topic of the message.
     pub topic: Arc<ViewerTopic>,
     /// Its bytes, in the topic's encoding.
     pub data: Vec<u8>,
@@ -187,12 +187,12 @@ impl Encoder {
         self.in_front = bytes.to_vec();
     }
 
-    /// What the log holds.
+    /// The ledger of the log so far.
     pub(super) fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// Begins a stretch.
+    /// Starts a stretch with its manifest.
     pub(super) fn manifest(&mut self, manifest: &Manifest) -> Result<(), EncodeError> {
         manifest.check_size()?;
         self.stretch = manifest.hash();

@@ -16,7 +16,7 @@ pub(super) const PREFIX_LEN: usize = 1 + 8;
 pub(super) struct Frame {
     /// First byte, that of the prefix.
     pub at: usize,
-    /// What the record is.
+    /// Opcode of the record: its kind.
     pub opcode: u8,
     /// The record without its prefix.
     pub body: Range<usize>,

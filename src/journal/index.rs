@@ -41,7 +41,7 @@ const PLACES: [&str; 3] = ["#at", "#bytes", "#pattern"];
 pub(super) struct Head {
     /// Ordinal of its first commit.
     pub first: u64,
-    /// How many it has.
+    /// Number of commits of the block.
     pub commits: u64,
     columns: Vec<Column>,
     mark: Mark,

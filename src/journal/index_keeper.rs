@@ -103,7 +103,7 @@ impl Rewritten {
         Some(Self { file, index })
     }
 
-    /// Writes a block.
+    /// Writes a block behind the others.
     pub fn add(&mut self, head: Head, block: &[u8]) -> Option<()> {
         self.file.file().write_all(block).ok()?;
         self.index.add(head, block.len());

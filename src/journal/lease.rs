@@ -116,7 +116,7 @@ impl Lease {
         cleared
     }
 
-    /// Where it is.
+    /// Path of the lease.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }

@@ -10,7 +10,7 @@ use super::frame::{self, Frame, op};
 /// One chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ChunkPlace {
-    /// First byte.
+    /// Offset of the first byte in the log.
     pub at: u64,
     /// Length with the nine bytes in front.
     pub bytes: u32,

@@ -36,9 +36,9 @@ pub struct Entry {
 /// A remark about something unusual in a log for which no commit is lost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// Where it is, bytes.
+    /// Offset in the file, bytes.
     pub at: u64,
-    /// What it is.
+    /// The remark.
     pub text: String,
 }
 
@@ -46,15 +46,15 @@ pub struct Note {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StateError {
-    /// No such stage.
+    /// The run has no such stage.
     #[error("there is no stage {index} in this log: it holds {len}, counted from 0")]
     NoSuchStage {
         /// The number that was requested.
         index: usize,
-        /// Stages in the log.
+        /// Number of stages of the run.
         len: usize,
     },
-    /// The log was thinned.
+    /// The log was thinned and does not hold the state.
     #[error("the state of commit {index} is not in the log, which was thinned; {}", kept_before(*before))]
     NotKept {
         /// Ordinal of the commit.
@@ -67,7 +67,7 @@ pub enum StateError {
     Content {
         /// Ordinal of the commit.
         index: usize,
-        /// Why.
+        /// The error of the decoder.
         #[source]
         source: CodecError,
     },

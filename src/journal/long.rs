@@ -23,12 +23,12 @@ pub enum LongLogError {
     /// The log or its index cannot be read.
     #[error("the log or its index cannot be read")]
     Io(#[from] io::Error),
-    /// No such stage.
+    /// The run has no such stage.
     #[error("there is no stage {ordinal} in this log: it holds {commits}, counted from 0")]
     NoSuchStage {
         /// The number that was requested.
         ordinal: usize,
-        /// Stages in the log.
+        /// Number of stages of the run.
         commits: usize,
     },
     /// A commit that is not what the index lists: damaged, or of another log.

@@ -67,7 +67,7 @@ pub enum ManifestError {
     NotANumber {
         /// Name of the entry.
         key: &'static str,
-        /// What it holds.
+        /// Value of the entry.
         value: String,
     },
     /// Some entry has changed since it was written.
@@ -87,7 +87,7 @@ pub enum SceneInLogError {
     /// More than a scene's text that a log holds may have.
     #[error("the scene in the log has more values than any that is written, {SCENE_VALUES_LIMIT}")]
     TooManyValues,
-    /// It does not read.
+    /// The text is rejected as a scene.
     #[error("the scene in the log does not read")]
     Wrong(#[from] Box<SceneError>),
 }

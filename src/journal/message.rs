@@ -162,7 +162,7 @@ impl CommitMessage {
 pub struct FinishedMessage {
     /// Version of the log's layout.
     pub format: u32,
-    /// Commits in the log.
+    /// Number of commits in the log.
     pub commits: u64,
     /// Chain hash of the last commit.
     pub chain_hash: HexHash,

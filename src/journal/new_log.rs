@@ -40,7 +40,7 @@ pub enum NewLogError {
     Encode {
         /// The new log.
         new: String,
-        /// Why not.
+        /// The error of the encoder.
         #[source]
         source: EncodeError,
     },

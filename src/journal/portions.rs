@@ -84,7 +84,7 @@ impl Portion {
         (self.own == self.log.entries.len()).then_some(self.log)
     }
 
-    /// Its good parts.
+    /// The good parts of the portion.
     pub(super) fn parts(&self) -> &[Part] {
         let end = self.log.entries.get(self.own).map(|next| (next.bytes.start - self.log.base) as usize);
         let parts = &self.log.parts;

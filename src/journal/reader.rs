@@ -33,7 +33,7 @@ pub enum ReadError {
         /// Length of the file.
         bytes: u64,
     },
-    /// Not an MCAP file.
+    /// The file is not an MCAP file.
     #[error("this is not a log: it does not begin like an MCAP file, and no commit of a run is in it")]
     NotMcap,
     /// An MCAP file of another program.

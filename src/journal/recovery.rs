@@ -74,12 +74,12 @@ pub enum RecoverOutcome {
         dropped: u64,
         /// Commits among them that are whole but have lost their predecessor.
         later_commits: u64,
-        /// What was lost first.
+        /// The first loss.
         why: String,
     },
     /// Nothing could be kept, and nothing was written.
     Hopeless {
-        /// Why.
+        /// Why nothing can be recovered.
         why: String,
         /// Commits that are whole but have lost their predecessor.
         later_commits: u64,

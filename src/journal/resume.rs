@@ -60,7 +60,7 @@ pub enum ResumeError {
     Read {
         /// The log.
         log: String,
-        /// Why not.
+        /// The error of the reader.
         #[source]
         source: ReadError,
     },
@@ -80,7 +80,7 @@ pub enum ResumeError {
     Begin {
         /// The log.
         log: String,
-        /// Why not.
+        /// The error of the encoder.
         #[source]
         source: EncodeError,
     },

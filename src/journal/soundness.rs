@@ -23,7 +23,7 @@ pub enum Flaw {
         direction: usize,
         /// The degree.
         degree: usize,
-        /// Knots there are.
+        /// Number of knots.
         found: usize,
     },
     /// A knot smaller than the one before it.
@@ -55,13 +55,13 @@ pub enum Flaw {
         what: &'static str,
         /// Length that fits the knots and degrees.
         expected: usize,
-        /// Length there is.
+        /// Length of the sequence.
         found: usize,
     },
-    /// NaN or an infinity.
+    /// A number is NaN or infinite.
     #[error("{what} {index} is {value}")]
     NotFinite {
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
         /// Place in its sequence, flattened; 0 for a single number.
         index: usize,
@@ -71,7 +71,7 @@ pub enum Flaw {
     /// A weight that puts a control point at infinity or beyond.
     #[error("weight {index} is {value} (it must be above 0)")]
     Weight {
-        /// Control point.
+        /// Index of the control point.
         index: usize,
         /// Its weight.
         value: f64,
@@ -98,7 +98,7 @@ pub enum Flaw {
     /// A number that no run makes.
     #[error("{what} is {value}, and no run makes that")]
     Absurd {
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
         /// The value.
         value: f64,

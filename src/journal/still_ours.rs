@@ -25,7 +25,7 @@ pub enum LogChanged {
         /// Stages that were in it.
         commits: u64,
     },
-    /// It has another name.
+    /// It was moved to another name.
     #[error("was moved elsewhere while it was written; there it holds {}, and can be resumed", stages(*.commits))]
     Moved {
         /// Stages that are in it.
@@ -41,7 +41,7 @@ pub enum LogChanged {
         "has {found} bytes where {expected} were written: something else writes to it or has cut it. `foldline verify` reports what is left"
     )]
     Length {
-        /// Bytes that it has.
+        /// Present length, bytes.
         found: u64,
         /// Bytes that it had when it was last written.
         expected: u64,

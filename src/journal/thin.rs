@@ -35,7 +35,7 @@ pub struct Thinned {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ThinError {
-    /// It cannot be read.
+    /// The log cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// It is damaged or torn.

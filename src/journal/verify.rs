@@ -18,7 +18,7 @@ use crate::units::count;
 /// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Good to know.
+    /// Information that needs no action.
     Info,
     /// Costs no state, and yet is not as it should be.
     Warning,
@@ -30,11 +30,11 @@ pub enum Level {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Finding {
-    /// How much it matters.
+    /// Severity of the finding.
     pub level: Level,
     /// What it is about: the log, a byte, or a commit.
     pub place: String,
-    /// What it is.
+    /// The finding in words.
     pub text: String,
 }
 

@@ -86,12 +86,12 @@ pub enum WriteError {
         #[source]
         source: io::Error,
     },
-    /// The system would not.
+    /// The operating system refused.
     #[error(
         "cannot {action} {log}; it holds {commits} stages. `foldline resume {log}` continues after the last good one"
     )]
     Io {
-        /// "write", "sync" or "begin again".
+        /// "write", "sync" or "start".
         action: &'static str,
         /// The log.
         log: String,
@@ -108,7 +108,7 @@ pub enum WriteError {
         ordinal: u64,
         /// The log.
         log: String,
-        /// Why.
+        /// The error of the encoder.
         #[source]
         source: EncodeError,
     },

@@ -41,11 +41,11 @@ pub enum Warning {
         elements: [usize; 2],
         /// The probe that is off the most, relative to its value.
         probe: String,
-        /// What it reads.
+        /// The reading of the probe.
         value: f64,
         /// What it reads on the halved mesh.
         halved: f64,
-        /// Unit of both.
+        /// Unit of both readings.
         unit: String,
         /// Other probes that are off as well.
         others: usize,
@@ -72,7 +72,7 @@ pub enum Warning {
     RefinementBlocked {
         /// The scene's parameter.
         parameter: f64,
-        /// Such spans each way.
+        /// Number of such spans in each direction.
         spans: [usize; 2],
         /// Length of the longest, in decay lengths √(t/κ) of its bending.
         decay_lengths: f64,

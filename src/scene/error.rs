@@ -13,7 +13,7 @@ const MOST_SHOWN: usize = 10;
 /// shows the file, the line, the offending text underlined, what is allowed and the nearest right spelling.
 #[derive(Clone, PartialEq)]
 pub struct SceneError {
-    /// At least one.
+    /// The faults, at least one.
     faults: Vec<Fault>,
     sources: Vec<Source>,
 }

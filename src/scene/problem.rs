@@ -94,7 +94,7 @@ pub enum Problem {
     },
     /// A table of a scene is given as a value or as an array of tables.
     NotATable {
-        /// The table.
+        /// The description of the table.
         section: &'static Section,
         /// What was found.
         found: ValueType,
@@ -155,7 +155,7 @@ pub enum Problem {
     BothGiven {
         /// The key that is given in place of the other.
         key: &'static Key,
-        /// The other.
+        /// The other key.
         other: &'static Key,
     },
     /// The value has another type than the key takes.
@@ -213,7 +213,7 @@ pub enum Problem {
     WrongForm {
         /// The key.
         key: &'static Key,
-        /// Its form.
+        /// The form of the value.
         found: Form,
     },
     /// The key does not take this word.

@@ -15,13 +15,13 @@ use super::read;
 /// The content of one table.
 pub(super) struct Table {
     pub section: &'static Section,
-    /// What errors call it.
+    /// Name of the table in errors.
     pub title: String,
     /// Its number, from 1, where there may be several.
     pub number: usize,
     /// Whether the file has it, or a setting.
     pub is_given: bool,
-    /// Where it begins.
+    /// Span of the table's header.
     pub place: TextSpan,
     /// Values in the form that the data of a scene have in JSON, by key.
     pub values: Map<String, Value>,

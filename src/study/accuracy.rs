@@ -24,7 +24,7 @@ pub struct Measured {
     jump_at: Option<f64>,
     /// What the parameter is.
     what: &'static str,
-    /// What is compared.
+    /// Name of the quantity that is compared.
     quantity: String,
     steps: u64,
     elements: [usize; 2],
@@ -53,9 +53,9 @@ pub struct AccuracyRow {
     pub unknowns: usize,
     /// What is compared: the moment of turning ends, or the name of the first probe with its unit.
     pub quantity: String,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Load steps.
+    /// Number of load steps.
     pub steps: u64,
     /// Load steps that the reference has too.
     pub compared: usize,
@@ -83,7 +83,7 @@ pub enum AccuracyError {
     /// The run stopped.
     #[error("the run stopped")]
     Run(#[from] Box<RunError>),
-    /// Nothing to compare.
+    /// The run has nothing that can be compared.
     #[error("the scene has no moment and no probe to compare: turn its ends, or write a [[probe]]")]
     NothingMeasured,
     /// Another structure than the reference.
@@ -95,7 +95,7 @@ pub enum AccuracyError {
     /// Another quantity than that of the reference.
     #[error("it measures {own}, and the reference {other}: give both the same first [[probe]]")]
     OtherQuantity {
-        /// What it measures.
+        /// The quantity that this run measures.
         own: String,
         /// What the reference measures.
         other: String,
@@ -105,13 +105,13 @@ pub enum AccuracyError {
         "by arc length a path passes one {what} more than once: compare runs under load control (of tape springs, `foldline converge` compares paths)"
     )]
     AlongPath {
-        /// What is driven.
+        /// What drives the run.
         what: &'static str,
     },
     /// No load step ends where one of the reference does.
     #[error("no load step ends at the same {what} as one of the reference: give both the same increment")]
     NothingInCommon {
-        /// What is driven.
+        /// What drives the run.
         what: &'static str,
     },
 }

@@ -30,9 +30,9 @@ const ROTATION_DEG: f64 = 4.0;
 /// One measured figure.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figure {
-    /// What was timed.
+    /// Name of what was timed.
     pub name: &'static str,
-    /// Scene file.
+    /// Name of the scene file.
     pub scene: String,
     /// Elements each way.
     pub elements: [usize; 2],
@@ -40,9 +40,9 @@ pub struct Figure {
     pub degree: [usize; 2],
     /// Integration rule.
     pub quadrature: String,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Free unknowns.
+    /// Number of free unknowns.
     pub unknowns: usize,
     /// Median time, ms; of a whole run its only one.
     pub median_ms: f64,

@@ -37,7 +37,7 @@ pub struct ConvergenceRow {
     pub unstable_n_mm: Option<f64>,
     /// Moment on the fold at the last rotation, N·mm.
     pub fold_n_mm: Option<f64>,
-    /// Load steps.
+    /// Number of load steps.
     pub steps: u64,
     /// Newton iterations.
     pub iterations: usize,

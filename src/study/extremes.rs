@@ -34,7 +34,7 @@ pub struct ExtremeRow {
     pub message: Option<String>,
     /// Whether it ended as it states, and nothing else is wrong with it.
     pub as_stated: bool,
-    /// What is wrong.
+    /// The faults that were found.
     pub faults: Vec<ExtremeFault>,
     /// Largest relative error of what the scene states: see [`Expectation::peak`] and [`Expectation::last`].
     pub error: Option<f64>,

@@ -14,23 +14,23 @@ use crate::study::extremes_fault::ExtremeFault;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ExtremeEnd {
-    /// At its target.
+    /// The run reached its target.
     Finished,
-    /// Before, in a way that a scene can expect.
+    /// The run stopped before its target, in a way that a scene can expect.
     Stopped {
-        /// The way.
+        /// The outcome that a scene can expect.
         outcome: ExpectedOutcome,
-        /// The error.
+        /// The message of the error.
         message: String,
     },
-    /// Before, in a way that no scene can expect.
+    /// The run stopped before its target, in a way that no scene can expect.
     Broken {
-        /// The error.
+        /// The message of the error.
         message: String,
     },
     /// The time for a scene ran out.
     OutOfTime,
-    /// In a panic.
+    /// The run panicked.
     Panicked {
         /// The message of the error.
         message: String,

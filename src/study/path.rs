@@ -28,9 +28,9 @@ pub struct PathPoint {
 /// A critical point on the path, with the first equilibrium behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passed {
-    /// What it is.
+    /// The critical point.
     pub critical: CriticalPoint,
-    /// Parameter.
+    /// Parameter at the critical point.
     pub parameter: f64,
     /// End moment of the whole section, N·mm.
     pub moment_n_mm: f64,

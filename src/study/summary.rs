@@ -85,18 +85,18 @@ pub enum PeakFound {
 /// The mean moment of the fold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoldMean {
-    /// Mean, N·mm.
+    /// Mean moment, N·mm.
     pub moment_n_mm: f64,
     /// Rotations from and to which it is taken, degrees.
     pub range_deg: [f64; 2],
-    /// Load steps in it.
+    /// Number of load steps in the mean.
     pub points: usize,
 }
 
 /// A kind of warning, and the number of load steps that reported it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WarningCount {
-    /// The first one.
+    /// The first warning of its kind.
     pub first: Warning,
     /// Number of load steps that reported it.
     pub steps: usize,
@@ -157,7 +157,7 @@ impl EnergyBalance {
 pub struct StageWork {
     /// The stage.
     pub stage: Stage,
-    /// How often it ran.
+    /// Number of times that the stage ran.
     pub runs: usize,
     /// Newton iterations.
     pub iterations: usize,

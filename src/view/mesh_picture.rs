@@ -12,7 +12,7 @@ use crate::printable::one_line;
 /// The settings of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Where the eye stands.
+    /// Direction from which the surface is seen.
     pub direction: ViewDirection,
     /// First line of text; may be empty.
     pub title: String,

@@ -19,27 +19,27 @@ pub enum SamplesError {
     /// Fewer than 2 points one way.
     #[error("a surface needs 2 points each way, not {} × {}", counts[0], counts[1])]
     TooFewPoints {
-        /// Points each way.
+        /// Number of points in each direction.
         counts: [usize; 2],
     },
     /// A buffer does not fit the counts.
     #[error("a surface of {} × {} points has {expected} {what}, not {found}", counts[0], counts[1])]
     Length {
-        /// Which buffer.
+        /// Name of the buffer.
         what: &'static str,
-        /// Points each way.
+        /// Number of points in each direction.
         counts: [usize; 2],
-        /// Length that fits.
+        /// The length that fits the counts.
         expected: usize,
-        /// Length that came.
+        /// The length of the buffer.
         found: usize,
     },
     /// A coordinate that is infinite or not a number.
     #[error("point {index} of the {what} is not finite")]
     NotFinite {
-        /// Of what.
+        /// Name of the quantity.
         what: &'static str,
-        /// Which one.
+        /// Index in its buffer.
         index: usize,
     },
 }

@@ -27,7 +27,7 @@ pub enum CodecError {
     OtherVersion {
         /// Version in the message.
         found: u8,
-        /// Version of its kind.
+        /// Version of the encoding of this kind of message.
         expected: u8,
     },
     /// Bytes that the encoding does not allow.
@@ -61,7 +61,7 @@ pub enum CodecError {
     /// The state names more or fewer fields than it has.
     #[error("the state names {found} fields, and it has its displacements and at most one of its course")]
     FieldCount {
-        /// Those that it names.
+        /// Number of fields that the state names.
         found: usize,
     },
     /// Decoded, but not the content that was committed.

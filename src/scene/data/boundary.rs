@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ParametricDirection {
-    /// The first.
+    /// The first direction, u.
     U,
-    /// The second.
+    /// The second direction, v.
     V,
 }
 
@@ -68,9 +68,9 @@ pub enum Region {
 pub struct Support {
     /// What reports and errors call it; no two supports have the same name.
     pub name: String,
-    /// Where.
+    /// The region that is supported.
     pub on: Region,
-    /// How.
+    /// How the region is held.
     #[serde(flatten)]
     pub hold: Hold,
     /// Factor of the given motions over the load factor.
@@ -136,7 +136,7 @@ impl Motion {
 /// A load: forces, moments, pressures or a change of temperature, and their history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Action {
-    /// What errors call it.
+    /// Name of the action in errors.
     pub name: String,
     /// What acts, at factor 1.
     #[serde(flatten)]
@@ -153,21 +153,21 @@ pub struct Action {
 pub enum ActionKind {
     /// A dead force on a point.
     Force {
-        /// Fractions (u, v).
+        /// The loaded point, fractions (u, v).
         on: [f64; 2],
-        /// N.
+        /// The force, N.
         force_n: ForceVector,
     },
     /// A dead force per undeformed length of an edge or a line.
     LineForce {
-        /// Edge or line.
+        /// The loaded edge or line.
         on: Region,
-        /// N/mm.
+        /// The force per length, N/mm.
         force_n_per_mm: ForceVector,
     },
     /// A dead force per area of the whole surface.
     AreaForce {
-        /// N/mm².
+        /// The force per area, N/mm².
         force_n_per_mm2: ForceVector,
         /// The area that is meant.
         #[serde(default, skip_serializing_if = "LoadedArea::is_undeformed")]
@@ -181,14 +181,14 @@ pub enum ActionKind {
     /// A moment per undeformed length of an edge, about the tangent of the deformed edge in the direction of
     /// growing u or v (right-hand rule); it turns with the shell.
     EdgeMoment {
-        /// The edge.
+        /// The loaded edge.
         on: Edge,
-        /// N·mm per mm.
+        /// The moment per length, N·mm per mm.
         moment_n: f64,
     },
     /// A pressure on the whole surface; positive along the normal.
     Pressure {
-        /// N/mm².
+        /// The pressure, N/mm².
         pressure_mpa: f64,
         /// Whether it acts along the deformed normal on the deformed area, or keeps the direction and the area of the
         /// undeformed shell (dead).
@@ -196,7 +196,7 @@ pub enum ActionKind {
     },
     /// A change of temperature, the same in the whole shell. The material states how much it expands.
     Temperature {
-        /// Kelvin.
+        /// The change of temperature, K.
         change_k: f64,
     },
     /// A change of the curvature that the shell has where it is free of stress, the same in the whole shell.

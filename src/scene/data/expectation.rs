@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// How a run of the scene is expected to end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expectation {
-    /// How it ends.
+    /// How the run is expected to end.
     pub outcome: ExpectedOutcome,
     /// File, in the folder of the scene, of one with the same curve but for units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -49,7 +49,7 @@ impl Expectation {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ExpectedOutcome {
-    /// At its target.
+    /// The run reaches its target.
     #[default]
     Finished,
     /// Before its first step: mesh, supports and loads do not go together.

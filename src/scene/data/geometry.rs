@@ -46,7 +46,7 @@ pub enum Geometry {
         inner_radius_mm: f64,
         /// Outer radius.
         outer_radius_mm: f64,
-        /// Angle, up to 360.
+        /// Angle, up to 360°.
         arc_deg: f64,
         /// Angle from the +x axis at which it starts; `None`: 0.
         #[serde(default, skip_serializing_if = "Option::is_none")]

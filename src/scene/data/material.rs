@@ -43,7 +43,7 @@ pub enum Material {
     },
     /// Plies through the thickness, from the side that the normal points away from (bottom) to the other (top).
     Laminate {
-        /// From bottom to top.
+        /// The plies from bottom to top.
         plies: Vec<Ply>,
         /// Where the surface of the geometry lies; see [`Material::offset_mm`].
         #[serde(default, skip_serializing_if = "is_zero")]
@@ -113,7 +113,7 @@ pub struct OrthotropicLaw {
     /// Strain of a free layer along material axis 1 per kelvin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal_expansion_1_per_k: Option<f64>,
-    /// The same across.
+    /// Thermal expansion across material axis 1, 1/K.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal_expansion_2_per_k: Option<f64>,
 }

@@ -9,7 +9,7 @@ use super::Region;
 pub struct Probe {
     /// Its name in reports; no two probes have the same.
     pub name: String,
-    /// What it is.
+    /// The quantity that is measured.
     #[serde(flatten)]
     pub kind: ProbeKind,
 }
@@ -21,9 +21,9 @@ pub struct Probe {
 pub enum ProbeKind {
     /// Displacement of a point, mm.
     Displacement {
-        /// Fractions (u, v).
+        /// The point, fractions (u, v).
         on: [f64; 2],
-        /// Which component.
+        /// The component of the displacement.
         component: Component,
     },
     /// What a support exerts on the shell: force (N), or moment (N·mm) about the displaced reference point of a rigid
@@ -33,15 +33,15 @@ pub enum ProbeKind {
     Reaction {
         /// Name of the support.
         support: String,
-        /// Which component.
+        /// The component of the reaction.
         component: Reaction,
     },
     /// Moment that the side of larger u or v exerts on the other across a line, about the line's displaced middle,
     /// N·mm.
     SectionMoment {
-        /// A line.
+        /// The line of the section.
         on: Region,
-        /// Which component.
+        /// The component of the moment.
         component: Axis,
     },
     /// Energy that the whole shell stores, N·mm: strain energy, and what terms of the caller's own store.

@@ -77,9 +77,9 @@ fn quoted(choices: &[Choice]) -> Vec<String> {
 /// The number of items of a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
-    /// No fewer and no more.
+    /// Exactly this number of items.
     Exactly(usize),
-    /// As many as one likes.
+    /// Any number of items.
     Any,
 }
 

@@ -25,7 +25,7 @@ pub struct Section {
     pub many: bool,
     /// Whether a scene must have it.
     pub required: bool,
-    /// What it is about.
+    /// What the table describes, in a sentence.
     pub meaning: &'static str,
     /// Its keys, of all its kinds, in the order in which one would write them.
     pub keys: &'static [Key],
@@ -81,7 +81,7 @@ pub struct Key {
     pub presence: Presence,
     /// How far a change of it reaches into a run.
     pub reach: Reach,
-    /// What it means.
+    /// What the key means, in a sentence.
     pub meaning: &'static str,
     /// A value as written in a scene file.
     pub example: &'static str,
@@ -184,7 +184,7 @@ pub enum Reach {
 /// What applies where the key is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
-    /// It must be there.
+    /// The key is required.
     Required,
     /// A default, as written in a scene.
     Default(&'static str),
