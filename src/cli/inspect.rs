@@ -58,7 +58,7 @@ fn stages_of(path: &Path, step: u64, probes: bool) -> Result<Vec<Record>, Failur
     let (found, known) = match in_long {
         Some(found) => found,
         None if probes => {
-            let (_, records) = with_probes_anew(path)?;
+            let (_, records) = with_probes_read_again(path)?;
             (records.iter().filter(of_step).cloned().collect(), first_and_last(records.iter()))
         }
         None => {
@@ -80,7 +80,7 @@ fn stages_of(path: &Path, step: u64, probes: bool) -> Result<Vec<Record>, Failur
 /// Every stage as JSON, portion by portion.
 fn all_lines(path: &Path, probes: bool) -> Result<String, Failure> {
     if probes {
-        return Ok(lines(&with_probes_anew(path)?.1));
+        return Ok(lines(&with_probes_read_again(path)?.1));
     }
     let mut printed = Ok(());
     read_through(path, |portion| {
@@ -103,7 +103,7 @@ fn all_stages(path: &Path, probes: bool) -> Result<(ReadLog, Vec<Record>, Vec<us
         states.extend(ordinals.filter(|ordinal| log.keeps_state(*ordinal)));
     };
     if probes {
-        let (read, records) = with_probes_anew(path)?;
+        let (read, records) = with_probes_read_again(path)?;
         keep_states(&read.log, 0..records.len());
         return Ok((read, records, states));
     }
@@ -139,7 +139,7 @@ fn overview(path: &Path, probes: bool) -> Result<String, Failure> {
 }
 
 /// Every stage with the probes of the last scene, read on the states, which takes the whole log.
-fn with_probes_anew(path: &Path) -> Result<(ReadLog, Vec<Record>), Failure> {
+fn with_probes_read_again(path: &Path) -> Result<(ReadLog, Vec<Record>), Failure> {
     let read = read_log(path)?;
     let records = read.records_of_scene(path)?;
     Ok((read, records))

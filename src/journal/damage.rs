@@ -233,7 +233,6 @@ impl Damage {
 
 /// How complete a log is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Completeness {
     /// Every commit is good, and the run reached its end.
     Finished,

@@ -59,7 +59,6 @@ pub(super) fn copy(log: &Log, keep: usize, encoder: &mut Encoder, backend: &mut 
 
 /// The outcome of recovering a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum RecoverOutcome {
     /// Every commit that the log ever held is in the new one.
     Lossless {

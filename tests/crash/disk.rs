@@ -245,7 +245,7 @@ fn a_folder_that_vanishes() {
 
 /// What a power cut may leave of a log that had just begun.
 #[test]
-fn an_empty_log_is_begun_anew() {
+fn an_empty_log_is_started_again() {
     let whole = Straight::small();
     for left in [0, 5] {
         let place = Sandbox::new();

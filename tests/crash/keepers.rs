@@ -266,7 +266,7 @@ fn nothing_is_written_over() {
 
 /// A kill may meet the last write, which ends the log and adds the summary for viewers: the next resume mends it.
 #[test]
-fn a_summary_that_was_cut_is_made_anew() {
+fn a_summary_that_was_cut_is_made_again() {
     let whole = Straight::small();
     let place = Sandbox::new();
     let last = whole.log().entries().last().unwrap().bytes.end as usize;

@@ -364,7 +364,6 @@ mod one_or_pair {
 /// A stage of the pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum Stage {
     /// Move the load on by one increment and find equilibrium.
     Solve,
