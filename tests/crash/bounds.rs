@@ -285,7 +285,7 @@ fn numbers_that_no_axis_has() {
             }
             let log = ordinary.with_report(report);
             all_bounded(&format!("{entry} = {value}"), &log);
-            refused(log, &format!("the report says {}", entry.replace("rotation_deg", "parameter")));
+            refused(log, &format!("the report has {}", entry.replace("rotation_deg", "parameter")));
         }
     }
 }
@@ -303,12 +303,12 @@ fn a_report_that_says_otherwise_than_its_state() {
         let mut report = ordinary.reports[0].clone();
         report[entry] = next(&report[entry]);
         let named = entry.replace("rotation_deg", "parameter");
-        refused(ordinary.with_report(report), &format!("the report says {named}"));
+        refused(ordinary.with_report(report), &format!("the report has {named}"));
     }
     let mut report = ordinary.reports[0].clone();
     report["path_length_mm"] = json!(1.0);
     let log = ordinary.with_report(report);
-    refused(log, "the report says path_length_mm 1");
+    refused(log, "the report has path_length_mm 1");
 }
 
 /// What the scene of a log does not have, no state of it has.

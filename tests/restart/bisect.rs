@@ -94,7 +94,7 @@ fn the_snap_is_located() {
     }
     assert_eq!(place.read("run.mcap"), whole.bytes);
     place.foldline("run small.toml -o short.mcap --until 6").ends(0);
-    place.foldline("bisect short.mcap --snap").ends(1).says(&["no stage of this log jumped", "stands at 6°"]);
+    place.foldline("bisect short.mcap --snap").ends(1).says(&["no stage of this log jumped", "is at 6°"]);
     place.foldline("bisect run.mcap --snap --tolerance 0").ends(2);
 }
 

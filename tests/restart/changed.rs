@@ -202,7 +202,7 @@ fn a_farther_target() {
             assert!(!said.err.contains("every stage is kept"), "{near}: stages go, and yet: {}", said.err);
             said.says(&[
                 "load.rotation_deg changed",
-                "stand,",
+                "are kept,",
                 &format!("the log holds {near_stages} stages, all good; the first"),
             ]);
             assert_eq!(place.logs(), ["run.mcap", "run.mcap.replaced-1"]);
@@ -247,7 +247,7 @@ fn solver_tolerance() {
             said.says(&["solver.tolerance changed", "no complete step is kept"]);
         } else {
             let stand =
-                format!("steps 1 to {last_step} stand, {} on is new: the log is mixed from there on", last_step + 1);
+                format!("steps 1 to {last_step} are kept, {} on is new: the log is mixed from there on", last_step + 1);
             said.says(&["solver.tolerance changed (1e-7 → 1e-9)", &stand]);
         }
         let mixed = place.log("run.mcap");

@@ -152,12 +152,12 @@ fn another_longest_step() {
         place.write("run.mcap", whole.cut_after(stages));
         place.write("path.toml", &shorter);
         let said = place.foldline("run path.toml -o run.mcap --resume").ends(0);
-        said.says(&["continuation.longest_step changed (8.0 → 2.0)", "stand,", "on is new"]);
+        said.says(&["continuation.longest_step changed (8.0 → 2.0)", "are kept,", "on is new"]);
         let mixed = place.log("run.mcap");
         let keep = mixed.manifests()[1].first_ordinal as usize;
-        assert!(keep <= stages && keep > 0, "{keep} of {stages} stages stand");
+        assert!(keep <= stages && keep > 0, "{keep} of {stages} stages are kept");
         let last = mixed.state(keep - 1).unwrap();
-        assert!(last.drive.control.rejection.is_none(), "what stands ends with a complete step");
+        assert!(last.drive.control.rejection.is_none(), "what is kept ends with a complete step");
         let steps = |index: usize| log.entries()[index].record.report.step;
         assert!(steps(keep) > steps(keep - 1) && steps(keep) + 1 >= steps(stages), "no complete step is dropped");
         for (index, entry) in mixed.entries().iter().enumerate() {
@@ -182,7 +182,7 @@ fn from_load_control_to_arc_length() {
         let last = before.state(before.entries().len() - 1).unwrap();
         place.write("path.toml", ROOF);
         let said = place.foldline("run path.toml -o run.mcap --resume").ends(0);
-        said.says(&["continuation", &format!("steps 1 to {} stand, {} on is new", last.step, last.step + 1)]);
+        said.says(&["continuation", &format!("steps 1 to {} are kept, {} on is new", last.step, last.step + 1)]);
         let after = place.log("run.mcap");
         for (old, new) in before.entries().iter().zip(after.entries()) {
             assert_eq!(old.record, new.record);
