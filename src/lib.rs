@@ -2,7 +2,7 @@
 //!
 //! # The pieces
 //!
-//! A [`scene`] says what is simulated: a shell, its material, supports, loads and settings, as TOML. [`Stages`](pipeline::Stages) runs
+//! A [`scene`] describes what is simulated: a shell, its material, supports, loads and settings, as TOML. [`Stages`](pipeline::Stages) runs
 //! one stage after another (solve, evaluate indicators, refine knots, project displacements, re-equilibrate), each from one
 //! [`State`](state::State) to the next; a state is plain data, all that decides the future of the run. [`Run`](pipeline::Run) is the loop
 //! around them, and hands every stage to a [`Sink`](record::Sink): in memory, or the [`journal`], an MCAP log that survives kills
@@ -18,6 +18,13 @@
 //! | [`pipeline`], [`record`], [`state`] | stages and the loop; what is kept of them, and sinks; what a checkpoint holds |
 //! | [`journal`], [`history`] | logs; continuing, replaying and bisecting them |
 //! | [`study`], [`view`] | error against run time; pictures |
+//!
+//! # What stays
+//!
+//! Programs can rely on what the examples use: [`scene::parse`] and the data of a [`Scene`](scene::Scene),
+//! [`Stages`](pipeline::Stages), [`Run`](pipeline::Run) and all of [`record`], [`State`](state::State), the logs of [`journal`], the
+//! questions of [`history`], and the terms of [`energy`]. The numerics ([`spline`], [`shell`], [`model`], [`equilibrium`], [`adapt`]),
+//! the suites ([`study`]) and the pictures ([`view`]) are public for the program and its tests, and may change with any version.
 //!
 //! # A scene in memory
 //!
@@ -49,7 +56,8 @@
 //! # }
 //! ```
 //!
-//! `tests/examples/` continues: `run_scene`, `read_log`, `own_sink` (a sink of one's own) and `own_term` (an energy term of one's own).
+//! More examples are in `tests/examples/`: `run_scene`, `read_log`, `own_sink` (a sink of one's own) and `own_term` (an energy term of
+//! one's own).
 //!
 //! # Features
 //!

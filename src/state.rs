@@ -108,6 +108,7 @@ impl DriveMemory {
 /// The course of equilibria that led to the current one, for the predictor of the next. The course of one drive stays
 /// here until the next drive has made a step.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Course {
     /// No course that continues: the shell is undeformed, or has jumped.
     #[default]
@@ -156,7 +157,7 @@ pub struct Previous {
     pub parameter: f64,
 }
 
-/// Memory of continuation by arc length.
+/// What continuation by arc length remembers from step to step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathMemory {
     /// Unit tangent of the path: rates of the control points' displacements with its length, in the order of the mesh. A
@@ -177,7 +178,7 @@ pub struct PathMemory {
     pub at_bifurcation: bool,
 }
 
-/// A limit point or a bifurcation known to lie ahead.
+/// A limit point or a bifurcation that is known to lie ahead on the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalAhead {
     /// Length of a step that passes it, mm.
@@ -186,7 +187,7 @@ pub struct CriticalAhead {
     pub rate_beyond: f64,
 }
 
-/// Memory of the step control.
+/// What the control of load steps remembers from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepControl {
     /// Power of 2 that the scene's increment is divided by; negative where it has grown.
@@ -199,6 +200,7 @@ pub struct StepControl {
 
 /// Reasons why an attempted load step was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Rejection {
     /// The solver found no equilibrium.
     NoEquilibrium,

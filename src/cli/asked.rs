@@ -18,7 +18,7 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// Opens a log, and says what of it is lost.
+    /// Opens a log, and reports what of it is lost.
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         let log = AskedLog::open(path).map_err(unreadable(path))?;
         let (scene, scene_is_older) = end_scene(log.end(), path)?;
@@ -60,7 +60,7 @@ impl Asked {
         step_of(0).zip(step_of(self.log.commits().checked_sub(1)?))
     }
 
-    /// What became of a log that is not what it was.
+    /// The error for a log that changed while it was read.
     pub(super) fn changed(&self) -> impl Fn(LongLogError) -> Failure {
         |source| Failure::WrongLog { log: self.path.clone(), source: Box::new(source) }
     }

@@ -1,4 +1,4 @@
-//! `foldline bench`: how fast the kernels and whole runs are, beside what the machine can do.
+//! `foldline bench`: how fast the kernels and whole runs are, compared with what the machine can do.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ use crate::study::{BenchError, Figure, kernel_figures, run_figure};
 /// The scene that is timed where none is named.
 const BASELINE: &str = include_str!("../../pipelines/baseline.toml");
 
-/// What stands below the options in the help.
+/// The text below the options in the help.
 const LIMITS: &str = "\
 The column `limit` is the share of what the machine does at best, measured in the same run: for assemble and factor the \
 rate of operations of a dense product on one thread, times the threads that can work on them (a factorization is shared \
@@ -45,7 +45,7 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// Times and prints.
+    /// Times the kernels and whole runs and prints the figures.
     pub(super) fn run(self) -> Result<(), Failure> {
         use_threads(self.threads.map(usize::from))?;
         let mut scenes: Vec<(String, Scene)> = Vec::new();

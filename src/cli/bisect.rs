@@ -11,7 +11,7 @@ use super::output::{path_in_line, print};
 use super::replay::place;
 use super::stage_table::stage_table;
 use crate::history::{
-    Comparison, Condition, ConditionError, SnapError, SnapReport, States, find_parting, find_snap,
+    Comparison, Condition, ConditionError, SnapError, SnapReport, States, find_divergence, find_snap,
     first_loss_of_stability, first_where, no_jump,
 };
 use crate::journal::{AskedLog, LongLog, LongLogError};
@@ -26,7 +26,7 @@ pub(super) struct Arguments {
     log: PathBuf,
     /// A second log: find the first stage at which the two differ; exit code 1 if they do
     other: Option<PathBuf>,
-    /// Locate the first jump or loss of stability: go back to the last stable state before it and halve the load; says also
+    /// Locate the first jump or loss of stability: go back to the last stable state before it and halve the load; also reports
     /// what kind of critical point it is, and which mode is soft there
     #[arg(long)]
     snap: bool,
@@ -59,12 +59,12 @@ impl Arguments {
         let unusable = |source| Failure::WrongLog { log: self.log.clone(), source: Box::new(source) };
         let lengths = [a, b].map(|asked| asked.log.commits());
         let mut text = String::new();
-        let found = find_parting(&a.log, &b.log).map_err(unusable)?;
+        let found = find_divergence(&a.log, &b.log).map_err(unusable)?;
         match &found {
             None if lengths[0] == lengths[1] => {
                 let by = match [a, b].iter().any(|asked| matches!(asked.log, AskedLog::Long(_))) {
                     true => {
-                        ", by their chains of hashes; that all bytes are as they were written says `foldline verify`"
+                        ", by their chains of hashes; `foldline verify` checks that all bytes are as they were written"
                     }
                     false => "",
                 };

@@ -1,4 +1,4 @@
-//! `foldline converge`: a tape spring's path of equilibria on one mesh after another, error beside run time.
+//! `foldline converge`: a tape spring's path of equilibria on one mesh after another, error against run time.
 
 use std::path::PathBuf;
 
@@ -11,10 +11,10 @@ use crate::scene::Scene;
 use crate::study::{ConvergenceRow, check_spring, converge};
 
 /// Follow a tape spring past its limit point, down the unstable path and up the fold, on uniform meshes of every degree and
-/// size asked for: peak, limit rotation and moments of each, beside its run time
+/// size asked for: peak, limit rotation and moments of each, with its run time
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// Scene of a tape spring whose ends turn (TOML); its rotation says how far up the fold the path is followed
+    /// Scene of a tape spring whose ends turn (TOML); its rotation gives how far up the fold the path is followed
     scene: PathBuf,
     /// Degree both ways; may be repeated
     #[arg(long, value_name = "P", default_values_t = [3, 4], value_parser = clap::value_parser!(u16).range(2..=5))]

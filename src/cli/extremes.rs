@@ -7,17 +7,17 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{print, print_json, say};
+use super::output::{eprint, print, print_json};
 use super::scene_file::read_scene;
 use super::session::use_threads;
 use crate::scene::Scene;
 use crate::study::{ExtremeRow, ExtremesSuite};
 use crate::units::{count, duration};
 
-/// Run scenes at and beyond the edge, and say whether each ends as it states
+/// Run scenes at and beyond the edge, and report whether each ends as it states
 ///
 /// A scene states its end in a table `[expect]`; see `foldline help scene`. A line is printed as soon as its scene has
-/// ended; what is wrong with it stands below.
+/// ended; what is wrong with it follows below.
 #[derive(Args, Debug)]
 #[command(after_help = COLUMNS)]
 pub(super) struct Arguments {
@@ -40,12 +40,12 @@ pub(super) struct Arguments {
 /// Below the options in `--help`.
 const COLUMNS: &str = "\
 Columns:
-  outcome    finished, or the kind of stop; an error stands below
+  outcome    finished, or the kind of stop; an error follows below
   as stated  whether it ended as its [expect] says, and all numbers are sound
   error      largest error of the peak before the first jump and of the last result (moment, first probe,
-             strain energy) against those that [expect] states; above 2 % the reason stands below
+             strain energy) against those that [expect] states; above 2 % the reason follows below
   steps      load steps with an equilibrium
-  iter       Newton iterations, those of solves that were turned down included
+  iter       Newton iterations, those of solves that were rejected included
   residual   largest |residual| of all equilibria over the forces
   W - E      work less strain energy over the load steps that did not jump, relative to the largest
              strain energy; what jumps release and refinement changes is not counted
@@ -84,7 +84,7 @@ impl Arguments {
             0 => "all as stated".to_owned(),
             some => format!("{some} not as stated"),
         };
-        say(&format!("{}, {verdict}, {}", count(names.len(), "scene"), duration(begin.elapsed().as_secs_f64())));
+        eprint(&format!("{}, {verdict}, {}", count(names.len(), "scene"), duration(begin.elapsed().as_secs_f64())));
         Ok(u8::from(failed > 0))
     }
 
@@ -131,7 +131,7 @@ fn stem(name: &str) -> &str {
     name.strip_suffix(".toml").unwrap_or(name)
 }
 
-/// The table of a suite, line by line as its scenes end.
+/// The table that `foldline extremes` prints, a line for each scene as it ends.
 pub struct ExtremesTable {
     name_width: usize,
 }
@@ -142,14 +142,14 @@ impl ExtremesTable {
         Self { name_width: names.map(|name| name.chars().count()).chain([5]).max().unwrap_or(5) }
     }
 
-    /// The heads of the columns.
+    /// Returns the line with the heads of the columns.
     pub fn head(&self) -> String {
         let cells =
             ["outcome", "as stated", "error", "steps", "iter", "residual", "W - E", "cond", "asym", "bits", "wall"];
         self.line("scene", cells.map(str::to_owned))
     }
 
-    /// A scene; below it the error that ended it, and what is wrong.
+    /// Returns the line of a scene and, below it, the error that ended the scene and the faults found.
     pub fn row(&self, row: &ExtremeRow) -> String {
         let small = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0e}"));
         let balance = row.energy_balance.map_or_else(|| "-".to_owned(), |value| format!("{value:+.0e}"));

@@ -1,4 +1,4 @@
-//! What can stop a command, in words, and the exit code that says so to scripts.
+//! What can stop a command, in words, with the exit code for scripts.
 
 use std::io;
 use std::path::PathBuf;
@@ -18,10 +18,10 @@ pub(super) const INTERRUPTED: u8 = 75;
 pub(super) const EXIT_CODES: &str = "\
 Exit codes:
    0  done
-   1  failed; what was logged before stands
+   1  failed; what was logged before is kept
    2  wrong arguments, a wrong scene, or no such file; nothing was started
   75  interrupted by SIGINT, SIGTERM, SIGHUP, SIGUSR1 or SIGXCPU, after the stage in hand;
-      `foldline resume LOG` goes on where it stopped";
+      `foldline resume LOG` continues where it stopped";
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug, thiserror::Error)]
@@ -51,7 +51,7 @@ pub(super) enum Failure {
     NoSuchStep { log: PathBuf, step: u64, known: Option<(u64, u64)> },
     #[error("the run stopped{}", if *keeps { format!("; {} keeps every stage before", log.display()) } else { String::new() })]
     Stopped { log: PathBuf, keeps: bool, source: Box<dyn std::error::Error + Send + Sync> },
-    #[error("interrupted; go on with: foldline resume {}", log.display())]
+    #[error("interrupted; continue with: foldline resume {}", log.display())]
     Interrupted { log: PathBuf },
     #[error(transparent)]
     Plot(#[from] PlotError),
@@ -109,7 +109,7 @@ pub(super) enum Failure {
 }
 
 impl Failure {
-    /// As in [`EXIT_CODES`].
+    /// The exit code, as listed in [`EXIT_CODES`].
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Failure::Read { .. }
@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn interruption_says_how_to_go_on() {
         let failure = Failure::Interrupted { log: "a.mcap".into() };
-        assert_eq!(failure.in_full(), "foldline: interrupted; go on with: foldline resume a.mcap");
+        assert_eq!(failure.in_full(), "foldline: interrupted; continue with: foldline resume a.mcap");
         assert_eq!(failure.exit_code(), 75);
     }
 }

@@ -11,7 +11,7 @@ use super::log_file::{Gathered, ReadLog, ask_long, first_and_last, read_log, rea
 use super::output::{path_in_line, print};
 use super::probe_table::probe_table;
 use super::stage_table::{stage_table, step_in_full};
-use crate::history::{keep_apart, redefined_probes, stages_of_step};
+use crate::history::{redefined_probes, remove_redefined, stages_of_step};
 use crate::journal::{Log, LongLog, LongLogError};
 use crate::record::Record;
 use crate::study::Summary;
@@ -58,7 +58,7 @@ fn stages_of(path: &Path, step: u64, probes: bool) -> Result<Vec<Record>, Failur
     let (found, known) = match in_long {
         Some(found) => found,
         None if probes => {
-            let (_, records) = with_probes_anew(path)?;
+            let (_, records) = with_probes_read_again(path)?;
             (records.iter().filter(of_step).cloned().collect(), first_and_last(records.iter()))
         }
         None => {
@@ -80,7 +80,7 @@ fn stages_of(path: &Path, step: u64, probes: bool) -> Result<Vec<Record>, Failur
 /// Every stage as JSON, portion by portion.
 fn all_lines(path: &Path, probes: bool) -> Result<String, Failure> {
     if probes {
-        return Ok(lines(&with_probes_anew(path)?.1));
+        return Ok(lines(&with_probes_read_again(path)?.1));
     }
     let mut printed = Ok(());
     read_through(path, |portion| {
@@ -103,7 +103,7 @@ fn all_stages(path: &Path, probes: bool) -> Result<(ReadLog, Vec<Record>, Vec<us
         states.extend(ordinals.filter(|ordinal| log.keeps_state(*ordinal)));
     };
     if probes {
-        let (read, records) = with_probes_anew(path)?;
+        let (read, records) = with_probes_read_again(path)?;
         keep_states(&read.log, 0..records.len());
         return Ok((read, records, states));
     }
@@ -113,7 +113,7 @@ fn all_stages(path: &Path, probes: bool) -> Result<(ReadLog, Vec<Record>, Vec<us
         gathered.take(portion);
         keep_states(portion.log(), from..gathered.records.len());
     })?;
-    keep_apart(&redefined_probes(&read.log), &mut gathered.records);
+    remove_redefined(&redefined_probes(&read.log), &mut gathered.records);
     Ok((read, gathered.records, states))
 }
 
@@ -133,13 +133,13 @@ fn overview(path: &Path, probes: bool) -> Result<String, Failure> {
         text += &format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states));
     }
     if !read.is_finished() {
-        text += &format!("\nunfinished; go on with: foldline resume {}\n", path_in_line(path));
+        text += &format!("\nunfinished; continue with: foldline resume {}\n", path_in_line(path));
     }
     Ok(text)
 }
 
 /// Every stage with the probes of the last scene, read on the states, which takes the whole log.
-fn with_probes_anew(path: &Path) -> Result<(ReadLog, Vec<Record>), Failure> {
+fn with_probes_read_again(path: &Path) -> Result<(ReadLog, Vec<Record>), Failure> {
     let read = read_log(path)?;
     let records = read.records_of_scene(path)?;
     Ok((read, records))

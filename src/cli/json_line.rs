@@ -16,9 +16,9 @@ struct Line<'a> {
     chain_hash: String,
 }
 
-/// One JSON object without a line break: all fields of [`Report`] with `ordinal`, `wall_s`, and the hashes of the
-/// state, of the state before it and of the chain so far, as 64 hexadecimal digits. Numbers that are not finite are
-/// `null`.
+/// Formats a finished stage as one JSON object without a line break: all fields of [`Report`] with `ordinal`, `wall_s`,
+/// and the hashes of the state, of the state before it and of the chain so far, as 64 hexadecimal digits. Numbers that
+/// are not finite are `null`.
 pub fn json_line(record: &Record) -> String {
     let commit = &record.commit;
     let line = Line {

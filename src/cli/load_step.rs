@@ -108,7 +108,7 @@ pub(super) struct Gatherer {
 }
 
 impl Gatherer {
-    /// For runs of `scene`.
+    /// Creates a gatherer for runs of `scene`.
     pub(super) fn new(scene: &Scene) -> Self {
         Self {
             refines: scene.pipeline.contains(&Stage::RefineKnots),

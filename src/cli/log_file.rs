@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::failure::Failure;
-use super::output::{path_in_line, say};
+use super::output::{eprint, path_in_line};
 use super::scene_file::rendered;
 use crate::history::{LoggedSceneError, logged_scene, read_probes, redefined_probes};
 use crate::journal::{
@@ -23,7 +23,7 @@ pub(super) struct ReadLog {
 }
 
 impl ReadLog {
-    /// Every stage whose hashes hold, as it stands in the log.
+    /// Every stage whose hashes hold, as it is in the log.
     pub(super) fn records(&self) -> Vec<Record> {
         self.log.entries().iter().map(|entry| entry.record.clone()).collect()
     }
@@ -84,7 +84,7 @@ impl ReadLog {
                 "cut off: good up to byte {at}; {} beyond, part of a stage, not used", bytes(dropped)
             )),
             Completeness::Damaged { at, dropped, later_commits } => warnings.push(format!(
-                "damaged at byte {at}: {} beyond not used, with {} behind what is lost; `foldline verify` tells more, and `foldline \
+                "damaged at byte {at}: {} beyond not used, with {} behind what is lost; `foldline verify` reports more, and `foldline \
                  recover --remake` may run again what is lost",
                 bytes(dropped),
                 count(later_commits as usize, "whole stage")
@@ -123,7 +123,7 @@ pub(super) fn first_and_last<'r>(records: impl Iterator<Item = &'r Record> + Clo
     steps.clone().min().zip(steps.max())
 }
 
-/// Asks a long log, of which only the end is read, and says what is lost of that; `None` for one that is read whole. Where the
+/// Asks a long log, of which only the end is read, and reports what is lost of that; `None` for one that is read whole. Where the
 /// index turns out not to fit, the log is read through and asked again.
 pub(super) fn ask_long<T>(
     path: &Path,
@@ -140,13 +140,13 @@ pub(super) fn ask_long<T>(
     ask(&long).map(Some).map_err(wrong)
 }
 
-/// Reads a log and the scene of its last stretch, and says what of it is lost; where that is lost, an earlier one
+/// Reads a log and the scene of its last stretch, and reports what of it is lost; where that is lost, an earlier one
 /// serves to show what is there.
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, Failure> {
     with_scene(Log::read(path).map_err(unreadable(path))?, path)
 }
 
-/// The same for what a log of any length tells from front to back: shows it to `see` portion by portion, and gives back its end.
+/// The same for what is read of a log of any length from front to back: shows it to `see` portion by portion, and gives back its end.
 pub(super) fn read_through(path: &Path, mut see: impl FnMut(&Portion)) -> Result<ReadLog, Failure> {
     let mut portions = Portions::of(path).map_err(unreadable(path))?;
     loop {
@@ -180,10 +180,10 @@ pub(super) fn end_scene(log: &Log, path: &Path) -> Result<(Scene, bool), Failure
     }
 }
 
-/// Says what of a log is lost.
+/// Reports what of a log is lost.
 pub(super) fn say_warnings(log: &Log, path: &Path) {
     for warning in ReadLog::warnings_of(log) {
-        say(&format!("foldline: {}: {warning}", path_in_line(path)));
+        eprint(&format!("foldline: {}: {warning}", path_in_line(path)));
     }
 }
 
@@ -191,7 +191,7 @@ pub(super) fn say_warnings(log: &Log, path: &Path) {
 pub(super) fn older_scene(log: &Log, is_older: bool) -> Option<String> {
     let lost = log.lost_manifests().last().filter(|_| is_older)?;
     Some(format!(
-        "what the run was asked for from stage {} on is lost: its target, settings and probes are not known, and those below are \
+        "what the run was to compute from stage {} on is lost: its target, settings and probes are not known, and those below are \
          of the scene before",
         lost.ordinal
     ))
@@ -220,13 +220,13 @@ pub(super) fn scene_at(log: &Log, path: &Path, index: usize, settings: &[String]
     })
 }
 
-/// Says which stretches of a log another revision of the numerics or another kind of kernel wrote than this one: what they
+/// Reports which stretches of a log another revision of the numerics or another kind of kernel wrote than this one: what they
 /// give now may differ in its last bits.
 pub(super) fn say_other_numerics(log: &Log) {
     let here = Manifest::here(Path::new(""), "", 0);
     for manifest in log.manifests() {
         if let Some(otherwise) = here.rounds_otherwise(manifest) {
-            say(&format!("stages from {} on: {otherwise}", manifest.first_ordinal));
+            eprint(&format!("stages from {} on: {otherwise}", manifest.first_ordinal));
         }
     }
 }

@@ -6,7 +6,7 @@
 //! | file | what |
 //! |---|---|
 //! | `run`, `resume` | a run from its start, and from where it stopped |
-//! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | what a log is asked |
+//! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `extremes` | suites, and how fast and exact runs are |
 //! | `help` | help on subcommands and topics |
@@ -51,9 +51,13 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::{EXIT_CODES, Failure};
 
+#[doc(hidden)]
 pub use extremes::ExtremesTable;
+#[doc(hidden)]
 pub use json_line::json_line;
-pub use progress::{Manner, Shown};
+#[doc(hidden)]
+pub use progress::{ProgressSink, ProgressStyle};
+#[doc(hidden)]
 pub use stage_table::{stage_table, step_in_full};
 
 /// Thin shells that fold, simulated as a pipeline of restartable stages
@@ -88,7 +92,7 @@ impl Command {
     /// The exit code of a command that did what it was asked to.
     fn run(self) -> Result<u8, Failure> {
         session::outlive_file_limits()?;
-        // Commands that compute without being told on how many threads.
+        // Commands that compute without an argument for the number of threads.
         if matches!(
             self,
             Command::Plot(_) | Command::Bisect(_) | Command::Stability(_) | Command::Recover(_) | Command::Converge(_)
@@ -115,7 +119,7 @@ impl Command {
     }
 }
 
-/// Does what the arguments of this process ask for, and says what came of it.
+/// Runs the command that the arguments of this process name, prints its result or error, and returns the exit code.
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -129,9 +133,9 @@ pub fn main() -> ExitCode {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
             match &failure {
-                // Its lines are rendered for a terminal where there is one, and what stands in them is made printable there.
-                Failure::WrongScene { .. } => output::say_rendered(&failure.in_full()),
-                _ => output::say(&failure.in_full()),
+                // Its lines are rendered for a terminal where there is one, and what they quote is made printable there.
+                Failure::WrongScene { .. } => output::eprint_rendered(&failure.in_full()),
+                _ => output::eprint(&failure.in_full()),
             }
             ExitCode::from(failure.exit_code())
         }

@@ -27,7 +27,7 @@ pub(super) fn file_name() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// A path as it stands in a line of text.
+/// A path as it is printed in a line of text.
 pub(super) fn path_in_line(path: &Path) -> String {
     one_line(&path.to_string_lossy()).into_owned()
 }
@@ -37,17 +37,17 @@ pub(super) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     print(&(escaped(serde_json::to_string(value).unwrap_or_default()) + "\n"))
 }
 
-/// Says something beside the output; nobody has to listen.
-pub(super) fn say(text: &str) {
-    say_rendered(&printable(text));
+/// Writes a line to standard error; a closed stream is ignored.
+pub(super) fn eprint(text: &str) {
+    eprint_rendered(&printable(text));
 }
 
 /// The same for text that was made for a terminal, colours and all.
-pub(super) fn say_rendered(text: &str) {
+pub(super) fn eprint_rendered(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// JSON with the control characters escaped that JSON lets stand.
+/// JSON with the control characters escaped that JSON allows.
 pub(super) fn escaped(json: String) -> String {
     if !json.chars().any(is_obeyed) {
         return json;

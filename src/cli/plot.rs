@@ -7,7 +7,7 @@ use clap::Args;
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{Gathered, first_and_last, read_through};
 use super::output::{file_name, path_in_line, print, write_files};
-use crate::history::{States, keep_apart, redefined_probes};
+use crate::history::{States, redefined_probes, remove_redefined};
 use crate::record::{Parameter, Record, Report};
 use crate::scene::Scene;
 use crate::spline::Mesh;
@@ -51,7 +51,7 @@ impl Arguments {
             gathered.take(portion);
         })?;
         let mut records = std::mem::take(&mut gathered.records);
-        keep_apart(&redefined_probes(&read.log), &mut records);
+        remove_redefined(&redefined_probes(&read.log), &mut records);
         let folder = output.unwrap_or_else(|| log.with_extension(""));
         let name = log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let Some((ordinal, report, state)) = shown else {

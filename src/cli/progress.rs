@@ -4,7 +4,7 @@
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget};
 
 use super::json_line::json_line;
 use super::load_step::Gatherer;
@@ -14,9 +14,9 @@ use crate::scene::Scene;
 use crate::state::State;
 use crate::units::{count, rounded};
 
-/// How a run is shown.
+/// How the progress of a run is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manner {
+pub enum ProgressStyle {
     /// Nothing.
     Quiet,
     /// A line that changes in place, on standard error.
@@ -27,20 +27,21 @@ pub enum Manner {
     Json,
 }
 
-impl Manner {
-    /// What the arguments ask for; a live line only where standard error is a terminal.
+impl ProgressStyle {
+    /// The style that the arguments `--quiet` and `--json` choose; a live line only where standard error is a terminal.
     pub fn of(quiet: bool, json: bool) -> Self {
         match (quiet, json) {
-            (_, true) => Manner::Json,
-            (true, _) => Manner::Quiet,
-            _ if io::stderr().is_terminal() => Manner::Live,
-            _ => Manner::Lines,
+            (_, true) => ProgressStyle::Json,
+            (true, _) => ProgressStyle::Quiet,
+            _ if io::stderr().is_terminal() => ProgressStyle::Live,
+            _ => ProgressStyle::Lines,
         }
     }
 }
 
-/// A sink that shows every stage after the sink within has taken it, so that what is shown is also kept.
-pub struct Shown<'a, S> {
+/// A sink that shows the progress of a run: it hands every stage to an inner sink first, so that what is shown is also
+/// kept.
+pub struct ProgressSink<'a, S> {
     inner: S,
     display: Display<'a>,
     records: Vec<Record>,
@@ -63,32 +64,35 @@ enum Display<'a> {
     Json(Option<Box<dyn Write + 'a>>),
 }
 
-impl<'a, S: Sink> Shown<'a, S> {
-    /// Shows a run of `scene` from a rotation (0, or where it is taken up again) to another, degrees, to the streams
-    /// of this process.
-    pub fn new(inner: S, manner: Manner, scene: &Scene, [start, target]: [f64; 2]) -> Self {
+impl<'a, S: Sink> ProgressSink<'a, S> {
+    /// Creates a sink that shows a run of `scene` on the streams of this process; the run leads from parameter `start`
+    /// (0, or where it is resumed) to `target`.
+    pub fn new(inner: S, style: ProgressStyle, scene: &Scene, [start, target]: [f64; 2]) -> Self {
         let gatherer = Gatherer::new(scene);
-        let display = match manner {
-            Manner::Quiet => Display::Quiet,
-            Manner::Live => Display::Live { bar: live_bar(Parameter::of(scene), target, start), target, gatherer },
-            Manner::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
-            Manner::Json => Display::Json(Some(Box::new(io::stdout()))),
+        let display = match style {
+            ProgressStyle::Quiet => Display::Quiet,
+            ProgressStyle::Live => {
+                Display::Live { bar: live_bar(Parameter::of(scene), target, start), target, gatherer }
+            }
+            ProgressStyle::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
+            ProgressStyle::Json => Display::Json(Some(Box::new(io::stdout()))),
         };
         Self { inner, display, records: Vec::new(), warned: Vec::new() }
     }
 
-    /// Writes lines as [`Manner::Lines`] to `out`.
+    /// Creates a sink that writes the lines of [`ProgressStyle::Lines`] to `out`.
     pub fn lines(inner: S, scene: &Scene, out: impl Write + 'a) -> Self {
         let display = Display::Lines { out: Box::new(out), gatherer: Gatherer::new(scene) };
         Self { inner, display, records: Vec::new(), warned: Vec::new() }
     }
 
-    /// Writes lines as [`Manner::Json`] to `out`.
+    /// Creates a sink that writes the lines of [`ProgressStyle::Json`] to `out`.
     pub fn json(inner: S, out: impl Write + 'a) -> Self {
         Self { inner, display: Display::Json(Some(Box::new(out))), records: Vec::new(), warned: Vec::new() }
     }
 
-    /// Ends the display, however the run ended. Gives back the sink within and the stages that were shown.
+    /// Ends the display, however the run ended, and returns the inner sink and the records of the stages that were
+    /// shown.
     pub fn finish(mut self) -> (S, Vec<Record>) {
         match &mut self.display {
             Display::Live { bar, gatherer, .. } => {
@@ -146,8 +150,8 @@ impl<'a, S: Sink> Shown<'a, S> {
     }
 }
 
-impl<S> Shown<'_, S> {
-    /// Lines for warnings of kinds that were not shown yet; how often each was said stands in the summary.
+impl<S> ProgressSink<'_, S> {
+    /// Lines for warnings of kinds that were not shown before; how often each was reported is in the summary.
     fn new_warnings(&mut self, record: &Record) -> Vec<String> {
         let mut lines = Vec::new();
         for warning in &record.report.warnings {
@@ -161,7 +165,7 @@ impl<S> Shown<'_, S> {
     }
 }
 
-impl<S: Sink> Sink for Shown<'_, S> {
+impl<S: Sink> Sink for ProgressSink<'_, S> {
     fn take(&mut self, state: &State, record: &Record) -> Result<(), SinkError> {
         self.inner.take(state, record)?;
         self.records.push(record.clone());
@@ -181,7 +185,8 @@ fn thousandths(parameter: f64) -> u64 {
 
 fn live_bar(driven_by: Parameter, target: f64, start: f64) -> ProgressBar {
     let template = "{prefix}  {bar:10}  {wide_msg}  {elapsed}, {eta} left";
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style =
+        indicatif::ProgressStyle::with_template(template).unwrap_or_else(|_| indicatif::ProgressStyle::default_bar());
     let bar = ProgressBar::with_draw_target(Some(thousandths(target)), ProgressDrawTarget::stderr())
         .with_style(style.progress_chars("━╸─"))
         .with_prefix(live_prefix(driven_by, start, target))
@@ -194,7 +199,7 @@ fn live_bar(driven_by: Parameter, target: f64, start: f64) -> ProgressBar {
     bar
 }
 
-/// What stands before the bar.
+/// The text before the bar.
 fn live_prefix(driven_by: Parameter, parameter: f64, target: f64) -> String {
     match driven_by {
         Parameter::Rotation => format!("{parameter:.3}° of {}°", rounded(target)),
@@ -202,7 +207,7 @@ fn live_prefix(driven_by: Parameter, parameter: f64, target: f64) -> String {
     }
 }
 
-/// What stands after the bar: the last stage and the numbers of the state that it made.
+/// The text after the bar: the last stage and the numbers of the state that it made.
 fn live_message(report: &Report) -> String {
     let Report { stage, moment_n_mm, elements: [n1, n2], .. } = report;
     let degree = if report.driven_by == Parameter::Rotation { "°" } else { "" };
@@ -210,16 +215,16 @@ fn live_message(report: &Report) -> String {
         Outcome::Done if report.iterations > 0 => format!(", {}", count(report.iterations, "iteration")),
         Outcome::Done => String::new(),
         Outcome::RejectedJump => {
-            format!(" turned down at {:.3}{degree}: unstable on the way", report.attempted_parameter)
+            format!(" rejected at {:.3}{degree}: unstable on the way", report.attempted_parameter)
         }
         Outcome::RejectedCriticalPoint => {
-            format!(" turned down at {:.3}{degree}: past a critical point", report.attempted_parameter)
+            format!(" rejected at {:.3}{degree}: past a critical point", report.attempted_parameter)
         }
         Outcome::RejectedSharpTurn => {
-            format!(" turned down at {:.3}{degree}: too sharp a turn", report.attempted_parameter)
+            format!(" rejected at {:.3}{degree}: too sharp a turn", report.attempted_parameter)
         }
         Outcome::RejectedNoEquilibrium => {
-            format!(" turned down at {:.3}{degree}: no equilibrium", report.attempted_parameter)
+            format!(" rejected at {:.3}{degree}: no equilibrium", report.attempted_parameter)
         }
     };
     match report.driven_by {
@@ -266,7 +271,7 @@ mod tests {
         assert_eq!(live_prefix(Parameter::Rotation, report.parameter, 20.0), "9.600° of 20°");
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve, 5 iterations");
         report.outcome = Outcome::RejectedJump;
-        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve turned down at 9.615°: unstable on the way");
+        assert_eq!(live_message(&report), "289.12 N·mm  16×8  solve rejected at 9.615°: unstable on the way");
         report = Report { outcome: Outcome::Done, stage: Stage::RefineKnots, iterations: 0, ..report };
         assert_eq!(live_message(&report), "289.12 N·mm  16×8  refine-knots");
     }

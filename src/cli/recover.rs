@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{file_name, path_in_line, print, say};
+use super::output::{eprint, file_name, path_in_line, print};
 use crate::history::mended;
 use crate::journal::{Log, RecoverOutcome, recover, recover_mended};
 use crate::units::count;
@@ -21,14 +21,14 @@ pub(super) struct Arguments {
     /// Log to write
     #[arg(short, long, value_name = "NEW", value_parser = file_name())]
     output: PathBuf,
-    /// Run lost stages again where whole ones stand behind them, which then follow on them; that they are the same say the
+    /// Run lost stages again where whole ones follow behind them; that they are the same is shown by the
     /// hashes of those
     #[arg(long)]
     remake: bool,
 }
 
 impl Arguments {
-    /// Recovers and says what became of it.
+    /// Recovers the log and reports the result.
     pub(super) fn run(self) -> Result<u8, Failure> {
         let Self { log, output, remake } = self;
         let mut made = 0;
@@ -41,8 +41,8 @@ impl Arguments {
         let outcome = outcome.map_err(|source| Failure::WrongLog { log: log.clone(), source: Box::new(source) })?;
         // Where the mended log does not read as it should, the good part of the log itself is what is kept.
         if made > 0 && matches!(outcome, RecoverOutcome::Lossless { .. }) {
-            say(&format!(
-                "made again what was lost, {}: the stages behind follow on it; but how long it took is not known any more",
+            eprint(&format!(
+                "made again what was lost, {}: the stages behind follow on it; but how long it took is no longer known",
                 count(made, "stage")
             ));
         }

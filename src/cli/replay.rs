@@ -78,7 +78,7 @@ impl Arguments {
         Ok(worst)
     }
 
-    /// Replays a stage, and says what came of it: the exit code.
+    /// Replays a stage, reports the result, and returns the exit code.
     fn replay(
         &self,
         states: &mut States,
@@ -178,7 +178,7 @@ fn line(verdict: &Verdict, replayed: &Replayed, ordinal: u64) -> String {
     format!("{ordinal:>5}  step {} {}{iterations}: {what}\n", report.step, report.stage)
 }
 
-/// What differs beside the worst field, by less.
+/// The fields that differ less than the worst one.
 fn further(comparison: &Comparison) -> String {
     let Comparison::Numbers(differences) = comparison else { return String::new() };
     let further: Vec<String> =

@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::{ReadLog, scene_of};
-use super::output::{path_in_line, print, say};
+use super::output::{eprint, path_in_line, print};
 use super::probe_table::{json_lines, new_probes, probe_table};
-use super::progress::Manner;
+use super::progress::ProgressStyle;
 use super::session::{RunOptions, drive, watch_signals};
 use crate::history::{basis, plan, read_probes, restored_scene};
 use crate::journal::{Completeness, Entry, Log, Manifest, ReadError, Resume, ResumeError, Resumed, stages_in_words};
@@ -18,7 +18,7 @@ use crate::scene::{Scene, SyncPolicy};
 use crate::study::Summary;
 use crate::units::count;
 
-/// Go on with a log from its last good stage, as if it had never stopped
+/// Continue a log from its last good stage, as if it had never stopped
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
@@ -39,7 +39,7 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// Goes on with the scene that is in the log.
+    /// Continues with the scene that is in the log.
     pub(super) fn run(self) -> Result<(), Failure> {
         let old = OldLog::open(&self.log)?;
         let scene = scene_of(old.claim.log(), &self.log)?;
@@ -50,7 +50,7 @@ impl Arguments {
             log: self.log,
             threads: self.threads.map(usize::from),
             until: self.until,
-            manner: Manner::of(self.quiet, self.json),
+            style: ProgressStyle::of(self.quiet, self.json),
         };
         let last = old.claim.log().manifests().last();
         let (file, text) = last.map_or_else(Default::default, |m| (m.scene_file.clone(), m.scene_text.clone()));
@@ -86,7 +86,7 @@ fn refused(path: &Path, error: ResumeError) -> Failure {
     }
 }
 
-/// Goes on with a log as far as it stands for `scene`.
+/// Continues a log as far as its stages are kept for `scene`.
 ///
 /// Of a long log only the end is read, which is enough where the scene is the same.
 pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &RunOptions) -> Result<(), Failure> {
@@ -108,13 +108,13 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
         let claim = claim.whole().map_err(|source| unusable(Box::new(source)))?;
         return go_on(OldLog { claim }, scene, manifest, options);
     }
-    // What is lost or changed is said however quiet the run is.
+    // What is lost or changed is reported however quiet the run is.
     let lost = ReadLog::warnings_of(log).into_iter().chain(restored).chain(plan.changes);
     let mut findings = other_numerics(log, &manifest);
     if options.is_shown() {
-        say(&found(log, plan.keep));
+        eprint(&found(log, plan.keep));
     }
-    lost.for_each(|line| say(&line));
+    lost.for_each(|line| eprint(&line));
     let mut stages = Stages::new(scene.clone());
     if !same_scene {
         // What a run of it from the start would refuse is refused.
@@ -135,11 +135,11 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     let until = options.until;
     let next = run.next_stage().filter(|_| until.is_none_or(|until| reached < until));
     match next {
-        Some(stage) => findings.push(format!("goes on from {shown} with {stage}")),
+        Some(stage) => findings.push(format!("continues from {shown} with {stage}")),
         None => findings.push(format!("nothing to do: the log has reached {shown}")),
     }
     if options.is_shown() {
-        findings.iter().for_each(|line| say(line));
+        findings.iter().for_each(|line| eprint(line));
     }
     let finished = log.completeness() == Completeness::Finished && plan.keep == all;
     // One that lost its summary is closed again.
@@ -159,7 +159,7 @@ pub(super) fn go_on(old: OldLog, scene: Scene, manifest: Manifest, options: &Run
     }
 }
 
-/// The scene that a log was last continued with, and what is said where it is lost and `scene` takes its place.
+/// The scene that a log was last continued with, and a message where it is lost and `scene` takes its place.
 fn scene_before(log: &Log, path: &Path, scene: &Scene) -> Result<(Scene, Option<String>), Failure> {
     match scene_of(log, path) {
         Err(lost @ (Failure::SceneLost { .. } | Failure::NoScene { .. })) => {
@@ -173,8 +173,8 @@ fn scene_before(log: &Log, path: &Path, scene: &Scene) -> Result<(Scene, Option<
 /// Shows what probes that a log has not read on its equilibria.
 fn show_probes(names: &[String], before: &[Record], options: &RunOptions) -> Result<(), Failure> {
     let head = "new probes on the equilibria of the log, which itself keeps the ones that it has";
-    match options.manner {
-        Manner::Json => print(&json_lines(before)),
+    match options.style {
+        ProgressStyle::Json => print(&json_lines(before)),
         _ => print(&format!("{head}\n{}", probe_table(names, before))),
     }
 }
@@ -197,22 +197,22 @@ fn put_back(
 ) -> Result<(), Failure> {
     let path = &options.log;
     let finished = claim.log().completeness() == Completeness::Finished;
-    ReadLog::warnings_of(claim.log()).iter().for_each(|line| say(line));
+    ReadLog::warnings_of(claim.log()).iter().for_each(|line| eprint(line));
     let resumed = claim
         .put_back(manifest, sync)
         .map_err(|source| Failure::Resume { log: path.clone(), source: Box::new(source) })?;
     say_dropped(&resumed);
     let closed = if finished { resumed.writer.finish() } else { resumed.writer.close() };
     closed.map_err(|source| Failure::WrongLog { log: path.clone(), source: Box::new(source) })?;
-    say(&format!(
-        "put back: the scene of {stages}, which this is. No stage was run; `foldline resume` goes on with that of the last"
+    eprint(&format!(
+        "put back: the scene of {stages}, which this is. No stage was run; `foldline resume` continues with that of the last"
     ));
     Ok(())
 }
 
 fn say_dropped(resumed: &Resumed) {
     if let Some(dropped) = &resumed.dropped {
-        say(&format!("what was dropped is kept in {}", path_in_line(dropped)));
+        eprint(&format!("what was dropped is kept in {}", path_in_line(dropped)));
     }
 }
 
@@ -225,18 +225,18 @@ fn found(log: &Log, keep: usize) -> String {
             format!("the log holds {all}, and has lost a manifest")
         }
         commits if keep == commits => format!("the log holds {all}, all good"),
-        _ => format!("the log holds {all}, all good; the first {keep} stand"),
+        _ => format!("the log holds {all}, all good; the first {keep} are kept"),
     }
 }
 
-/// Another kernel, revision or program may round differently: it is allowed, said, and recorded in the log.
+/// Another kernel, revision or program may round differently: it is allowed, reported, and recorded in the log.
 fn other_numerics(log: &Log, manifest: &Manifest) -> Vec<String> {
     let Some(last) = log.manifests().last() else { return Vec::new() };
     let otherwise = manifest
         .rounds_otherwise(last)
         .map(|what| format!("{what}: stages from here on may differ in their last bits"));
     let [was, is] = [last, manifest].map(|manifest| &manifest.program_version);
-    let program = (was != is).then(|| format!("written by foldline {was}, goes on with foldline {is}"));
+    let program = (was != is).then(|| format!("written by foldline {was}, continued with foldline {is}"));
     otherwise.into_iter().chain(program).chain(other_machine(last, manifest)).collect()
 }
 
@@ -245,7 +245,7 @@ fn other_machine(last: &Manifest, manifest: &Manifest) -> Option<String> {
     (!last.same_machine(manifest)).then(|| {
         let feature = |list: &[String]| list.join(" ");
         format!(
-            "another machine: written on {} ({} {}), goes on on {} ({} {}); the log records it",
+            "another machine: written on {} ({} {}), continues on {} ({} {}); the log records it",
             last.host,
             last.cpu,
             feature(&last.cpu_features),

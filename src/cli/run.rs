@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
-use super::output::{file_name, path_in_line, say};
-use super::progress::Manner;
+use super::output::{eprint, file_name, path_in_line};
+use super::progress::ProgressStyle;
 use super::resume::{self, OldLog};
 use super::scene_file::{SceneFile, read_scene};
 use super::session::{RunOptions, drive, positive, watch_signals};
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     /// from there
     #[arg(long, value_name = "AT", value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Go on with the log if there is one, as far as it stands for this scene
+    /// Continue the log if there is one, as far as its stages are valid for this scene
     #[arg(long)]
     resume: bool,
     /// Show no progress, only the summary
@@ -63,14 +63,14 @@ impl Arguments {
             log: self.output.unwrap_or_else(|| default_log(&self.scene)),
             threads: self.threads.map(usize::from),
             until: self.until,
-            manner: Manner::of(self.quiet, self.json),
+            style: ProgressStyle::of(self.quiet, self.json),
         };
         Ok(Job { file: self.scene, scene, options, resume: self.resume })
     }
 }
 
 impl Job {
-    /// Runs, and sums up.
+    /// Runs the scene and prints the summary.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Job { file, scene: SceneFile { scene, text }, options, resume } = self;
         let manifest = Manifest::here(&file, &text, options.use_threads()?);
@@ -80,13 +80,13 @@ impl Job {
             if let Some(old) = OldLog::open_unless_empty(&options.log)? {
                 return resume::go_on(old, scene, manifest, &options);
             }
-            say(&format!("{} holds nothing: begun anew", path_in_line(&options.log)));
+            eprint(&format!("{} holds nothing: started again", path_in_line(&options.log)));
         }
         let mut stages = Stages::new(scene.clone());
         let start = stages.start()?;
         let raised = watch_signals()?;
         make_default_folder(&options.log)?;
-        let begin = if is_there { JournalWriter::create_anew } else { JournalWriter::create };
+        let begin = if is_there { JournalWriter::create_over_empty } else { JournalWriter::create };
         let writer = begin(&options.log, &manifest, scene.output.sync)
             .map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         if options.is_shown() {
@@ -95,12 +95,12 @@ impl Job {
                 Parameter::Rotation => format!("{}°", rounded(to)),
                 Parameter::LoadFactor => format!("load factor {}", rounded(to)),
             };
-            say(&format!("to {to} → {}", path_in_line(&options.log)));
+            eprint(&format!("to {to} → {}", path_in_line(&options.log)));
         }
-        // What looks odd is said however quiet the run is.
-        stages.remarks(&start)?.iter().for_each(|remark| say(remark));
+        // What looks odd is reported however quiet the run is.
+        stages.remarks(&start)?.iter().for_each(|remark| eprint(remark));
         if scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
-            say(
+            eprint(
                 "warning: degree 2 with full quadrature locks on coarse meshes, and stays too stiff; mesh.quadrature = \"reduced\" helps",
             );
         }

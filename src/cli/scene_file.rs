@@ -18,7 +18,7 @@ pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
     let bytes = bytes_of(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
     let text = text_of(bytes).map_err(|reason| Failure::NotText { path: path.to_path_buf(), reason })?;
     let scene = checked(&text, &path_in_line(path), &[])?;
-    // A log stands for itself: a surface from a file of its own goes into the text that the log keeps.
+    // A log needs no other file: a surface from a file of its own goes into the text that the log keeps.
     let text = match scene.geometry {
         Geometry::Nurbs(_) => scene.to_toml(),
         _ => text,
@@ -44,7 +44,7 @@ fn text_of(bytes: Vec<u8>) -> Result<String, String> {
     const LOG: &[u8] = b"\x89MCAP0\r\n";
     const UTF_16: [&[u8]; 2] = [b"\xff\xfe", b"\xfe\xff"];
     if bytes.starts_with(LOG) {
-        return Err("it is a log; `foldline resume` goes on with one, `foldline inspect` shows what is in it".into());
+        return Err("it is a log; `foldline resume` continues it, `foldline inspect` shows what is in it".into());
     }
     if UTF_16.iter().any(|mark| bytes.starts_with(mark)) || bytes.iter().take(64).any(|byte| *byte == 0) {
         return Err("it is text in UTF-16, or none at all; save it as UTF-8".into());

@@ -11,8 +11,8 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXCPU, SIGXFSZ};
 use signal_hook::flag;
 
 use super::failure::{Failure, INTERRUPTED};
-use super::output::{path_in_line, print, say};
-use super::progress::{Manner, Shown};
+use super::output::{eprint, path_in_line, print};
+use super::progress::{ProgressSink, ProgressStyle};
 use crate::journal::JournalWriter;
 use crate::pipeline::{Ending, Run};
 use crate::record::Record;
@@ -20,7 +20,7 @@ use crate::scene::Scene;
 use crate::study::Summary;
 use crate::view::MeshHistory;
 
-/// What a run is given beside its scene; none of it changes a state, except where the run stops.
+/// What a run is given besides its scene; none of it changes a state, except where the run stops.
 pub(super) struct RunOptions {
     /// Where the log goes.
     pub(super) log: PathBuf,
@@ -29,18 +29,18 @@ pub(super) struct RunOptions {
     /// Rotation at which the run stops early, degrees.
     pub(super) until: Option<f64>,
     /// How the run is shown.
-    pub(super) manner: Manner,
+    pub(super) style: ProgressStyle,
 }
 
 impl RunOptions {
     /// Whether a person watches.
     pub(super) fn is_shown(&self) -> bool {
-        matches!(self.manner, Manner::Live | Manner::Lines)
+        matches!(self.style, ProgressStyle::Live | ProgressStyle::Lines)
     }
 
     /// Prints what a person reads and a program does not.
     pub(super) fn show(&self, text: &str) -> Result<(), Failure> {
-        if self.manner == Manner::Json { Ok(()) } else { print(text) }
+        if self.style == ProgressStyle::Json { Ok(()) } else { print(text) }
     }
 
     /// The last words of a run of whose log only the stages from `first` on were read: numbers of a part would be taken for those
@@ -57,7 +57,7 @@ impl RunOptions {
     pub(super) fn sum_up(&self, summary: &Summary) -> Result<(), Failure> {
         self.show(&summary.to_string())?;
         if self.is_shown() {
-            say(&format!("every stage: foldline inspect {}", path_in_line(&self.log)));
+            eprint(&format!("every stage: foldline inspect {}", path_in_line(&self.log)));
         }
         Ok(())
     }
@@ -75,7 +75,7 @@ pub(super) fn use_threads(threads: Option<usize>) -> Result<usize, Failure> {
     let failed = |source| Failure::Threads { source: Box::new(source) };
     let waiting = if wanted > 1 { waiting_threads(wanted).map(Some) } else { Ok(None) };
     if let Err(error) = &waiting {
-        say(&format!("warning: threads cannot be made ({error}): everything is done on one, with the same results"));
+        eprint(&format!("warning: threads cannot be made ({error}): everything is done on one, with the same results"));
     }
     let pool = ThreadPoolBuilder::new();
     match waiting.ok().flatten() {
@@ -128,7 +128,7 @@ pub(super) fn watch_signals() -> Result<Arc<AtomicBool>, Failure> {
     Ok(raised)
 }
 
-/// Whether this process was started with a signal ignored, as `nohup` does; known on Linux, where /proc tells it.
+/// Whether this process was started with a signal ignored, as `nohup` does; known on Linux, from /proc.
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -150,7 +150,7 @@ pub(super) fn drive(
         false => writer,
     };
     let target = options.until.unwrap_or(scene.load.target());
-    let mut sink = Shown::new(writer, options.manner, scene, [start, target]);
+    let mut sink = ProgressSink::new(writer, options.style, scene, [start, target]);
     let ending = run.to_end(options.until, &|| raised.load(Ordering::Relaxed), &mut sink);
     let (writer, records) = sink.finish();
     let log = || options.log.clone();

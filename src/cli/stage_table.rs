@@ -7,7 +7,7 @@ use crate::scene::Stage;
 use crate::spline::Grid;
 use crate::units::reading;
 
-/// A column: its head, and whether its cells stand to the right.
+/// A column: its head, and whether its cells are right-aligned.
 struct Column(&'static str, bool);
 
 const COLUMNS: [Column; 14] = [
@@ -27,13 +27,14 @@ const COLUMNS: [Column; 14] = [
     Column("", false),
 ];
 
-/// A row a stage, in columns that are as wide as they need to be; a run of a thousand stages fits 120 characters.
+/// Formats stages as a table with a row for each; columns are as wide as they need to be, and a run of a thousand
+/// stages fits 120 characters.
 ///
 /// `mesh` is elements along the length × along the arc, `free` the free unknowns, `neg` the negative pivots; blank is
-/// zero. The last column says what else happened; ✗ is a solve rejected, at the rotation that it tried, ! a warning.
+/// zero. The last column shows what else happened; ✗ is a solve rejected, at the rotation that it tried, ! a warning.
 pub fn stage_table(records: &[Record]) -> String {
     let steps = records.first().is_some_and(|record| record.report.driven_by == Parameter::LoadFactor);
-    // Where no ends turn, the first probe stands in the place of their moment: of the last scene, which may have others.
+    // Where no ends turn, the first probe replaces their moment: of the last scene, which may have others.
     let probe = records.iter().rev().find_map(|record| record.report.probes.first());
     let probe = probe.map(|reading| reading.name.clone());
     // The cells are made twice: those of a long run do not fit in memory.
@@ -124,7 +125,7 @@ fn happened(report: &Report) -> String {
     }
 }
 
-/// Everything about every stage of load step `step`; empty where the log has no such step.
+/// Lists all fields of every stage of load step `step`; empty where the log has no such step.
 pub fn step_in_full(records: &[Record], step: u64) -> String {
     let mut text = String::new();
     for record in records.iter().filter(|record| record.report.step == step) {
@@ -149,15 +150,15 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
         Outcome::Done if report.rippled => "done; a ripple of the mesh was passed".to_string(),
         Outcome::Done => "done".to_string(),
         Outcome::RejectedJump => {
-            "turned down: unstable on the way, or jumped; the increment is halved until that is located".to_string()
+            "rejected: unstable on the way, or jumped; the increment is halved until that is located".to_string()
         }
         Outcome::RejectedCriticalPoint => {
-            "turned down: past a limit point or a bifurcation; the step is halved until that is located".to_string()
+            "rejected: past a limit point or a bifurcation; the step is halved until that is located".to_string()
         }
         Outcome::RejectedSharpTurn => {
-            "turned down: the path turned too far, or this is another branch; the step is halved".to_string()
+            "rejected: the path turned too far, or this is another branch; the step is halved".to_string()
         }
-        Outcome::RejectedNoEquilibrium => "turned down: no equilibrium found; the increment is halved".to_string(),
+        Outcome::RejectedNoEquilibrium => "rejected: no equilibrium found; the increment is halved".to_string(),
     };
     let [n1, n2] = report.elements;
     let mut lines = vec![

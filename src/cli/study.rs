@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{path_in_line, print, print_json, say};
+use super::output::{eprint, path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
 use crate::scene::Scene;
 use crate::study::{AccuracyError, AccuracyRow, is_one_structure, measure};
 
 /// Run scenes with one setting after another, and hold each against a reference: the error of its moment (or first probe)
-/// before and after the first snap, beside its run time
+/// before and after the first snap, with its run time
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// Scenes (TOML)
@@ -77,7 +77,7 @@ impl Arguments {
             comparable.map_err(|cause| Failure::Study { case: case.label(), source: Box::new(cause) })?;
         }
         if !self.json {
-            say(&format!("reference: {name}"));
+            eprint(&format!("reference: {name}"));
         }
         let failed = |case: String| move |source: AccuracyError| Failure::Study { case, source: Box::new(source) };
         let expected = measure(&reference).map_err(failed(name.clone()))?;
@@ -140,7 +140,7 @@ impl Arguments {
             }));
         }
         print(&format!("{:<width$}  failed\n", case.label()))?;
-        say(&failure.in_full());
+        eprint(&failure.in_full());
         Ok(())
     }
 

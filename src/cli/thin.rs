@@ -6,13 +6,13 @@ use std::str::FromStr;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{file_name, path_in_line, print, say};
+use super::output::{eprint, file_name, path_in_line, print};
 use crate::journal::{ThinError, Thinned, thin};
 use crate::units::count;
 
 /// Write a smaller log that holds every stage and every report, but the states of some load steps alone
 ///
-/// The chain of hashes stays as it is. A state that is not kept is made again, where one is asked for, from the last kept one
+/// The chain of hashes stays as it is. A state that is not kept is made again, where it is needed, from the last kept one
 /// before it; `resume` goes from the last one, which is always kept.
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
@@ -28,7 +28,7 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// Thins, and says what became of it.
+    /// Thins the log and reports the result.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, output, keep } = self;
         let thinned = thin(&log, &output, &keep.text, |step| keep.has(step)).map_err(|source| match source {
@@ -38,7 +38,7 @@ impl Arguments {
             source => Failure::WrongLog { log: log.clone(), source: Box::new(source) },
         })?;
         for (text, choice) in &keep.choices {
-            not_kept(text, *choice, &thinned, &log).iter().for_each(|line| say(line));
+            not_kept(text, *choice, &thinned, &log).iter().for_each(|line| eprint(line));
         }
         let [before, after] = thinned.bytes.map(|bytes| bytes as f64 / 1e6);
         print(&format!(
@@ -50,14 +50,14 @@ impl Arguments {
     }
 }
 
-/// What is said of load steps whose state was to be kept and is not: the log has none, or not any more.
+/// The warning about load steps whose state was to be kept and is not in the log, or no longer.
 fn not_kept(text: &str, choice: Choice, thinned: &Thinned, log: &Path) -> Option<String> {
     let (all, kept) = (&thinned.all_steps, &thinned.steps);
     let missed = all.difference(kept).filter(|step| choice.has(**step));
     match missed.clone().next() {
         Some(first) => Some(format!(
-            "--keep {text}: the log was thinned before, and has no state any more of {}, the first of them {first}. Such a state is \
-             made again where it is asked for, as by `foldline stability {} --step {first}`; to keep it, thin the log that this one was \
+            "--keep {text}: the log was thinned before, and no longer has the state of {}, the first of them {first}. Such a state is \
+             made again where it is needed, as by `foldline stability {} --step {first}`; to keep it, thin the log that this one was \
              made of",
             count(missed.count(), "load step"),
             path_in_line(log)

@@ -1,4 +1,4 @@
-//! Iterates of replayed stages, for `replay --trace`: one MCAP and one CSV beside it.
+//! Iterates of replayed stages, for `replay --trace`: one MCAP and one CSV file.
 
 use std::path::{Path, PathBuf};
 

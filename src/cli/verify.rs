@@ -16,7 +16,7 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// Lists all findings, and says whether the log is good.
+    /// Lists all findings, and reports whether the log is good.
     pub(super) fn run(self) -> Result<u8, Failure> {
         let unreadable = |source| Failure::Read { path: self.log.clone(), source };
         std::fs::metadata(&self.log).map_err(unreadable)?;

@@ -1,7 +1,8 @@
-//! Bisection as pure state machines: they say what to look at next and are told what was seen; they look at nothing
+//! Bisection as pure state machines: they name what to examine next and take what was seen; they examine nothing
 //! themselves.
 
-/// Finds the first index in `0..len` at which something holds that, once it holds, holds to the end.
+/// A bisection for the first index in `0..len` from which on a property holds. It must hold at every index after one at
+/// which it holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct IndexBisection {
     /// Everything before does not hold.
@@ -11,19 +12,19 @@ pub struct IndexBisection {
 }
 
 impl IndexBisection {
-    /// Begins with `len` items, of which nothing is known.
+    /// Starts a search among `len` items.
     pub fn new(len: usize) -> Self {
         Self { low: 0, high: len }
     }
 
-    /// The index to look at next; `None` where the answer is known.
+    /// The index to examine next; `None` where the answer is known.
     pub fn next(&self) -> Option<usize> {
         (self.low < self.high).then_some(self.low + (self.high - self.low) / 2)
     }
 
-    /// Narrows the search by what was seen at `index`.
+    /// Narrows the search by whether the property holds at `index`.
     #[must_use]
-    pub fn told(self, index: usize, holds: bool) -> Self {
+    pub fn narrowed(self, index: usize, holds: bool) -> Self {
         if holds {
             Self { high: index.min(self.high), ..self }
         } else {
@@ -31,13 +32,13 @@ impl IndexBisection {
         }
     }
 
-    /// First index at which it holds, or `len`; valid when [`Self::next`] has nothing to ask.
+    /// The first index at which the property holds, or `len`; valid once [`Self::next`] returns `None`.
     pub fn answer(&self) -> usize {
         self.high
     }
 }
 
-/// Narrows a bracket of loads: below it the shell is where it was, beyond it has jumped.
+/// A bisection of a bracket of loads: at the lower one the shell has not jumped, at the upper one it has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadBisection {
     below: f64,
@@ -46,7 +47,7 @@ pub struct LoadBisection {
 }
 
 impl LoadBisection {
-    /// Begins with a bracket to be narrowed to `tolerance`.
+    /// Starts with a bracket that is to be narrowed to `tolerance`.
     pub fn new(below: f64, beyond: f64, tolerance: f64) -> Self {
         Self { below, beyond, tolerance }
     }
@@ -58,13 +59,13 @@ impl LoadBisection {
         (within && self.beyond - self.below > self.tolerance).then_some(middle)
     }
 
-    /// Narrows the bracket by what a solve showed.
+    /// Narrows the bracket by whether the shell jumped when it was loaded to `parameter`.
     #[must_use]
-    pub fn told(self, parameter: f64, jumped: bool) -> Self {
+    pub fn narrowed(self, parameter: f64, jumped: bool) -> Self {
         if jumped { Self { beyond: parameter, ..self } } else { Self { below: parameter, ..self } }
     }
 
-    /// (last load below, first load beyond), in the units of the scene's parameter.
+    /// The bracket: last load before the jump and first load beyond it, in the units of the scene's parameter.
     pub fn bracket(&self) -> [f64; 2] {
         [self.below, self.beyond]
     }
@@ -81,7 +82,7 @@ mod tests {
                 let mut search = IndexBisection::new(len);
                 let mut looks = 0;
                 while let Some(index) = search.next() {
-                    search = search.told(index, index >= first);
+                    search = search.narrowed(index, index >= first);
                     looks += 1;
                 }
                 assert_eq!(search.answer(), first);
@@ -95,7 +96,7 @@ mod tests {
         let mut search = LoadBisection::new(9.0, 10.0, 1e-4);
         let mut tries = 0;
         while let Some(load) = search.next() {
-            search = search.told(load, load > 9.876_543);
+            search = search.narrowed(load, load > 9.876_543);
             tries += 1;
         }
         let [below, beyond] = search.bracket();

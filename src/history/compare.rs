@@ -7,7 +7,7 @@ use crate::state::{
     Course, CriticalAhead, DriveMemory, PathMemory, Previous, Refinement, Rejection, State, StepControl,
 };
 
-/// Two values of a field that are not the same.
+/// A field in which two states differ, and its values where they differ most.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// Name of the field.
@@ -21,7 +21,7 @@ pub struct Difference {
     pub agreeing_bits: f64,
 }
 
-/// All fields of two states.
+/// The result of comparing all fields of two states.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Comparison {
     /// Every bit agrees.
@@ -48,7 +48,7 @@ pub fn compare(a: &State, b: &State) -> Comparison {
 }
 
 struct Found<'m> {
-    /// The mesh that tells where a control point is.
+    /// The mesh that gives the place of a control point.
     mesh: &'m Mesh,
     /// What makes numbers of the two states no counterparts, in words.
     kinds: Vec<String>,
@@ -252,9 +252,9 @@ fn outcome(state: &State) -> String {
     match state.drive.control.rejection {
         None => format!("a solve that reached {}", state.parameter),
         Some(Rejection::NoEquilibrium) => "a solve that found no equilibrium".to_string(),
-        Some(Rejection::Jump) => "a solve that was turned down as unstable on the way".to_string(),
-        Some(Rejection::CriticalPoint) => "a solve that was turned down for a critical point".to_string(),
-        Some(Rejection::SharpTurn) => "a solve that was turned down for a sharp turn".to_string(),
+        Some(Rejection::Jump) => "a solve that was rejected as unstable on the way".to_string(),
+        Some(Rejection::CriticalPoint) => "a solve that was rejected for a critical point".to_string(),
+        Some(Rejection::SharpTurn) => "a solve that was rejected for a sharp turn".to_string(),
     }
 }
 

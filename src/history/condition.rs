@@ -6,7 +6,7 @@ use crate::journal::word_number;
 use crate::record::{Outcome, Report, as_number, fields_of};
 use crate::scene::Stage;
 
-/// Comparisons that must all hold.
+/// A condition on the report of a stage: comparisons that must all hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     terms: Vec<Term>,
@@ -45,10 +45,11 @@ const OPERATORS: [(&str, Operator); 6] = [
     (">", Operator::Greater),
 ];
 
-/// Why a condition cannot be used.
+/// Why the text of a condition is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConditionError {
-    /// No operator.
+    /// A term without an operator.
     #[error(
         "`{term}` compares nothing; write FIELD OPERATOR VALUE with one of < <= > >= == !=, such as moment_n_mm < 100"
     )]
@@ -56,7 +57,7 @@ pub enum ConditionError {
         /// The part of the condition.
         term: String,
     },
-    /// No such field.
+    /// The report has no such field.
     #[error("reports have no field `{field}`; they have {}", known.join(", "))]
     NoSuchField {
         /// What was written.
@@ -71,7 +72,7 @@ pub enum ConditionError {
         field: String,
         /// What was written.
         value: String,
-        /// What it can be.
+        /// The values that the field can have.
         known: Vec<String>,
     },
     /// A word compared by size, or with a field that holds numbers.
@@ -87,9 +88,9 @@ pub enum ConditionError {
 }
 
 impl Condition {
-    /// Reads `FIELD OPERATOR VALUE`, several joined by `and`. Fields are those of a report in JSON and the names of its
-    /// probes; `elements`, `marked` stand for the product or sum of their two numbers, `elements_1` and `elements_2` for one
-    /// of them. A probe has a value at equilibria alone.
+    /// Parses `FIELD OPERATOR VALUE`, several joined by `and`. Fields are those of a report in JSON and the names of
+    /// its probes; `elements`, `marked` stand for the product or sum of their two numbers, `elements_1` and
+    /// `elements_2` for one of them. A probe has a value at equilibria alone.
     ///
     /// # Errors
     /// Where it has another form or names a field that reports do not have.
@@ -99,8 +100,8 @@ impl Condition {
         Ok(Self { terms })
     }
 
-    /// Whether it holds for a report. What is not a number (a residual after a failed solve) meets no condition but
-    /// `!=`.
+    /// Whether the condition holds for a report. What is not a number (a residual after a failed solve) meets no
+    /// condition but `!=`.
     pub fn holds(&self, report: &Report) -> bool {
         let fields = fields_of(report);
         self.terms.iter().all(|term| {
@@ -120,12 +121,12 @@ impl Condition {
 }
 
 impl Condition {
-    /// The fields that it asks for, one for each comparison.
+    /// The names of the fields that are compared, one for each comparison.
     pub fn fields(&self) -> Vec<&str> {
         self.terms.iter().map(|term| term.field.as_str()).collect()
     }
 
-    /// Whether it holds for numbers of an index, one for each comparison.
+    /// Whether the condition holds for values of [`Self::fields`] as an index stores them.
     pub fn holds_for(&self, numbers: &[u64]) -> bool {
         self.terms.iter().zip(numbers).all(|(term, number)| match &term.value {
             Operand::Number(value) => term.operator.holds(f64::from_bits(*number), *value),

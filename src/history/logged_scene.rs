@@ -9,14 +9,15 @@ use crate::scene::Scene;
 use crate::state::Hash;
 
 /// Defaults as they once were, for scenes in logs of that time that leave them out: any of them, as not all changed at once.
-/// Laid over any other scene they would change its hash, which the log holds.
+/// Applied to any other scene they would change its hash, which the log holds.
 const DEFAULTS_BEFORE: [&str; 3] =
     ["mesh.quadrature=patch", "mesh.quadrature=full", "adapt.length_limit=sqrt-radius-thickness"];
 
-/// Why the scene of a stage cannot be had.
+/// Why the scene that a stage was run with is not available.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LoggedSceneError {
-    /// No manifest has a scene that hashes as the stage's commit says.
+    /// No manifest has a scene with the hash in the stage's commit.
     #[error(
         "the scene that stage {ordinal} was run with is lost; `foldline run SCENE -o LOG --resume` with that scene's file brings it back"
     )]
@@ -27,7 +28,7 @@ pub enum LoggedSceneError {
     /// The run had energies or loads that are not part of a scene.
     #[error(
         "stage {ordinal} was run with terms of its program's own ({names}), which this one does not have: it shows such a log, and \
-         neither goes on with it nor runs its stages again"
+         neither continues it nor runs its stages again"
     )]
     OwnTerms {
         /// Ordinal of the stage.
@@ -50,8 +51,8 @@ pub enum LoggedSceneError {
     Unreadable(#[from] SceneInLogError),
 }
 
-/// The scene that stage `index` was run with beside these terms of the caller's own, with settings applied to it: that of its
-/// stretch, and held with them against the hash in its commit, so that no other takes its place where it is lost.
+/// Returns the scene that stage `index` was run with, `settings` applied to it. Scene and terms of the caller's own are
+/// compared with the hash in the stage's commit, so that no other scene takes the place of one that is lost.
 ///
 /// # Errors
 /// Where it is lost, does not read with the settings, or was run with other terms.
@@ -101,7 +102,7 @@ pub(super) fn check_terms(log: &Log, index: usize, own: &[Arc<dyn TermSource>]) 
     });
     let mut differences: Vec<String> = differences.collect();
     if differences.is_empty() {
-        differences.push("they stood in another order".to_owned());
+        differences.push("they were in another order".to_owned());
     }
     Err(LoggedSceneError::OtherTerms { ordinal: index, differences: differences.join(", ") })
 }

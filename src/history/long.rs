@@ -1,10 +1,10 @@
-//! What a long log is asked without reading all of it: its index says where to look, and what is found there counts.
+//! Questions to a long log that are answered without reading all of it: its index gives the places, and what is found there counts.
 
 use crate::history::Condition;
 use crate::journal::{LongLog, LongLogError};
 use crate::record::Record;
 
-/// The stages of load step `step`, in their order.
+/// Reads the stages of load step `step`, in their order.
 ///
 /// # Errors
 /// Where the log or its index cannot be read.
@@ -21,7 +21,7 @@ pub fn stages_of_step(log: &LongLog, step: u64) -> Result<Vec<Record>, LongLogEr
     Ok(found)
 }
 
-/// The first stage whose report meets a condition, and the one before it.
+/// Reads the first stage whose report meets a condition, and the stage before it.
 ///
 /// # Errors
 /// Where the log or its index cannot be read.

@@ -1,4 +1,4 @@
-//! A damaged log whose lost stages are run again, so that the whole ones behind them are lost no more.
+//! A damaged log whose lost stages are run again, so that the whole ones behind them are no longer lost.
 
 use std::sync::Arc;
 
@@ -9,8 +9,9 @@ use crate::journal::Log;
 use crate::pipeline::{Run, Stages};
 use crate::record::MemorySink;
 
-/// The log with every lost stage run again on which whole ones follow, as their hashes tell, and how many these are; `None` where
-/// there is none, or the run had other terms of the caller's own than these.
+/// Runs the lost stages of a log again where whole ones follow on them, and returns the log with them and their number;
+/// the hashes of what follows show that they are the same. `None` where there are none, or where the run had other
+/// terms of the caller's own.
 pub fn mended(log: &Log, own: &[Arc<dyn TermSource>]) -> Option<(Log, usize)> {
     let mut mended: Option<(Log, usize)> = None;
     loop {

@@ -1,4 +1,4 @@
-//! What a log can be asked: continue it, run its stages again, find where two runs part, where a run jumped.
+//! What can be done with a log: continue it, run its stages again, find where two runs part, where a run jumped.
 //!
 //! | file | what |
 //! |---|---|
@@ -7,19 +7,19 @@
 //! | `resume` | where a run continues |
 //! | `replay` | stages run again |
 //! | `mending` | lost stages run again |
-//! | `part`, `compare` | where two runs part; two states in bits |
+//! | `divergence`, `compare` | where two runs part; two states in bits |
 //! | `bisection`, `condition` | what to look at next; conditions on reports |
 //! | `snap`, `stability` | where a run jumped; how stable its states are |
 //! | `probes` | probes read after the run |
-//! | `long` | what a long log is asked through its index |
+//! | `long` | questions to a long log that its index answers |
 
 mod bisection;
 mod compare;
 mod condition;
+mod divergence;
 mod logged_scene;
 mod long;
 mod mending;
-mod part;
 mod probes;
 mod replay;
 mod resume;
@@ -27,14 +27,13 @@ mod snap;
 mod stability;
 mod states;
 
-pub use bisection::{IndexBisection, LoadBisection};
 pub use compare::{Comparison, Difference, compare};
 pub use condition::{Condition, ConditionError};
+pub use divergence::{Divergence, find_divergence};
 pub use logged_scene::{LoggedSceneError, logged_scene};
 pub use long::{first_where, stages_of_step};
 pub use mending::mended;
-pub use part::{Parting, find_parting};
-pub use probes::{ProbeError, Redefined, keep_apart, read_probes, redefined_probes};
+pub use probes::{ProbeError, RedefinedProbe, read_probes, redefined_probes, remove_redefined};
 pub use replay::{ReplayError, Replayed, Verdict, replay_stage, verdict};
 pub use resume::{Basis, BasisError, NothingKept, ResumePlan, basis, plan, restored_scene};
 pub use snap::{SnapError, SnapReport, find_snap, first_loss_of_stability, no_jump};

@@ -10,10 +10,11 @@ use crate::pipeline::{StageError, Stages};
 use crate::record::{Outcome, Record};
 use crate::scene::{Probe, Scene, shown_values};
 
-/// Why a probe cannot be read.
+/// Why the probes of a scene cannot be evaluated on a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProbeError {
-    /// The state cannot be had.
+    /// The state is not available.
     #[error(transparent)]
     State(#[from] RemakeError),
     /// The stages were run with other terms of the caller's own.
@@ -24,8 +25,8 @@ pub enum ProbeError {
     Stage(#[from] StageError),
 }
 
-/// Reads the probes of the scene of `stages` at every equilibrium of the first stages of a log, and puts the readings
-/// into their records, of which there is one for each of these stages. The log itself keeps what it has.
+/// Evaluates the probes of the scene of `stages` at every equilibrium of the first stages of a log, and puts the
+/// readings into `records`, which holds a record for each of these stages. The log itself does not change.
 ///
 /// # Errors
 /// Where a state cannot be read, or was made with other terms of the caller's own.
@@ -40,18 +41,18 @@ pub fn read_probes(log: &Log, stages: &mut Stages, records: &mut [Record]) -> Re
     Ok(())
 }
 
-/// A probe that measured something else under the same name before.
+/// A probe of which earlier stages of the log hold readings of something else under the same name.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Redefined {
+pub struct RedefinedProbe {
     /// Ordinals of the stages that were run with another one.
     pub stages: Range<u64>,
-    /// What it was there.
+    /// The probe as it was defined there.
     pub was: Probe,
     /// What it is in the last scene of the log.
     pub is: Probe,
 }
 
-impl fmt::Display for Redefined {
+impl fmt::Display for RedefinedProbe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [was, is] = [&self.was, &self.is].map(|probe| serde_json::to_value(&probe.kind).ok());
         let [was, is] = shown_values(&was, &is);
@@ -66,8 +67,8 @@ impl fmt::Display for Redefined {
     }
 }
 
-/// Probes of the last scene of a log that other stretches have under the same name, and other.
-pub fn redefined_probes(log: &Log) -> Vec<Redefined> {
+/// The probes of the last scene of a log that earlier stretches define otherwise under the same name.
+pub fn redefined_probes(log: &Log) -> Vec<RedefinedProbe> {
     let [before @ .., last] = log.manifests() else { return Vec::new() };
     let probes = |manifest: &Manifest| manifest.scene(&[]).map_or_else(|_| Vec::new(), |scene: Scene| scene.probes);
     let mut found = Vec::new();
@@ -82,14 +83,14 @@ pub fn redefined_probes(log: &Log) -> Vec<Redefined> {
     {
         for was in probes(manifest) {
             let is = wanted.iter().find(|is| is.name == was.name && **is != was);
-            found.extend(is.map(|is| Redefined { stages: manifest.first_ordinal..end, is: is.clone(), was }));
+            found.extend(is.map(|is| RedefinedProbe { stages: manifest.first_ordinal..end, is: is.clone(), was }));
         }
     }
     found
 }
 
-/// Takes out of records the readings that are not of the probes of the last scene.
-pub fn keep_apart(redefined: &[Redefined], records: &mut [Record]) {
+/// Removes readings from records that were made by other probes of the same names.
+pub fn remove_redefined(redefined: &[RedefinedProbe], records: &mut [Record]) {
     for Record { report, commit, .. } in records {
         let here = redefined.iter().filter(|other| other.stages.contains(&commit.ordinal));
         here.for_each(|other| report.probes.retain(|reading| reading.name != other.is.name));

@@ -9,22 +9,23 @@ use crate::record::Report;
 use crate::spline::Mesh;
 use crate::state::State;
 
-/// States that agree to this many bits are the same within what another processor or another kernel may do to
-/// rounding. The solver's default tolerance of 1e-7 leaves some 23 bits.
+/// Number of bits to which two states must agree to count as the same up to the rounding of another processor or
+/// kernel. The solver's default tolerance of 1e-7 leaves some 23 bits.
 pub const TOLERATED_BITS: f64 = 20.0;
 
-/// A stage that ran again.
+/// The result of running a stage of a log again.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Replayed {
     /// The state that it made now.
     pub state: State,
-    /// What it said now.
+    /// The report of the second run.
     pub report: Report,
     /// Beside the state in the log.
     pub comparison: Comparison,
 }
 
-/// What a replay showed.
+/// How a stage that was run again compares with the log.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// Every bit is the same.
@@ -37,8 +38,9 @@ pub enum Verdict {
 
 /// Why a stage could not be run again.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReplayError {
-    /// The state before it, or its own, cannot be had.
+    /// The state before it, or its own, is not available.
     #[error(transparent)]
     State(#[from] RemakeError),
     /// The stage failed.
@@ -46,11 +48,11 @@ pub enum ReplayError {
     Stage(#[from] StageError),
 }
 
-/// Runs stage `index` of a log again with `stages`, whose scene may differ from the log's in settings; `observer` is handed every
-/// iterate with the mesh that it lies on. Nothing but the stage itself is run with other settings.
+/// Runs stage `index` of a log again with `stages`, whose scene may differ from the log's in settings; `observer` is
+/// called with every iterate and its mesh. Only this stage is run with other settings.
 ///
 /// # Errors
-/// Where a state cannot be had or the stage fails.
+/// Where a state is not available or the stage fails.
 pub fn replay_stage(
     states: &mut States,
     index: usize,
@@ -78,7 +80,7 @@ pub fn replay_stage(
     Ok(Replayed { state, report, comparison })
 }
 
-/// What a comparison means.
+/// Judges a comparison of a replayed state with the log's.
 pub fn verdict(comparison: &Comparison) -> Verdict {
     match comparison {
         Comparison::Identical => Verdict::BitIdentical,

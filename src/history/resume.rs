@@ -15,17 +15,18 @@ const TARGETS: [&str; 2] = ["load.rotation_deg", "load.factor"];
 /// Targets that differ by less than this, relatively, are one.
 const TARGET_ROUNDING: f64 = 1e-12;
 
-/// What a run continues from.
+/// The state that a run continues from, and the last commit before it.
 #[derive(Clone, Debug)]
 pub struct Basis {
-    /// The state.
+    /// The state that the run continues from.
     pub state: State,
     /// The commit that made it; `None` for the scene's start.
     pub commit: Option<Commit>,
 }
 
-/// Why there is nothing to continue from.
+/// Why a log gives no state to continue from.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BasisError {
     /// The log's own state cannot be used.
     #[error(transparent)]
@@ -35,7 +36,7 @@ pub enum BasisError {
     Model(#[from] ModelError),
 }
 
-/// The state after the first `keep` stages of a log.
+/// Reads the state after the first `keep` stages of a log, or makes the start state where `keep` is 0.
 ///
 /// # Errors
 /// Where the state cannot be read, or, for `keep` = 0, the scene cannot be made discrete.
@@ -46,16 +47,17 @@ pub fn basis(log: &Log, keep: usize, stages: &mut Stages) -> Result<Basis, Basis
     }
 }
 
-/// How much of a log a scene can continue from.
+/// How much of a log a changed scene can continue from.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ResumePlan {
-    /// Stages that stand, counted from the start of the log.
+    /// Stages that are kept, counted from the start of the log.
     pub keep: usize,
     /// What changed and what that means, a line each; empty where the scene is the same.
     pub changes: Vec<String>,
 }
 
-/// Changes of the scene that no state of the log survives.
+/// The changes of a scene for which no stage of a log can be kept.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}: nothing can be kept; write to another log with -o", changes.join("\n  "))]
 pub struct NothingKept {
@@ -63,7 +65,7 @@ pub struct NothingKept {
     pub changes: Vec<String>,
 }
 
-/// What stands of a log written for `old` when it is continued with `new`.
+/// Decides how many stages of a log written for `old` are kept when it is continued with `new`.
 ///
 /// Output, probes and names may change freely. The target may: what was cut short at the old target goes, and what lies beyond a
 /// nearer one. A change of what steps are made with keeps every complete step and drops a step in hand; one of a history keeps what
@@ -103,7 +105,7 @@ pub fn plan(log: &Log, old: &Scene, new: &Scene) -> Result<Result<ResumePlan, No
     Ok(Ok(ResumePlan { keep, changes: changes.collect() }))
 }
 
-/// What a change leaves of a log of which the first `keep` stages stand.
+/// What a change leaves of a log of which the first `keep` stages are kept.
 fn what_stands(log: &Log, keep: usize, difference: &Difference) -> String {
     let Difference { path, reach, .. } = difference;
     let changes_stages = match reach {
@@ -113,18 +115,18 @@ fn what_stands(log: &Log, keep: usize, difference: &Difference) -> String {
     };
     // What is written beside the states is as it was up to here.
     if path == "output.mesh_history" || path.starts_with("probe") {
-        return format!("every stage stands, and the {keep} in the log keep what they were written with");
+        return format!("every stage is kept, and the {keep} in the log keep what they were written with");
     }
     if !changes_stages || (keep == log.commits() && *reach != Reach::Steps) {
-        return "every stage stands".to_owned();
+        return "every stage is kept".to_owned();
     }
     let kept = log.entries().iter().take(keep.saturating_sub(log.first()));
     let done = kept.map(|entry| &entry.record.report).filter(|it| it.outcome == Outcome::Done);
     match done.map(|report| report.step).max().unwrap_or(0) {
-        0 => "no complete step stands".to_owned(),
+        0 => "no complete step is kept".to_owned(),
         last => {
             let mixed = if *reach == Reach::Steps { ": the log is mixed from there on" } else { "" };
-            format!("steps 1 to {last} stand, {} on is new{mixed}", last + 1)
+            format!("steps 1 to {last} are kept, {} on is new{mixed}", last + 1)
         }
     }
 }
@@ -132,7 +134,7 @@ fn what_stands(log: &Log, keep: usize, difference: &Difference) -> String {
 /// A change that no state survives.
 fn why_nothing_stands(difference: &Difference, old: &Scene, new: &Scene) -> String {
     let [from, to] = difference.values();
-    let why = match (difference.reach, old.histories_part_at(new)) {
+    let why = match (difference.reach, old.same_histories_up_to(new)) {
         (Reach::LaterLoads, _) if Drive::of(old).follows_path() => {
             ": a step by arc length looks beyond the load at which it ends".to_owned()
         }
@@ -149,7 +151,7 @@ fn before_histories_part(log: &Log, old: &Scene, new: &Scene) -> usize {
     if Drive::of(old).follows_path() {
         return 0;
     }
-    let part_at = old.histories_part_at(new);
+    let part_at = old.same_histories_up_to(new);
     let reports: Vec<&Report> = log.entries().iter().map(|entry| &entry.record.report).collect();
     let asks_for_rates = |index: usize| {
         let ends_stable = |report: &&Report| report.outcome == Outcome::Done && report.negative_pivots == 0;
@@ -170,12 +172,12 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
     for (index, entry) in log.entries().iter().enumerate().skip(1) {
         let report = &entry.record.report;
         if report.stage == Stage::Solve && is_beyond(old, report.attempted_parameter, nearer) {
-            // Whether it was cut short cannot be told of a stage whose start was thinned out.
+            // Whether it was cut short is not known of a stage whose start was thinned out.
             if !log.keeps_state(index - 1) {
                 return Ok(index);
             }
             let parent = log.state(index - 1)?;
-            // A step along the path is as long as its memory says, but where it ends on the target.
+            // A step along the path is as long as its memory gives, but where it ends on the target.
             if parent.drive.path().is_some() || next_attempt(old, &parent) != next_attempt(new, &parent) {
                 return Ok(index);
             }
@@ -186,7 +188,7 @@ fn before_clipped_step(log: &Log, old: &Scene, new: &Scene) -> Result<usize, Sta
 
 /// Whether a parameter is at a target or beyond.
 fn is_beyond(scene: &Scene, parameter: f64, target: f64) -> bool {
-    Drive::of(scene).way_of(parameter) >= target * (1.0 - TARGET_ROUNDING)
+    Drive::of(scene).progress(parameter) >= target * (1.0 - TARGET_ROUNDING)
 }
 
 /// Number of stages, of the first `keep`, up to the last one that ends a load step.
@@ -205,8 +207,9 @@ fn complete_steps(log: &Log, keep: usize, scene: &Scene) -> Result<usize, StateE
     Ok(0)
 }
 
-/// The scene of a log's last stretch where the log has lost it and the scene of `stages`, which with their terms decides the
-/// same states, takes its place. Its target is not known any more; what was attempted says which steps it may have cut short.
+/// Returns the scene of a log's last stretch where the log has lost it and the scene of `stages`, which with their
+/// terms decides the same states, takes its place. Its target is no longer known; the attempted parameters show
+/// which steps it may have cut short.
 pub fn restored_scene(log: &Log, stages: &Stages) -> Option<Scene> {
     let last = log.last_commit()?;
     let attempts = log.entries().iter().map(|entry| entry.record.report.attempted_parameter);

@@ -1,5 +1,5 @@
 //! Where exactly a run jumped or lost its stability: from the last stable state before, the load is halved until it is
-//! known. What kind of critical point it is says the path beyond it, followed by arc length.
+//! known. The path beyond it, followed by arc length, shows what kind of critical point it is.
 
 use crate::equilibrium::{
     Configuration, Continuation, Equilibrium, Iterate, Observer, Sense, SoftMode, SolveError, Workspace, WorkspaceError,
@@ -14,8 +14,9 @@ use crate::record::{CriticalPoint, Outcome, Parameter};
 use crate::scene::Scene;
 use crate::state::State;
 
-/// A jump, located.
+/// A jump or loss of stability, located.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SnapReport {
     /// Last value of the parameter at which the shell is stable where it was, and the first at which it is not.
     pub bracket: [f64; 2],
@@ -34,20 +35,21 @@ pub struct SnapReport {
     pub mode_at: [f64; 3],
     /// The last stable state.
     pub stable: State,
-    /// Solves that it took.
+    /// Number of solves that the search took.
     pub solves: usize,
 }
 
 /// Why a jump could not be located.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SnapError {
     /// The log holds no jump, and no equilibrium in it is unstable.
-    #[error("no stage of this log jumped or lost its stability; the farthest state in it stands at {farthest}")]
+    #[error("no stage of this log jumped or lost its stability; the farthest state in it is at {farthest}")]
     NoJump {
-        /// Where the farthest state stands.
+        /// Parameter of the farthest state.
         farthest: String,
     },
-    /// A state of the log cannot be had.
+    /// A state of the log is not available.
     #[error(transparent)]
     State(#[from] RemakeError),
     /// It was made with other terms of the caller's own.
@@ -64,19 +66,19 @@ pub enum SnapError {
          the mesh; run the scene from a finer mesh to bisect it"
     )]
     OnRefinedMesh {
-        /// Where the last stable state stands.
+        /// Parameter of the last stable state.
         from: String,
-        /// Where the jump was.
+        /// Parameter of the jump.
         to: String,
     },
     /// A solve failed.
     #[error("a solve from {from} to {to} failed")]
     Solve {
-        /// Where it started.
+        /// Parameter at which the solve started.
         from: String,
-        /// Where it was to end.
+        /// Parameter to which it was to lead.
         to: String,
-        /// Why.
+        /// The error of the solver.
         source: Box<SolveError>,
     },
     /// The equations do not fit in memory, or the scene not the mesh.
@@ -84,7 +86,7 @@ pub enum SnapError {
     Workspace(#[from] WorkspaceError),
 }
 
-/// The first stage of a log that jumped, or at which the shell stands on an unstable equilibrium.
+/// The index of the first stage of a log that jumped or ended in an unstable equilibrium.
 pub fn first_loss_of_stability(log: &Log) -> Option<usize> {
     let place = log.entries().iter().position(|entry| {
         let report = &entry.record.report;
@@ -94,7 +96,8 @@ pub fn first_loss_of_stability(log: &Log) -> Option<usize> {
     Some(log.first() + place)
 }
 
-/// That a log, which was read in parts, holds no jump; `farthest` is the largest value of the parameter in it.
+/// The error for a log that was read in parts and holds no jump; `farthest` is the largest value of the parameter in
+/// it.
 pub fn no_jump(scene: &Scene, farthest: f64) -> SnapError {
     SnapError::NoJump { farthest: Parameter::of(scene).shown(farthest) }
 }
@@ -123,16 +126,17 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance: f64) -> Result<S
     let before = before.map(|place| log.first() + place);
     let start = states.at(before.ok_or(SnapError::NothingBefore)?)?;
     let mut work = Workspace::with_terms(scene, &start.mesh, states.own_terms())?;
-    let mut tries = Tries { scene, work: &mut work, count: 0 };
+    let mut attempts = SnapSearch { scene, work: &mut work, count: 0 };
 
     let mut stable = start;
     let mut beyond = reached.max(stable.parameter);
     let along_path = stable.drive.path().is_some();
     loop {
-        let gently = if beyond > stable.parameter { tries.gently(&stable, beyond)? } else { Some(stable.clone()) };
-        match gently {
+        let next =
+            if beyond > stable.parameter { attempts.solve_unless_jump(&stable, beyond)? } else { Some(stable.clone()) };
+        match next {
             None => break,
-            Some(next) if along_path && tries.count < MOST_TRIES => {
+            Some(next) if along_path && attempts.count < MOST_ATTEMPTS => {
                 stable = next;
                 beyond = stable.parameter + scene.load.increment();
             }
@@ -141,16 +145,16 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance: f64) -> Result<S
     }
     let mut search = LoadBisection::new(stable.parameter, beyond, tolerance);
     while let Some(parameter) = search.next() {
-        let next = tries.gently(&stable, parameter)?;
-        search = search.told(parameter, next.is_none());
+        let next = attempts.solve_unless_jump(&stable, parameter)?;
+        search = search.narrowed(parameter, next.is_none());
         if let Some(next) = next {
             stable = next;
         }
     }
     let bracket = search.bracket();
-    let (after, work_done, most_negative) = tries.through(&stable, bracket[1])?;
-    let critical = tries.what_is_passed(&stable, bracket);
-    let solves = tries.count;
+    let (after, work_done, most_negative) = attempts.solve_across_jump(&stable, bracket[1])?;
+    let critical = attempts.critical_point_after(&stable, bracket);
+    let solves = attempts.count;
     let (mode, mode_at) = mode_of(scene, &mut work, &stable).map_err(|source| SnapError::Solve {
         from: shown(stable.parameter),
         to: shown(stable.parameter),
@@ -170,17 +174,17 @@ pub fn find_snap(states: &mut States, scene: &Scene, tolerance: f64) -> Result<S
 }
 
 /// Solves before a search gives up.
-const MOST_TRIES: usize = 100;
+const MOST_ATTEMPTS: usize = 100;
 
-struct Tries<'a> {
+struct SnapSearch<'a> {
     scene: &'a Scene,
     work: &'a mut Workspace,
     count: usize,
 }
 
-impl Tries<'_> {
+impl SnapSearch<'_> {
     /// The equilibrium at a rotation, if the shell reaches it without passing an unstable shape or releasing energy.
-    fn gently(&mut self, from: &State, parameter: f64) -> Result<Option<State>, SnapError> {
+    fn solve_unless_jump(&mut self, from: &State, parameter: f64) -> Result<Option<State>, SnapError> {
         let stable = from.negative_pivots as usize;
         let (reached, work) = match self.solve(from, parameter, &mut |iterate| iterate.negative_pivots > stable) {
             Ok(reached) => reached,
@@ -199,13 +203,13 @@ impl Tries<'_> {
 
     /// Follows the path from the last stable state until something changes. Steps grow from what the bracket is wide, since
     /// the length of the path to a limit point goes with the square root of that.
-    fn what_is_passed(&mut self, from: &State, bracket: [f64; 2]) -> Option<CriticalPoint> {
+    fn critical_point_after(&mut self, from: &State, bracket: [f64; 2]) -> Option<CriticalPoint> {
         let mut continuation = Continuation::new(self.scene, self.work);
         let start = continuation.heading_at(Configuration::of(from), Sense::Parameter { grows: true }).ok()?;
         let mut length = (bracket[1] - bracket[0]).abs().max(f64::EPSILON * bracket[1].abs()) / start.parameter;
         let mut heading = start;
         let mut at = from.clone();
-        for _ in 0..MOST_TRIES {
+        for _ in 0..MOST_ATTEMPTS {
             self.count += 1;
             let Ok(point) = continuation.step(Configuration::of(&at), &heading.motion, length, &mut |_| false) else {
                 length *= 0.5;
@@ -235,7 +239,7 @@ impl Tries<'_> {
     }
 
     /// The equilibrium at a rotation however it is reached, the work done, and the most negative pivots on the way.
-    fn through(&mut self, from: &State, parameter: f64) -> Result<(State, f64, usize), SnapError> {
+    fn solve_across_jump(&mut self, from: &State, parameter: f64) -> Result<(State, f64, usize), SnapError> {
         let mut most = 0;
         let mut watch = |iterate: &Iterate| {
             most = most.max(iterate.negative_pivots);

@@ -6,8 +6,9 @@ use crate::history::states::{RemakeError, States};
 use crate::scene::Scene;
 use crate::state::State;
 
-/// A state with its softest mode.
+/// The softest mode of a state in a log.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct StabilityReport {
     /// The state.
     pub state: State,
@@ -17,10 +18,11 @@ pub struct StabilityReport {
     pub mode_at: [f64; 3],
 }
 
-/// Why there is no report.
+/// Why the softest mode of a state cannot be computed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StabilityError {
-    /// The state cannot be had.
+    /// The state is not available.
     #[error(transparent)]
     State(#[from] RemakeError),
     /// It was made with other terms of the caller's own.
@@ -34,10 +36,10 @@ pub enum StabilityError {
     Solve(#[from] SolveError),
 }
 
-/// The softest mode of the state that stage `index` made.
+/// Computes the softest mode of the state that stage `index` made.
 ///
 /// # Errors
-/// Where the state cannot be had, was made with other terms, or its stiffness has no factor.
+/// Where the state is not available, was made with other terms, or its stiffness has no factor.
 pub fn stability_at(states: &mut States, index: usize, scene: &Scene) -> Result<StabilityReport, StabilityError> {
     check_terms(states.log(), index, states.own_terms())?;
     let state = states.at(index)?;

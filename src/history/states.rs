@@ -10,13 +10,14 @@ use crate::model::ModelError;
 use crate::pipeline::{StageError, Stages};
 use crate::state::{Hash, State};
 
-/// Why a state cannot be had.
+/// Why the state of a stage cannot be read or made again.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RemakeError {
     /// What the log holds cannot be used.
     #[error(transparent)]
     State(#[from] StateError),
-    /// The part of a long log that it stands in cannot be read.
+    /// The part of a long log that holds it cannot be read.
     #[error(transparent)]
     Part(#[from] LongLogError),
     /// The scene of a stage that has to run again is lost.
@@ -34,7 +35,7 @@ pub enum RemakeError {
         from: usize,
         /// What computes otherwise here than where the log was written.
         why: Option<String>,
-        /// How it fails.
+        /// The error of the stage.
         #[source]
         source: Box<StageError>,
     },
@@ -58,13 +59,13 @@ fn because(why: &Option<String>) -> String {
     why.as_ref().map_or_else(String::new, |why| format!(" ({why})"))
 }
 
-/// The states of a log. Those that follow on one another are made again one from the other.
+/// The states of a log, read, or made again from the last kept one where the log was thinned.
 #[derive(Debug)]
 pub struct States<'l> {
     log: &'l Log,
     /// Terms of the caller's own that the run was made with.
     own: Vec<Arc<dyn TermSource>>,
-    /// Stages of the scene of one stretch: which one says its first ordinal and the hash of the scene.
+    /// Stages of the scene of one stretch: identified by its first ordinal and the hash of the scene.
     stages: Option<((u64, Hash), Stages)>,
     /// The last state that was made again, behind so many stages.
     made: Option<(usize, State)>,
@@ -76,12 +77,12 @@ impl<'l> States<'l> {
         Self { log, own: Vec::new(), stages: None, made: None }
     }
 
-    /// Those of a log of a run with terms of the caller's own.
+    /// Runs stages again with these energy terms of the caller's own, which the run had.
     pub fn with_terms(self, own: &[Arc<dyn TermSource>]) -> Self {
         Self { own: own.to_vec(), ..self }
     }
 
-    /// The terms of the caller's own that stages run again with.
+    /// The energy terms of the caller's own that stages are run again with.
     pub fn own_terms(&self) -> &[Arc<dyn TermSource>] {
         &self.own
     }
@@ -91,7 +92,7 @@ impl<'l> States<'l> {
         self.log
     }
 
-    /// The state that stage `index` made.
+    /// Returns the state that stage `index` made.
     ///
     /// # Errors
     /// Where there is no such stage, what the log holds cannot be used, or what it does not hold comes out otherwise.
@@ -102,7 +103,7 @@ impl<'l> States<'l> {
         self.make(index + 1)
     }
 
-    /// The state that stage `index` starts from.
+    /// Returns the state that stage `index` started from.
     ///
     /// # Errors
     /// As for [`Self::at`].

@@ -1,16 +1,16 @@
-//! Whether a report says what its state says: every number that both hold, bit for bit.
+//! Whether a report agrees with its state: every number that both hold, bit for bit.
 
 use crate::record::{Parameter, Report};
 use crate::scene::Stage;
 use crate::state::State;
 
-/// A field of a report that is not as in the state that the stage made.
+/// A number of a report that differs from the number in the state that the stage made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the report says {field} {said}, and the state has {held}")]
+#[error("the report has {field} {said}, and the state has {held}")]
 pub struct Disagreement {
     /// Name of the field.
     pub field: &'static str,
-    /// What the report says.
+    /// The value in the report.
     pub said: String,
     /// What the state holds.
     pub held: String,
@@ -23,11 +23,11 @@ pub(super) fn disagreement(report: &Report, state: &State) -> Option<Disagreemen
         differ.then(|| Disagreement { field, said: said.to_string(), held: held.to_string() })
     };
     let turns = report.driven_by == Parameter::Rotation;
-    // A refined mesh is what the stage that made it tells of, and the spans that asked for it are not marked any more.
+    // A refined mesh is what the stage that made it reports, and the spans that asked for it are not marked any more.
     let counted = state.refined.as_ref().filter(|_| report.stage == Stage::RefineKnots).unwrap_or(&state.mesh);
     let marked = match report.stage {
         Stage::RefineKnots => report.marked,
-        _ => [0, 1].map(|way| state.marked[way].len()),
+        _ => [0, 1].map(|direction| state.marked[direction].len()),
     };
     differs("parameter", report.parameter, state.parameter)
         .or_else(|| differs("moment_n_mm", report.moment_n_mm, state.moment_n_mm).filter(|_| turns))

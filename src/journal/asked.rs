@@ -1,4 +1,4 @@
-//! A log of any length that is asked for some of its stages: of a long one only those are read.
+//! A log of any length of which some stages are needed: of a long one only those are read.
 
 use std::ops::Range;
 use std::path::Path;
@@ -9,10 +9,10 @@ use super::long::{LongLog, LongLogError};
 use super::reader::ReadError;
 use crate::record::Record;
 
-/// Stages of a long log that are read together where all of them are asked for.
+/// Stages of a long log that are read together where all of them are needed.
 const STAGES_AT_ONCE: usize = 512;
 
-/// A log that is asked for some of its stages.
+/// A log of any length, of which single stages are read.
 #[derive(Debug)]
 pub enum AskedLog {
     /// One that was read whole: it is short, or damaged before its end.
@@ -22,7 +22,7 @@ pub enum AskedLog {
 }
 
 impl AskedLog {
-    /// Opens a log, by its index where it is long.
+    /// Opens a log: a long one by its index, any other by reading all of it.
     ///
     /// # Errors
     /// Where it cannot be read or is not a log.
@@ -34,7 +34,7 @@ impl AskedLog {
         }
     }
 
-    /// The log as far as it was read, up to its end: it has all manifests, and tells what the log is worth.
+    /// The end of the log, as far as it was read. It has all manifests, and its completeness is that of the whole log.
     pub fn end(&self) -> &Log {
         match self {
             Self::Whole(log) => log,
@@ -47,7 +47,7 @@ impl AskedLog {
         self.end().commits()
     }
 
-    /// Record of stage `ordinal`.
+    /// Reads the record of stage `ordinal`.
     ///
     /// # Errors
     /// Where there is no such stage, or it is not what it was.
@@ -59,10 +59,10 @@ impl AskedLog {
         }
     }
 
-    /// A part of the log with these stages and the one before them, so that they can be run again.
+    /// Reads the part of the log with these stages and the one before them, so that they can be run again.
     ///
     /// # Errors
-    /// Where there are none such, or they are not what they were.
+    /// Where there are no such stages, or they have changed.
     pub fn part(&self, stages: Range<usize>) -> Result<Arc<Log>, LongLogError> {
         match self {
             Self::Whole(log) => Ok(log.clone()),
@@ -70,7 +70,8 @@ impl AskedLog {
         }
     }
 
-    /// Parts of the log with these stages, which come in their order; each with those that it is for.
+    /// Reads the parts of the log with these stages, which must ascend; each part comes with those of the stages that
+    /// it holds.
     pub fn parts<'s>(
         &'s self,
         stages: &'s [usize],

@@ -6,18 +6,18 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
-use super::still_ours::{Estranged, still_ours};
+use super::still_ours::{LogChanged, still_ours};
 pub(super) use crate::whole_file::beside;
 use crate::whole_file::{WholeFile, sync_folder_of};
 
-/// Takes the bytes of a log, whole commits at a time.
+/// A place to which the bytes of a log are written, whole commits at a time.
 pub trait Backend: Send {
     /// Looks whether what was appended, `length` bytes with `commits` stages, is still where it went. Asked before
     /// every append; a place that nobody else can reach need not look.
     ///
     /// # Errors
     /// Where it is not: nothing must be appended then.
-    fn check(&self, length: u64, commits: u64) -> Result<(), Estranged> {
+    fn check(&self, length: u64, commits: u64) -> Result<(), LogChanged> {
         let _ = (length, commits);
         Ok(())
     }
@@ -49,7 +49,7 @@ pub trait Backend: Send {
     fn cut(&mut self, length: u64) -> io::Result<()>;
 }
 
-/// A log in a file.
+/// A backend that writes a log to a file.
 #[derive(Debug)]
 pub struct FileBackend {
     file: File,
@@ -73,7 +73,7 @@ struct Cut {
     found: u64,
 }
 
-/// How a file comes to its name.
+/// How a file gets its name.
 #[derive(Debug)]
 enum Coming {
     /// It has its name.
@@ -93,8 +93,8 @@ enum Coming {
 }
 
 impl FileBackend {
-    /// A new, empty file, which has this name only from its first bytes on. A file of that name that comes to be meanwhile
-    /// is not overwritten.
+    /// Creates an empty file, which takes the name `path` only with its first bytes. A file that appears under that
+    /// name meanwhile is not overwritten.
     ///
     /// # Errors
     /// Where none can be made in that folder.
@@ -208,7 +208,7 @@ impl FileBackend {
 }
 
 impl Backend for FileBackend {
-    fn check(&self, length: u64, commits: u64) -> Result<(), Estranged> {
+    fn check(&self, length: u64, commits: u64) -> Result<(), LogChanged> {
         match &self.coming {
             Coming::Named => {
                 let length = self.cut_first.map_or(length, |cut| cut.found);
@@ -269,7 +269,7 @@ fn ended(syncing: Option<Syncing>) -> io::Result<()> {
     syncing.map_or(Ok(()), |thread| thread.join().unwrap_or_else(died))
 }
 
-/// Whether the open file is still the one that the path names; where that cannot be told, it is not.
+/// Whether the open file is still the one that the path names; where that is not known, it is not.
 pub(super) fn is_at(file: &File, path: &Path) -> bool {
     let (Ok(open), Ok(named)) = (file.metadata(), std::fs::symlink_metadata(path)) else { return false };
     (open.dev(), open.ino()) == (named.dev(), named.ino())

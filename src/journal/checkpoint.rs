@@ -6,14 +6,14 @@ use super::log::Log;
 use super::stretch::Stretches;
 use crate::state::Hash;
 
-/// A commit in the middle of a log, and what stands before it.
+/// A commit in the middle of a log, and what precedes it.
 #[derive(Clone, Debug)]
 pub(super) struct Checkpoint {
     /// First byte of its chunk.
     pub at: u64,
-    /// Its ordinal.
+    /// Ordinal of the commit.
     pub ordinal: u64,
-    /// Its chain hash.
+    /// Chain hash of the commit.
     pub chain_hash: Hash,
     /// What the header of the log names as its writer.
     pub library: String,
@@ -21,7 +21,7 @@ pub(super) struct Checkpoint {
     pub channels: Channels,
     /// Stretches up to its own.
     pub stretches: Stretches,
-    /// The mesh that its state stands on; not there where that was thinned out.
+    /// The mesh of its state; not there where that was thinned out.
     pub mesh: Option<StoredPiece>,
     /// The fields of its state; not there where they were thinned out.
     pub fields: Vec<StoredPiece>,
@@ -35,7 +35,8 @@ pub(super) struct Checkpoint {
 pub(super) type StoredPiece = (Hash, u64, Vec<u8>);
 
 impl Checkpoint {
-    /// The last commit of a part of a log that was read, and that is as it was written; `ledger` has all before it.
+    /// The checkpoint at the last commit of a part of a log, if nothing in the part is damaged; `ledger` describes all
+    /// before it.
     pub fn at_the_end_of(log: &Log, ledger: &Ledger) -> Option<Self> {
         let entry = log.entries.last()?;
         let piece = |places: &std::collections::HashMap<Hash, std::ops::Range<usize>>, hash| {

@@ -66,7 +66,7 @@ pub(super) fn records<'b>(bytes: &'b [u8], chunk: &Frame) -> Result<impl Iterato
 
 /// Opens a chunk and checks all that can be checked without its neighbours. `channels` gains those it describes.
 ///
-/// Where the chunk is damaged beside its messages, or the descriptions of its channels are lost, the commit says what they are;
+/// Where the chunk is damaged outside its messages, or the descriptions of its channels are lost, the commit names them;
 /// that is given back as well.
 pub(super) fn open(bytes: &[u8], chunk: &Frame, channels: &mut Channels) -> Result<(Content, Option<Damage>), Damage> {
     if chunk.body.len() > CHUNK_BYTES_LIMIT {
@@ -133,7 +133,7 @@ fn describe(bytes: &[u8], records: impl Iterator<Item = Frame>, channels: &Chann
     Ok(described)
 }
 
-/// What a commit says of its chunk.
+/// What a commit states of its chunk.
 #[derive(Default)]
 pub(super) struct Committed {
     /// Ordinal of the stage.
@@ -143,7 +143,7 @@ pub(super) struct Committed {
 }
 
 /// The messages of a chunk with the topics under which its commit, the last of them, names them by their hashes, whatever the
-/// chunk says of its channels; and the ordinal of that commit. `None` where one is not as it was committed, or where a damaged
+/// chunk states of its channels; and the ordinal of that commit. `None` where one is not as it was committed, or where a damaged
 /// chunk lacks one: it may have had it.
 pub(super) fn as_committed(bytes: &[u8], chunk: &Frame) -> Option<Committed> {
     let is_message = |record: &Frame| record.opcode == op::MESSAGE && record.body.len() >= MESSAGE_HEADER_LEN;
@@ -166,7 +166,7 @@ pub(super) fn as_committed(bytes: &[u8], chunk: &Frame) -> Option<Committed> {
     is_whole.then_some(Committed { ordinal: commit.ordinal, messages: messages_named })
 }
 
-/// Whether a chunk is as it was written as far as its checksum tells.
+/// Whether a chunk is as it was written as far as its checksum shows.
 pub(super) fn has_its_checksum(bytes: &[u8], chunk: &Frame) -> bool {
     frame::chunk_records(bytes, chunk).is_some() && check_crc(&bytes[chunk.body.clone()]).is_ok()
 }

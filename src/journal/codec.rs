@@ -4,7 +4,7 @@
 //! fields (vectors at the control points: displacements, those of the equilibrium before, the heading of a path) lie apart from
 //! the state and are named in it: the mesh by its content hash, a field by the hash of its bytes. So a solve writes its
 //! displacements, and those of the equilibrium before are there already. Nothing decoded leaves this file before its content
-//! hash is what the commit says and [`soundness`](super::soundness) has passed it.
+//! hash is that of the commit and [`soundness`](super::soundness) has passed it.
 
 mod bytes;
 mod older;
@@ -32,7 +32,7 @@ fn encode_field(vectors: &[[f64; 3]]) -> Vec<u8> {
     bytes
 }
 
-/// Encodes a mesh.
+/// Encodes a mesh as bytes.
 ///
 /// # Errors
 /// Where the mesh is unsound or larger than a log can hold.
@@ -41,7 +41,7 @@ pub fn encode_mesh(mesh: &Mesh) -> Result<Vec<u8>, CodecError> {
     encode(1, &MeshV1::of(mesh))
 }
 
-/// The mesh that the bytes hold, if its content hash is `expected` and it is sound.
+/// Decodes a mesh, and checks that it is sound and that its content hash is `expected`.
 ///
 /// # Errors
 /// Where the bytes are anything else.
@@ -56,12 +56,12 @@ pub fn decode_mesh(bytes: &[u8], expected: Hash) -> Result<Mesh, CodecError> {
     Ok(mesh)
 }
 
-/// A vector at every control point, as bytes.
+/// The vectors of a field on the control points, as bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncodedField {
     /// Hash of the bytes.
     pub hash: Hash,
-    /// The field.
+    /// The encoded field.
     pub bytes: Vec<u8>,
 }
 
@@ -74,7 +74,7 @@ impl EncodedField {
     }
 }
 
-/// A state as bytes, in several messages.
+/// The encoded parts of a state, each of which is a message of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncodedState {
     /// The state, which names its mesh and its fields by hash.
@@ -83,7 +83,7 @@ pub struct EncodedState {
     pub fields: Vec<EncodedField>,
 }
 
-/// Encodes a state, without its mesh.
+/// Encodes a state, without its mesh, as bytes.
 ///
 /// # Errors
 /// Where the state is unsound or larger than a log can hold.
@@ -153,8 +153,8 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField])
     Ok(EncodedState { state: encode(CODEC_VERSION, &stored)?, fields })
 }
 
-/// The state that the bytes hold, if it stands on `mesh` (whose content hash is `mesh_hash`), its content hash is
-/// `expected` and it is sound. `field` finds the bytes of fields by their hash.
+/// Decodes a state on `mesh` (whose content hash is `mesh_hash`), and checks that it is sound and that its content hash
+/// is `expected`. `field` finds the bytes of fields by their hash.
 ///
 /// # Errors
 /// Where the bytes are anything else.

@@ -1,6 +1,6 @@
 //! What can be wrong with the bytes of a log, and what that leaves of it.
 //!
-//! Each of these errors says all there is to say in one line, its cause with it, because they come in lists.
+//! Each of these errors fits one line, its cause with it, because they come in lists.
 
 use super::format::{CHUNK_BYTES_LIMIT, MANIFEST_BYTES_LIMIT, MANIFESTS_BYTES_LIMIT, REPORT_BYTES_LIMIT};
 use super::frame::Kind;
@@ -8,7 +8,7 @@ use super::message::SealError;
 use crate::scene::Stage;
 use crate::state::Hash;
 
-/// Something in a log that is not as it was written.
+/// A place in a log that is not as it was written, and what is wrong there.
 #[derive(Debug, thiserror::Error)]
 #[error("at byte {at}: {damage}")]
 pub struct Problem {
@@ -18,13 +18,14 @@ pub struct Problem {
     pub damage: Damage,
 }
 
-/// What is wrong with a record.
+/// What is wrong with a record of a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Damage {
     /// The file ends inside a record's first nine bytes.
     #[error("the file ends {left} bytes into a record")]
     CutPrefix {
-        /// Bytes that are there.
+        /// Number of bytes that are there.
         left: u64,
     },
     /// The file ends inside a record.
@@ -32,7 +33,7 @@ pub enum Damage {
     CutRecord {
         /// MCAP's code for the kind of record.
         opcode: u8,
-        /// Length that the record says it has, bytes.
+        /// Length that the record states, bytes.
         claims: u64,
         /// Bytes of it that are there.
         left: u64,
@@ -47,11 +48,11 @@ pub enum Damage {
     #[error("the file does not begin with the MCAP magic bytes")]
     Magic,
     /// A record where none of its kind can be.
-    #[error("a {} of {bytes} bytes stands where none belongs", Kind(*opcode))]
+    #[error("a {} of {bytes} bytes is where none belongs", Kind(*opcode))]
     Misplaced {
         /// MCAP's code for the kind of record.
         opcode: u8,
-        /// Its length.
+        /// Length of the record, bytes.
         bytes: u64,
     },
     /// A record that MCAP cannot read, or a chunk whose checksum is wrong.
@@ -59,7 +60,7 @@ pub enum Damage {
     Unreadable {
         /// MCAP's code for the kind of record.
         opcode: u8,
-        /// What MCAP says.
+        /// The error of the MCAP library.
         cause: mcap::McapError,
     },
     /// A chunk whose lengths disagree, or that is compressed, which no log of this program is.
@@ -76,13 +77,13 @@ pub enum Damage {
     Description {
         /// "schema" or "channel".
         what: &'static str,
-        /// Its number.
+        /// Number of the channel or schema.
         id: u16,
-        /// Largest number.
+        /// Largest number that is allowed.
         ids: u16,
-        /// Its length.
+        /// Length of the description, bytes.
         bytes: usize,
-        /// Largest length.
+        /// Largest length that is allowed, bytes.
         limit: usize,
     },
     /// A manifest larger than any that is written, or more of them than are kept.
@@ -118,7 +119,7 @@ pub enum Damage {
         messages: usize,
     },
     /// Something behind the commit or the end of the run, in the same chunk.
-    #[error("the chunk goes on after its commit")]
+    #[error("the chunk continues after its commit")]
     AfterCommit,
     /// The commit is not as it was sealed.
     #[error("the commit cannot be trusted: {0}")]
@@ -140,7 +141,7 @@ pub enum Damage {
     MessageCount {
         /// Messages that the commit names.
         expected: usize,
-        /// Messages beside it.
+        /// Number of other messages in the chunk.
         found: usize,
     },
     /// A message that is not the one its commit names.
@@ -158,7 +159,7 @@ pub enum Damage {
         topic: &'static str,
         /// How many there may be.
         expected: &'static str,
-        /// How many there are.
+        /// Number of messages on the topic.
         found: usize,
     },
     /// A report that is no report.
@@ -168,7 +169,7 @@ pub enum Damage {
     #[error("the report is not about the state that the commit names")]
     OtherReport,
     /// A state on a mesh that the log does not hold up to here.
-    #[error("the state stands on mesh {mesh}, which the log does not hold up to here")]
+    #[error("the state is on mesh {mesh}, which the log does not hold up to here")]
     UnknownMesh {
         /// Content hash of the mesh.
         mesh: Hash,
@@ -183,11 +184,11 @@ pub enum Damage {
         field: Hash,
     },
     /// A commit out of its order.
-    #[error("commit {found} stands where commit {expected} belongs")]
+    #[error("commit {found} is where commit {expected} belongs")]
     OutOfOrder {
         /// Ordinal that the commit should have.
         expected: u64,
-        /// Ordinal that it has.
+        /// Ordinal of the commit.
         found: u64,
     },
     /// A commit that does not start from the state that the one before it made.
@@ -201,7 +202,7 @@ pub enum Damage {
         found: Hash,
     },
     /// A commit whose chain hash does not follow from the one before it.
-    #[error("commit {ordinal} has chain hash {found}, and {expected} follows from what stands before it")]
+    #[error("commit {ordinal} has chain hash {found}, and {expected} follows from what precedes it")]
     BrokenChain {
         /// Ordinal of the commit.
         ordinal: u64,
@@ -211,7 +212,7 @@ pub enum Damage {
         found: Hash,
     },
     /// An end that does not belong to the commits before it.
-    #[error("the record of the end is about {claims} commits, and {found} stand before it")]
+    #[error("the record of the end is about {claims} commits, and {found} precede it")]
     OtherEnd {
         /// Commits that the record counts.
         claims: u64,
@@ -219,7 +220,7 @@ pub enum Damage {
         found: u64,
     },
     /// Something after the end of the run.
-    #[error("the log goes on after the record of its end")]
+    #[error("the log continues after the record of its end")]
     AfterEnd,
 }
 
@@ -230,7 +231,7 @@ impl Damage {
     }
 }
 
-/// What a log is worth.
+/// How complete a log is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Completeness {
     /// Every commit is good, and the run reached its end.
@@ -255,15 +256,15 @@ pub enum Completeness {
     },
 }
 
-/// A commit behind some damage: whole in itself, but what it follows on is lost.
+/// A whole commit that follows a damaged part of the log, and cannot be used because the commits before it are lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LaterCommit {
     /// First byte of its chunk.
     pub at: u64,
-    /// Its ordinal.
+    /// Ordinal of the commit.
     pub ordinal: u64,
-    /// Its stage.
+    /// The stage that was committed.
     pub stage: Stage,
-    /// Its load step.
+    /// Load step of the stage.
     pub step: u64,
 }

@@ -5,8 +5,9 @@ use mcap::McapError;
 use super::codec::CodecError;
 use super::format::{CHUNK_BYTES_LIMIT, MANIFEST_BYTES_LIMIT, REPORT_BYTES_LIMIT, SCENE_VALUES_LIMIT};
 
-/// Why a stage cannot be put into a log.
+/// Why a stage cannot be encoded for a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum EncodeError {
     /// The state has no place in a log.
     #[error("the state cannot be kept")]
@@ -25,13 +26,13 @@ pub enum EncodeError {
         /// The topic.
         topic: String,
     },
-    /// JSON failed.
+    /// A message cannot be written as JSON.
     #[error("a report cannot be written as JSON")]
     Json(#[from] serde_json::Error),
     /// A report that no reader would take.
     #[error("the report takes {bytes} bytes, and one in a log has no more than {REPORT_BYTES_LIMIT}: use fewer probes")]
     ReportTooLarge {
-        /// Bytes that it takes.
+        /// Length of the report, bytes.
         bytes: usize,
     },
     /// A scene that no reader would take.
@@ -41,12 +42,12 @@ pub enum EncodeError {
          then refines"
     )]
     SceneTooLarge {
-        /// Bytes that it takes.
+        /// Length of the scene, bytes.
         bytes: usize,
-        /// Values in it.
+        /// Number of values in the scene.
         values: usize,
     },
-    /// MCAP refused.
+    /// The MCAP library refuses a record.
     #[error("MCAP refused a record")]
     Mcap(#[from] McapError),
 }

@@ -25,7 +25,7 @@ use super::summary;
 use crate::record::{Commit, Record};
 use crate::state::Hash;
 
-/// A topic for viewers beside the log's own.
+/// A topic that a log carries for viewers, apart from its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewerTopic {
     /// Name of the topic; none of the log's own.
@@ -36,14 +36,14 @@ pub struct ViewerTopic {
     pub schema_name: String,
     /// Encoding of the schema, such as `protobuf`.
     pub schema_encoding: String,
-    /// The schema.
+    /// The schema of the messages.
     pub schema: Vec<u8>,
 }
 
-/// A message for viewers.
+/// A message for viewers on one of their topics.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewerMessage {
-    /// Where it goes.
+    /// The topic of the message.
     pub topic: Arc<ViewerTopic>,
     /// Its bytes, in the topic's encoding.
     pub data: Vec<u8>,
@@ -116,7 +116,7 @@ impl Encoder {
         Ok(Self::with(writer, outbox, Ledger::default(), 0))
     }
 
-    /// Goes on behind the first `length` bytes of a log, which `ledger` describes.
+    /// Continues after the first `length` bytes of a log, which `ledger` describes.
     pub(super) fn behind(ledger: Ledger, length: u64) -> Result<Self, McapError> {
         let (writer, outbox) = writer_that_knows(&ledger)?;
         Ok(Self::with(writer, outbox, ledger, length))
@@ -187,19 +187,19 @@ impl Encoder {
         self.in_front = bytes.to_vec();
     }
 
-    /// What the log holds.
+    /// The ledger of the log so far.
     pub(super) fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// Begins a stretch.
+    /// Starts a stretch with its manifest.
     pub(super) fn manifest(&mut self, manifest: &Manifest) -> Result<(), EncodeError> {
         manifest.check_size()?;
         self.stretch = manifest.hash();
         Ok(self.writer.write_metadata(&manifest.to_record())?)
     }
 
-    /// Goes on with a stretch, whose manifest has this hash.
+    /// Starts a stretch, whose manifest has this hash.
     pub(super) fn go_on_with(&mut self, stretch: Hash) {
         self.stretch = stretch;
     }
@@ -262,7 +262,7 @@ impl Encoder {
         self.ledger.chunks.last().copied()
     }
 
-    /// What a block of the index says about the last commit that was taken.
+    /// The mark of the last commit that was taken, for a block of the index.
     pub(super) fn mark(&self, last: &Commit, mesh: Hash, fields: &[EncodedField]) -> Option<Mark> {
         let piece = |hash| {
             let (_, place) = self.pieces.iter().find(|(known, _)| *known == hash)?;
@@ -319,7 +319,7 @@ impl Encoder {
         self.again_if(bytes, part, |_| true)
     }
 
-    /// A record that says something about the log.
+    /// A metadata record about the log.
     pub(super) fn metadata(&mut self, record: &Metadata) -> Result<(), McapError> {
         self.writer.write_metadata(record)
     }
@@ -355,7 +355,7 @@ impl Encoder {
         self.writer.flush()
     }
 
-    /// Whether what a chunk says about its channels, or those before it said, can be gone by.
+    /// Whether the descriptions of channels in a chunk, or in those before it, can be trusted.
     fn describes(&self, bytes: &[u8], part: &Frame) -> bool {
         let mut described: Vec<u16> = Vec::new();
         let is_described = |record: Frame| {
@@ -370,7 +370,7 @@ impl Encoder {
         chunk::has_its_checksum(bytes, part) && chunk::records(bytes, part).into_iter().flatten().all(is_described)
     }
 
-    /// A chunk of which no more can be gone by than the hashes in its commit: its messages under topics described again.
+    /// A chunk of which nothing can be trusted but the hashes in its commit: its messages under topics described again.
     fn again_as_committed(
         &mut self,
         bytes: &[u8],
@@ -393,7 +393,7 @@ impl Encoder {
         summary::write(&self.ledger, self.length, commits, 0, emit)
     }
 
-    /// The same, as it stood in version 1: with the checksum of all bytes before it.
+    /// The same as in version 1: with the checksum of all bytes before it.
     pub(super) fn close_with_checksum<E>(
         &self,
         commits: u64,

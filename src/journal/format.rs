@@ -12,7 +12,7 @@
 //! A state names its mesh and its fields (displacements, those of the equilibrium before, the heading of a path) by hash, so a
 //! stage that changes none (indicators that mark nothing, a solve that is rejected) writes some hundred bytes and its report.
 //!
-//! Before the first chunk, and again wherever a run was taken up again, stands a metadata record `foldline.manifest`: it
+//! Before the first chunk, and again wherever a run was resumed, lies a metadata record `foldline.manifest`: it
 //! begins a *stretch* of the run.
 //!
 //! # Versions
@@ -20,7 +20,7 @@
 //! | version | what is new |
 //! |---|---|
 //! | 1 | |
-//! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest says which revision of the numerics wrote the stretch; a chunk may lack a state, and a mesh or displacements that no state needs, in a log that was thinned and says so in a metadata record `foldline.thinned` |
+//! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest names the revision of the numerics that wrote the stretch; a chunk may lack a state, and a mesh or displacements that no state needs, in a log that was thinned and says so in a metadata record `foldline.thinned` |
 //!
 //! | 3 | a state names each of its fields by its own hash, and a commit names them all; before, the displacements and those of the equilibrium before were one |
 //!
@@ -34,7 +34,7 @@
 //! states repeat is named by its hash instead.
 //!
 //! # Times
-//! `log_time` is the place in the run, not the clock: stage k stands at (k + 1) · 100 ms after 1970. A viewer then
+//! `log_time` is the place in the run, not the clock: stage k is at (k + 1) · 100 ms after 1970. A viewer then
 //! plays ten stages a second, whatever a stage cost and however many nights lie between an interruption and the
 //! resume, and equal runs have equal times. The clock goes into `publish_time` (nanoseconds since 1970), which nothing
 //! reads back. No hash covers either.
@@ -42,32 +42,32 @@
 /// Version of the layout that this module describes. A reader refuses a newer one.
 pub const FORMAT_VERSION: u32 = 3;
 
-/// Profile in the header of the file.
+/// Name of the MCAP profile in the header of a log.
 pub const PROFILE: &str = "foldline";
 
 /// Name of the metadata records that hold a manifest.
 pub const MANIFEST: &str = "foldline.manifest";
 
-/// Name of the metadata record of a log that was thinned.
+/// Name of the metadata record that marks a thinned log.
 pub const THINNED: &str = "foldline.thinned";
 
-/// Encoding of states and meshes: a version byte, then bincode (little endian, fixed-width integers).
+/// Name of the encoding of states and meshes: a version byte, then bincode (little endian, fixed-width integers).
 pub const BINARY_ENCODING: &str = "foldline-bincode-v1";
 
-/// Topic of the meshes.
+/// Topic of the messages with meshes.
 pub const MESH_TOPIC: &str = "/foldline/mesh";
-/// Topic of the fields on the control points.
+/// Topic of the messages with fields on the control points.
 pub const DISPLACEMENT_TOPIC: &str = "/foldline/displacement";
-/// Topic of the states.
+/// Topic of the messages with states.
 pub const STATE_TOPIC: &str = "/foldline/state";
-/// Topic of the reports.
+/// Topic of the messages with reports.
 pub const REPORT_TOPIC: &str = "/foldline/report";
-/// Topic of the commits.
+/// Topic of the messages with commits.
 pub const COMMIT_TOPIC: &str = "/foldline/commit";
-/// Topic of the record that ends a finished run.
+/// Topic of the message that ends the log of a finished run.
 pub const FINISHED_TOPIC: &str = "/foldline/finished";
 
-/// Topics that no viewer may write to.
+/// The topics of the log itself, to which no viewer may write.
 pub const OWN_TOPICS: [&str; 6] =
     [MESH_TOPIC, DISPLACEMENT_TOPIC, STATE_TOPIC, REPORT_TOPIC, COMMIT_TOPIC, FINISHED_TOPIC];
 
@@ -86,7 +86,7 @@ pub const REPORT_BYTES_LIMIT: usize = 1 << 20;
 /// Largest manifest that is written or read, bytes: room for the net of a hundred thousand control points.
 pub const MANIFEST_BYTES_LIMIT: usize = crate::scene::SCENE_BYTES_LIMIT as usize;
 
-/// Most values of a scene in a log: the parser takes 160 bytes for each, where two may stand for it in the text.
+/// Most values of a scene in a log: the parser takes 160 bytes for each, where two bytes of the text may make one.
 pub(super) const SCENE_VALUES_LIMIT: usize = 350_000;
 
 /// Most bytes of manifests that are kept of one log.
@@ -104,7 +104,7 @@ pub(super) const CHANNEL_BYTES_LIMIT: usize = 4 << 10;
 /// Distance of two stages in `log_time`.
 const NANOSECONDS_PER_STAGE: u64 = 100_000_000;
 
-/// `log_time` of the stage with this ordinal, nanoseconds.
+/// Logging time of the stage with this ordinal, nanoseconds.
 pub fn log_time_ns(ordinal: u64) -> u64 {
     ordinal.saturating_add(1).saturating_mul(NANOSECONDS_PER_STAGE)
 }

@@ -1,4 +1,4 @@
-//! The outermost layer of MCAP, walked on bytes in memory: one byte that says what a record is, eight that say how
+//! The outermost layer of MCAP, walked on bytes in memory: one byte for the kind of a record, eight for how
 //! long, then the record. Allocates nothing, whatever the lengths claim.
 
 use std::fmt;
@@ -16,7 +16,7 @@ pub(super) const PREFIX_LEN: usize = 1 + 8;
 pub(super) struct Frame {
     /// First byte, that of the prefix.
     pub at: usize,
-    /// What the record is.
+    /// Opcode of the record: its kind.
     pub opcode: u8,
     /// The record without its prefix.
     pub body: Range<usize>,
@@ -25,7 +25,7 @@ pub(super) struct Frame {
 /// A record that continues beyond the bytes there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cut {
-    /// What the record is and how long it says that it is, where that much is left.
+    /// What the record is and the length that it states, where that much is left.
     pub claim: Option<(u8, u64)>,
     /// Bytes that are left, with the prefix.
     pub left: usize,

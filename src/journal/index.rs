@@ -33,7 +33,7 @@ const BLOCK_BYTES: u64 = 32 << 20;
 /// The largest head that is read, bytes.
 const HEAD_LIMIT: usize = 4 << 20;
 
-/// Columns that say where chunks lie.
+/// Columns with the places of chunks.
 const PLACES: [&str; 3] = ["#at", "#bytes", "#pattern"];
 
 /// What a block begins with.
@@ -41,7 +41,7 @@ const PLACES: [&str; 3] = ["#at", "#bytes", "#pattern"];
 pub(super) struct Head {
     /// Ordinal of its first commit.
     pub first: u64,
-    /// How many it has.
+    /// Number of commits of the block.
     pub commits: u64,
     columns: Vec<Column>,
     mark: Mark,
@@ -71,7 +71,7 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// Whether it asks for no more than a log can hold, and for nothing twice.
+    /// Whether it lists no more than a log can hold, and nothing twice.
     fn is_sound(&self) -> bool {
         let follow = self.metadata.windows(2).all(|pair| pair[0].0.saturating_add(pair[0].1) <= pair[1].0);
         self.fields.len() <= FIELDS_LIMIT && follow && self.described_at.is_sorted_by(|a, b| a < b)
@@ -99,17 +99,17 @@ pub(super) struct Builder {
 const ABSENT: u64 = f64::NAN.to_bits();
 
 impl Builder {
-    /// Begins a block whose first commit is number `ordinal`.
+    /// Starts a block whose first commit has this ordinal.
     pub fn at(ordinal: u64) -> Self {
         Self { first: ordinal, ..Self::default() }
     }
 
-    /// Ordinal of the next commit.
+    /// Ordinal of the commit that the block takes next.
     pub fn next(&self) -> u64 {
         self.first + self.places.len() as u64
     }
 
-    /// Takes a commit; gives a block where that fills one.
+    /// Adds a commit, and returns the block when that fills it.
     pub fn push(
         &mut self,
         place: ChunkPlace,
@@ -176,7 +176,7 @@ fn number(value: &serde_json::Value) -> u64 {
     }
 }
 
-/// The number that stands for a word in a column.
+/// The number that represents a word in a column.
 pub fn word_number(word: &str) -> u64 {
     blake3::hash(word.as_bytes()).as_bytes().first_chunk().map_or(ABSENT, |bytes| u64::from_le_bytes(*bytes))
 }
@@ -191,7 +191,7 @@ pub(super) struct Index {
 }
 
 impl Index {
-    /// Reads the heads of an index; `None` where there is none.
+    /// Reads the heads of the blocks of an index; `None` where there is no index.
     pub fn read(path: &Path) -> Option<Self> {
         let file = open_regular(path).ok()?;
         let mut index = Self { file, heads: Vec::new(), length: 0 };
@@ -225,7 +225,7 @@ impl Index {
         (is_whole && has_places && head.mark.is_sound()).then_some(head)
     }
 
-    /// Takes in a block that was written behind the others.
+    /// Registers a block that was written behind the others.
     pub fn add(&mut self, mut head: Head, block_len: usize) {
         let columns = head.commits * 8 * head.columns.len() as u64;
         head.columns_at = self.length + block_len as u64 - columns;
@@ -243,7 +243,7 @@ impl Index {
         self.heads.last().map_or(0, |head| head.first + head.commits)
     }
 
-    /// A column of a block, checked; where the block has none of that name, nothing is in it.
+    /// Reads a column of a block and checks it; it is empty where the block has none of that name.
     pub fn column(&self, head: &Head, name: &str) -> io::Result<Vec<u64>> {
         let Some(place) = head.columns.iter().position(|column| column.name == name) else {
             return Ok(vec![ABSENT; head.commits as usize]);
@@ -261,7 +261,7 @@ impl Index {
             .collect())
     }
 
-    /// Reads what the last block marks from the log, and where all chunks before that commit lie.
+    /// Reads from the log the checkpoint that the last block marks, and the places of all chunks before it.
     pub fn checkpoint(&self, log: &File) -> io::Result<Option<(Checkpoint, Ledger)>> {
         let Some(last) = self.heads.last() else { return Ok(None) };
         let mut ledger = Ledger { patterns: last.mark.patterns.clone(), ..Ledger::default() };
@@ -278,12 +278,12 @@ impl Index {
         Ok(checkpoint_of(log, last, here.at, &mut ledger)?.map(|checkpoint| (checkpoint, ledger)))
     }
 
-    /// Reads what the last block marks.
+    /// Reads from the log the checkpoint that the last block marks.
     pub fn last_checkpoint(&self, log: &File) -> io::Result<Option<Checkpoint>> {
         self.checkpoint_before(log, usize::MAX)
     }
 
-    /// Reads what the last block marks whose commits are all before another.
+    /// Reads from the log the checkpoint of the last block whose commits all come before `ordinal`.
     pub fn checkpoint_before(&self, log: &File, ordinal: usize) -> io::Result<Option<Checkpoint>> {
         let behind = self.heads.partition_point(|head| head.first + head.commits <= ordinal as u64);
         let Some(last) = self.heads[..behind].last() else { return Ok(None) };

@@ -26,7 +26,7 @@ pub(super) struct IndexKeeper {
 }
 
 impl IndexKeeper {
-    /// Creates a keeper for a log that begins.
+    /// Creates a keeper for a new log.
     pub fn new(path: PathBuf) -> Self {
         Self { path, builder: Builder::at(0), waiting: Vec::new(), file: None }
     }
@@ -41,12 +41,12 @@ impl IndexKeeper {
         Some(Self { path, builder, waiting: Vec::new(), file: Some(file) })
     }
 
-    /// Whether a commit is the next that it has not seen.
+    /// Whether a commit is the next that the index lacks.
     pub fn wants(&self, record: &Record) -> bool {
         self.builder.next() == record.commit.ordinal
     }
 
-    /// Takes a commit; `None` where the index cannot be kept any longer.
+    /// Adds a commit to the index; returns `None` where the index can no longer be kept.
     pub fn take(mut self, place: ChunkPlace, record: &Record, mark: impl FnOnce() -> Option<Mark>) -> Option<Self> {
         // What is missing of a log that is continued is indexed by whoever reads it next.
         if self.builder.next() != record.commit.ordinal {
@@ -64,7 +64,7 @@ impl IndexKeeper {
     }
 }
 
-/// An empty file for an index; never in the place of a file that is none.
+/// Creates an empty file for an index; never in place of a file that is not an index.
 fn begin(path: &Path) -> Option<File> {
     if path.symlink_metadata().is_ok() {
         if !is_index(path) {
@@ -91,7 +91,7 @@ pub(super) struct Rewritten {
 }
 
 impl Rewritten {
-    /// Begins with the blocks that are there.
+    /// Starts a new index file with the blocks of the old index.
     pub fn of(path: &Path, old: Option<&Index>) -> Option<Self> {
         let file = WholeFile::beside(path).ok()?;
         let mut index = Index::empty(file.file().try_clone().ok()?);
@@ -103,14 +103,14 @@ impl Rewritten {
         Some(Self { file, index })
     }
 
-    /// Adds a block.
+    /// Writes a block behind the others.
     pub fn add(&mut self, head: Head, block: &[u8]) -> Option<()> {
         self.file.file().write_all(block).ok()?;
         self.index.add(head, block.len());
         Some(())
     }
 
-    /// Gives it its name, unless a file that is no index has it, or it is too short to be worth one.
+    /// Renames the file to its final name, unless a file there is no index, or the index is too short to be worth one.
     pub fn done(self, path: &Path) -> Index {
         let Self { file, index } = self;
         if index.commits() >= LONG_COMMITS && (path.symlink_metadata().is_err() || is_index(path)) {

@@ -1,7 +1,7 @@
-//! The lease on a log: a small file that says which process may write it.
+//! The lease on a log: a small file that names the process that may write it.
 //!
-//! It holds a random token, the process in words, and what tells this process from all others of the machine: its boot,
-//! its name space, its number and when it started. Leases come to be whole, by a link or by renaming, so that no reader
+//! It holds a random token, the process in words, and what distinguishes this process from all others of the machine: its boot,
+//! its name space, its number and when it started. Leases appear whole, by a link or by renaming, so that no reader
 //! meets half of one, and none is ever written through a link of that name.
 
 use std::fs::{self, File, OpenOptions};
@@ -26,7 +26,7 @@ pub(super) const LONGEST: u64 = 4096;
 /// Hexadecimal digits of a token.
 const TOKEN: usize = 32;
 
-/// A rival that takes longer to clear a lease away was killed over it.
+/// A process that takes longer to clear a lease away was killed while doing so.
 const LONGEST_CLEARING: Duration = Duration::from_secs(5);
 
 /// Between two looks whether it is through.
@@ -56,7 +56,7 @@ pub(super) struct Holder {
 }
 
 impl Lease {
-    /// Takes the lease from whoever has it: for the one who holds the system's lock, which says that it is nobody's.
+    /// Takes the lease from whoever has it: for the one who holds the system's lock, which shows that nobody else has it.
     pub(super) fn put(path: &Path) -> io::Result<Self> {
         let (lease, whole) = Self::new(path)?;
         if !may_be_replaced(path)? {
@@ -95,7 +95,7 @@ impl Lease {
     }
 
     /// Takes the lease of a process that is gone out of the way. One process at a time does so, and looks again before: what a
-    /// rival may have put there meanwhile stays.
+    /// other process may have put there meanwhile stays.
     fn clear(path: &Path, gone: &Holder) -> io::Result<()> {
         let clearing = beside(path, ".clearing");
         let began = Instant::now();
@@ -116,7 +116,7 @@ impl Lease {
         cleared
     }
 
-    /// Where it is.
+    /// Path of the lease.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
@@ -145,7 +145,7 @@ impl Holder {
         }
     }
 
-    /// Whether its process is, or was, one of this machine's, so that its end can be told.
+    /// Whether its process is, or was, one of this machine's, so that its end can be known.
     pub(super) fn is_known_here(&self) -> bool {
         self.id_here().is_some()
     }
@@ -198,7 +198,7 @@ fn machine() -> Option<(String, String)> {
     Some((boot.trim().to_owned(), space.display().to_string()))
 }
 
-/// What tells a process that runs now from all others, ever; Linux only.
+/// What distinguishes a process that runs now from all others, ever; Linux only.
 fn process(id: u32) -> Option<String> {
     let (boot, space) = machine()?;
     let status = fs::read_to_string(format!("/proc/{id}/stat")).ok()?;

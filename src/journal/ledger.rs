@@ -10,7 +10,7 @@ use super::frame::{self, Frame, op};
 /// One chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ChunkPlace {
-    /// First byte.
+    /// Offset of the first byte in the log.
     pub at: u64,
     /// Length with the nine bytes in front.
     pub bytes: u32,
@@ -38,7 +38,7 @@ pub(super) struct Ledger {
 }
 
 impl Ledger {
-    /// Enters the records of `bytes`, which lie at `at` in the log: whole chunks with their indexes.
+    /// Registers the whole chunks in `bytes`, with their indexes; the bytes begin at `at` in the log.
     pub fn enter(&mut self, at: u64, bytes: &[u8]) {
         let mut from = if at == 0 { mcap::MAGIC.len() } else { 0 };
         let mut open: Option<(ChunkPlace, Pattern)> = None;
@@ -83,7 +83,7 @@ impl Ledger {
         messages
     }
 
-    /// The channels whose records the ledger has.
+    /// The channels whose schema and channel records the ledger has.
     pub fn channels_described(&self) -> Channels {
         let parsed = self.channels.values().filter_map(|record| {
             let found = frame::next(record, 0)?.ok()?;
@@ -95,7 +95,7 @@ impl Ledger {
         parsed.collect()
     }
 
-    /// The number of a pattern.
+    /// Returns the number of a pattern, adding it if it is new.
     pub fn number_of(&mut self, pattern: Pattern) -> u32 {
         let known = self.patterns.iter().position(|known| *known == pattern);
         known.unwrap_or_else(|| {
@@ -111,7 +111,7 @@ impl Ledger {
         }
     }
 
-    /// Keeps the schemas and channels that a chunk describes.
+    /// Registers the schemas and channels that a chunk describes.
     pub fn describe(&mut self, at: u64, bytes: &[u8], chunk: &Frame) {
         let known = self.schemas.len() + self.channels.len();
         for record in chunk::records(bytes, chunk).into_iter().flatten() {

@@ -19,8 +19,9 @@ use super::backend::{beside, is_at};
 use super::lease::{LONGEST, Lease, holder, not_ours};
 use crate::whole_file::{room_for, shortage};
 
-/// Why a log cannot be written, or no longer.
+/// Why a process may not write a log, or may no longer.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LockError {
     /// Another process writes this log.
     #[error("{log} is being written by {holder}: wait for it or stop it. Nothing was changed")]
@@ -30,9 +31,9 @@ pub enum LockError {
         /// Who has the lease.
         holder: String,
     },
-    /// Another process may write this log; whether it still runs cannot be told from here.
+    /// Another process may write this log; whether it still runs is not known here.
     #[error(
-        "{log} is leased to {holder}, and nothing here can tell whether that still runs: wait for it or stop it, or, if it is gone, \
+        "{log} is leased to {holder}, and nothing here shows whether that still runs: wait for it or stop it, or, if it is gone, \
          delete {lease}. Nothing was changed"
     )]
     Leased {
@@ -54,9 +55,9 @@ pub enum LockError {
         /// Who has the lease now.
         holder: String,
     },
-    /// The lease is not there any more.
+    /// The lease is gone.
     #[error(
-        "{lease} is gone, which says that this run may write {log}: its folder was moved or removed, or another run took the log over \
+        "{lease} is gone, which shows that this run may write {log}: its folder was moved or removed, or another run took the log over \
          and is done. This run stops; put the folder back, then `foldline resume {log}`"
     )]
     Gone {
@@ -65,9 +66,9 @@ pub enum LockError {
         /// The lease.
         lease: String,
     },
-    /// The lease cannot be read any more.
+    /// The lease can no longer be read.
     #[error(
-        "{lease} cannot be read any more, which says whether this run may still write {log}: this run stops. When it can be read \
+        "{lease} can no longer be read, which shows whether this run may still write {log}: this run stops. When it can be read \
          again, `foldline resume {log}`"
     )]
     Unreadable {
@@ -75,7 +76,7 @@ pub enum LockError {
         log: String,
         /// The lease.
         lease: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -86,7 +87,7 @@ pub enum LockError {
         path: String,
         /// Bytes that the disk has room for, where that is known.
         room: Option<u64>,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -95,7 +96,7 @@ pub enum LockError {
     Io {
         /// The file.
         path: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -114,10 +115,10 @@ pub struct LogLock {
 }
 
 impl LogLock {
-    /// Takes the right to write `log`, which need not exist.
+    /// Acquires the right to write `log`, which need not exist.
     ///
     /// # Errors
-    /// Where another process has it, or the files beside the log cannot be made.
+    /// Where another process has it, or the files next to the log cannot be made.
     pub fn take(log: &Path) -> Result<Self, LockError> {
         let (lock_path, lease_path) = (beside(log, ".lock"), beside(log, ".lease"));
         let name = || log.display().to_string();
@@ -164,12 +165,12 @@ impl LogLock {
         Ok(Self { log: log.to_owned(), lease, lock_path, lock, is_exclusive: is_locked })
     }
 
-    /// Whether the system keeps others out, and not the lease alone.
+    /// Whether the file system's lock keeps other processes out, and not the lease alone.
     pub fn is_exclusive(&self) -> bool {
         self.is_exclusive
     }
 
-    /// Looks whether the right is still held. A lease that cannot be read is tried again for a while.
+    /// Checks that the right is still held. A lease that cannot be read is tried again for a while.
     ///
     /// # Errors
     /// Where it is not.

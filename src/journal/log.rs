@@ -1,4 +1,4 @@
-//! A log that was read: its stages, and their states when they are asked for.
+//! A log that was read: its stages, and their states when they are needed.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,12 +13,13 @@ use crate::record::{Commit, Record};
 use crate::scene::{Difference, Scene};
 use crate::state::{Hash, Mesh, State};
 
-/// A stage in a log. Its bytes have the hashes that its commit names, and its commit follows from the one before it.
+/// A stage of a log, with the place of its messages in the file. Their hashes are those that its commit names, and the
+/// commit follows from the one before it.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// What the stage said, where it stands, and how long it took.
+    /// The report of the stage, its place in the run, and how long it took.
     pub record: Record,
-    /// Content hash of the mesh that its state stands on.
+    /// Content hash of the mesh of its state.
     pub mesh_hash: Hash,
     /// Hashes of the bytes of its state's fields.
     pub(super) fields: Box<[Hash]>,
@@ -32,27 +33,28 @@ pub struct Entry {
     pub(super) names_stretch: bool,
 }
 
-/// A remark about a log that costs no commit.
+/// A remark about something unusual in a log for which no commit is lost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// Where it is, bytes.
+    /// Offset in the file, bytes.
     pub at: u64,
-    /// What it is.
+    /// The remark.
     pub text: String,
 }
 
-/// Why a state of a log cannot be had.
+/// Why a state of a log cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StateError {
-    /// No such stage.
+    /// The run has no such stage.
     #[error("there is no stage {index} in this log: it holds {len}, counted from 0")]
     NoSuchStage {
-        /// What was asked for.
+        /// The number that was requested.
         index: usize,
-        /// Stages in the log.
+        /// Number of stages of the run.
         len: usize,
     },
-    /// The log was thinned.
+    /// The log was thinned and does not hold the state.
     #[error("the state of commit {index} is not in the log, which was thinned; {}", kept_before(*before))]
     NotKept {
         /// Ordinal of the commit.
@@ -65,7 +67,7 @@ pub enum StateError {
     Content {
         /// Ordinal of the commit.
         index: usize,
-        /// Why.
+        /// The error of the decoder.
         #[source]
         source: CodecError,
     },
@@ -96,8 +98,8 @@ pub(super) struct Part {
     pub kept: Kept,
 }
 
-/// What is good of a log, or of its last part. Holds the file, or that part, in memory; states are decoded, and compared with
-/// their hashes, when asked for.
+/// The good part of a log, or the last stretch of it, held in memory. States are decoded, and compared with their
+/// hashes, when they are read.
 #[derive(Debug)]
 pub struct Log {
     /// Place in the file of the first byte in memory.
@@ -132,13 +134,13 @@ pub struct Log {
 }
 
 impl Log {
-    /// The manifests of the run's stretches, in order; one that is damaged is not among them.
+    /// The manifests of the run's stretches, in order; damaged ones are left out.
     pub fn manifests(&self) -> &[Manifest] {
         &self.stretches.manifests
     }
 
-    /// The manifests that stage `index` may have been made under, likeliest first: the one that its commit names, if the log
-    /// has it. Commits of version 1 name none.
+    /// The manifests that stage `index` may have been made under, likeliest first: the one that its commit names, if
+    /// the log has it. Commits of version 1 name none.
     pub fn manifests_of(&self, index: usize) -> impl Iterator<Item = &Manifest> {
         let entry = self.entry(index);
         let named = entry.filter(|entry| entry.names_stretch).map(|entry| entry.stretch);
@@ -153,7 +155,8 @@ impl Log {
         manifests.filter(move |(place, manifest)| may(*place, manifest)).map(|(_, manifest)| manifest)
     }
 
-    /// What changed of the scene between two stretches: ordinal of the first stage of the second, and every key that differs.
+    /// The changes of the scene between stretches: ordinal of the first stage of the later stretch, and every key that
+    /// differs.
     pub fn scene_changes(&self) -> Vec<(u64, Vec<Difference>)> {
         let manifests = self.manifests();
         let ends = manifests.iter().skip(1).map(|next| next.first_ordinal).chain([u64::MAX]);
@@ -168,12 +171,13 @@ impl Log {
         changes.collect()
     }
 
-    /// Manifests that are lost, in the order of the file.
+    /// The manifests that are lost, in the order of the file.
     pub fn lost_manifests(&self) -> &[LostManifest] {
         &self.stretches.lost
     }
 
-    /// Those of them whose place none takes: the run was not continued, behind them, with a scene that makes the same states.
+    /// The lost manifests that no later one makes up for: behind them the run was not continued with a scene that makes
+    /// the same states.
     pub fn missed_manifests(&self) -> impl Iterator<Item = &LostManifest> {
         self.lost_manifests().iter().filter(|lost| {
             let behind = &self.manifests()[lost.before..];
@@ -190,17 +194,18 @@ impl Log {
         self.notes.iter().rfind(|note| note.at == at)
     }
 
-    /// Whether the last of them is behind the last good one: what the run last continued with is not known.
+    /// Whether the last lost manifest lies behind the last good one, so that the scene that the run was last continued
+    /// with is not known.
     pub fn last_manifest_is_lost(&self) -> bool {
         self.stretches.last_is_lost
     }
 
-    /// The stages that were read, in the order of the run; entry k has ordinal k, counted from [`Log::first`].
+    /// The stages that were read, in the order of the run; entry k has ordinal [`Log::first`] + k.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
 
-    /// Ordinal of the first stage that was read: 0, but where only the last part of a long log was.
+    /// Ordinal of the first stage that was read: 0, unless only the last part of a long log was.
     pub fn first(&self) -> usize {
         self.first
     }
@@ -210,12 +215,12 @@ impl Log {
         self.first + self.entries.len()
     }
 
-    /// Stage `index` of the run, if it was read.
+    /// The entry of stage `index` of the run, if it was read.
     pub fn entry(&self, index: usize) -> Option<&Entry> {
         self.entries.get(index.checked_sub(self.first)?)
     }
 
-    /// The last good commit.
+    /// The last good commit of the log.
     pub fn last_commit(&self) -> Option<&Commit> {
         self.entries.last().map(|entry| &entry.record.commit)
     }
@@ -233,22 +238,22 @@ impl Log {
     }
 
     /// The problem that ends the good part; `None` where nothing behind it is lost. Problems that the chain of commits
-    /// reaches across cost nothing.
+    /// reaches across lose nothing.
     pub fn loss(&self) -> Option<&Problem> {
         self.problems.iter().find(|problem| problem.at >= self.good_end())
     }
 
-    /// All that is not as it was written, in the order of the file.
+    /// All places where the file is not as it was written, in the order of the file.
     pub fn problems(&self) -> &[Problem] {
         &self.problems
     }
 
-    /// Commits behind a loss: whole, and not used, because what they follow on is lost.
+    /// The whole commits behind a loss, which are not used because the commits before them are lost.
     pub fn later_commits(&self) -> &[LaterCommit] {
         &self.later
     }
 
-    /// Remarks that cost no commit.
+    /// The remarks about things in the log that lose no commit.
     pub fn notes(&self) -> &[Note] {
         &self.notes
     }
@@ -261,7 +266,7 @@ impl Log {
         self.pieces.iter().find(|(start, _)| *start == place.start).map(|(_, at)| *at)
     }
 
-    /// Where the good bytes end.
+    /// Offset at which the good part of the file ends, bytes.
     pub fn good_end(&self) -> u64 {
         self.base + self.good_end as u64
     }
@@ -285,7 +290,7 @@ impl Log {
             && self.lost_manifests().is_empty()
     }
 
-    /// Whether MCAP's summary, which viewers look for, is there to its end: a kill may meet the write that adds it.
+    /// Whether MCAP's summary, which viewers need, is complete: a process may be killed while it writes the summary.
     pub fn has_summary(&self) -> bool {
         self.closed && self.bytes.ends_with(mcap::MAGIC)
     }
@@ -299,23 +304,23 @@ impl Log {
         }
     }
 
-    /// Whether the log holds the state that stage `index` made: all of them, but in a log that was thinned.
+    /// Whether the log holds the state that stage `index` made; a thinned log lacks some.
     pub fn keeps_state(&self, index: usize) -> bool {
         self.entry(index).is_some_and(|entry| entry.state.is_some())
     }
 
-    /// The last stage before stage `index` that has its state.
+    /// The last stage before stage `index` whose state the log holds.
     pub fn kept_before(&self, index: usize) -> Option<usize> {
         (self.first..index).rev().find(|before| self.keeps_state(*before)).or(self.kept_before)
     }
 
-    /// Which states a thinned log holds, in the words that it was thinned with; `None` for any other.
+    /// Which states a thinned log holds, in the words with which it was thinned; `None` for any other log.
     pub fn thinned(&self) -> Option<&str> {
         self.thinned.as_deref()
     }
 
-    /// The state that stage `index` made. The mesh is shared with the state that was asked for before, where it is
-    /// the same.
+    /// Reads the state that stage `index` made. The mesh is shared with the state that was read before, where it is the
+    /// same.
     ///
     /// # Errors
     /// Where there is no such stage, or where what the log holds is not what was committed.
@@ -350,7 +355,7 @@ impl Log {
         }
     }
 
-    /// The mesh that the state of stage `index` stands on.
+    /// Reads the mesh of the state that stage `index` made.
     ///
     /// # Errors
     /// Where there is no such stage, or where what the log holds is not what was committed.

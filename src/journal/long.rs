@@ -1,4 +1,4 @@
-//! A long log, of which only the end is read: where the rest lies says its index.
+//! A long log, of which only the end is read: its index gives the place of the rest.
 
 use std::fs::File;
 use std::io;
@@ -18,21 +18,22 @@ use crate::record::Record;
 
 /// Why stages of a long log cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LongLogError {
     /// The log or its index cannot be read.
     #[error("the log or its index cannot be read")]
     Io(#[from] io::Error),
-    /// No such stage.
+    /// The run has no such stage.
     #[error("there is no stage {ordinal} in this log: it holds {commits}, counted from 0")]
     NoSuchStage {
-        /// What was asked for.
+        /// The number that was requested.
         ordinal: usize,
-        /// Stages in the log.
+        /// Number of stages of the run.
         commits: usize,
     },
-    /// A commit that is not what the index says: damaged, or of another log.
+    /// A commit that is not what the index lists: damaged, or of another log.
     #[error(
-        "commit {ordinal} at byte {at} is not what it was when the index was written: `foldline verify` tells more"
+        "commit {ordinal} at byte {at} is not what it was when the index was written: `foldline verify` reports more"
     )]
     Changed {
         /// Ordinal of the commit.
@@ -42,7 +43,7 @@ pub enum LongLogError {
     },
 }
 
-/// A log that was opened by its index.
+/// A long log that was opened by its index; only its end is held in memory.
 #[derive(Debug)]
 pub struct LongLog {
     file: File,
@@ -55,8 +56,9 @@ pub struct LongLog {
 }
 
 impl LongLog {
-    /// Opens a log that is long enough to have an index; `None` for a shorter one, and for one that is damaged before its
-    /// end, which has to be read whole. Where the index is missing or does not fit, the log is read through, part by part.
+    /// Opens a log that is long enough to have an index; `None` for a shorter one, and for one that is damaged before
+    /// its end, which has to be read whole. Where the index is missing or does not fit, the log is read through, part
+    /// by part.
     ///
     /// # Errors
     /// Where the log cannot be read.
@@ -75,7 +77,7 @@ impl LongLog {
         Self::read_through(path)
     }
 
-    /// Opens it without the index that there is, which does not fit, and writes a new one.
+    /// Opens a log whose index does not fit by reading all of it part by part, and writes a new index.
     ///
     /// # Errors
     /// Where the log cannot be read.
@@ -132,7 +134,7 @@ impl LongLog {
         self.tail.commits()
     }
 
-    /// Stage `ordinal`, its seal and the hashes of its messages checked.
+    /// Reads the record of stage `ordinal`, and checks its seal and the hashes of its messages.
     ///
     /// # Errors
     /// Where it cannot be read or is not what it was.
@@ -153,8 +155,8 @@ impl LongLog {
         }
     }
 
-    /// A part of the log with these stages and the one before them, from the last commit before them that a block of the index
-    /// marks, and that has its state or stands behind one that has: a log that was thinned may have few.
+    /// Reads the part of the log with these stages and the one before them. It begins at the last commit before them
+    /// that the index marks, and that has its state or follows on one that has: a thinned log may have few.
     ///
     /// # Errors
     /// Where it cannot be read, or they are not what they were.
@@ -186,8 +188,8 @@ impl LongLog {
         LongLogError::Changed { ordinal: ordinal as u64, at }
     }
 
-    /// Ordinals of the stages from `from` on, of those before the end that was read, whose reports hold numbers that `holds`
-    /// takes: those of `fields`, each in eight bytes.
+    /// Finds the first stage from `from` on, among those before the end that was read, whose report has values of
+    /// `fields` for which `holds` is true; each value comes as eight bytes.
     ///
     /// # Errors
     /// Where the index cannot be read or has changed.
@@ -209,7 +211,7 @@ impl LongLog {
     }
 }
 
-/// What a block says about its last commit.
+/// The mark of the last commit of a block.
 pub(super) fn mark(log: &Log, ledger: &Ledger, entry: &Entry) -> Option<Mark> {
     let at = entry.bytes.start;
     let piece = |places: &std::collections::HashMap<_, Range<usize>>, hash| {

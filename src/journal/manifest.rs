@@ -2,7 +2,7 @@
 //!
 //! A metadata record lies outside the chunks and has no checksum in MCAP, so it carries one of its own over all its
 //! entries. That hash is the name by which the commits of the stretch call their manifest. A manifest that does not check
-//! is lost, and never guessed at: states do not depend on it, but what the run was asked for does.
+//! is lost, and never guessed at: states do not depend on it, but what the run was to compute does.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,7 +17,7 @@ use crate::record::{NUMERICS_REVISION, run_hash};
 use crate::scene::{Scene, SceneError, parse_with_settings};
 use crate::state::Hash;
 
-/// Scene, program and machine of one stretch of a run.
+/// The scene, program and machine of one stretch of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Manifest {
     /// Version of the log's layout.
@@ -32,10 +32,10 @@ pub struct Manifest {
     pub cpu: String,
     /// Vector instructions that the processor has.
     pub cpu_features: Vec<String>,
-    /// Build of the element kernel that ran; empty in logs that do not say. Those for AVX2 and AVX-512 give the same
+    /// Build of the element kernel that ran; empty in logs that do not state it. Those for AVX2 and AVX-512 give the same
     /// bits.
     pub kernel: String,
-    /// Revision of the numerics; 0 in logs that do not say. Stretches of one revision and one kind of kernel have the same
+    /// Revision of the numerics; 0 in logs that do not state it. Stretches of one revision and one kind of kernel have the same
     /// bits.
     pub numerics: u32,
     /// Threads that the run used.
@@ -52,8 +52,9 @@ pub struct Manifest {
     pub own_terms: Vec<(String, String)>,
 }
 
-/// Why a metadata record is not a manifest.
+/// Why a metadata record cannot be read as a manifest.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ManifestError {
     /// An entry is not there.
     #[error("the manifest has no entry `{key}`")]
@@ -66,7 +67,7 @@ pub enum ManifestError {
     NotANumber {
         /// Name of the entry.
         key: &'static str,
-        /// What it holds.
+        /// Value of the entry.
         value: String,
     },
     /// Some entry has changed since it was written.
@@ -74,10 +75,11 @@ pub enum ManifestError {
     Check,
 }
 
-/// Why the text in a manifest is not a scene.
+/// Why the text in a manifest cannot be read as a scene.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SceneInLogError {
-    /// It does not stand for itself.
+    /// It names another file.
     #[error(
         "the scene in the log names a file for its geometry: logs hold theirs whole, and no file is opened for one"
     )]
@@ -85,7 +87,7 @@ pub enum SceneInLogError {
     /// More than a scene's text that a log holds may have.
     #[error("the scene in the log has more values than any that is written, {SCENE_VALUES_LIMIT}")]
     TooManyValues,
-    /// It does not read.
+    /// The text is rejected as a scene.
     #[error("the scene in the log does not read")]
     Wrong(#[from] Box<SceneError>),
 }
@@ -97,7 +99,7 @@ fn own_terms(entries: &BTreeMap<String, String>) -> Vec<(String, String)> {
 }
 
 impl Manifest {
-    /// Creates a manifest of this program on this machine, now.
+    /// Creates a manifest of this program on this machine, with the present time.
     pub fn here(scene_file: &Path, scene_text: &str, threads: usize) -> Self {
         Self {
             format_version: FORMAT_VERSION,
@@ -117,25 +119,27 @@ impl Manifest {
         }
     }
 
-    /// Creates the same for a run with terms of the caller's own.
+    /// Adds the terms of the caller's own that the run is made with.
     pub fn with_terms(self, own: &[Arc<dyn TermSource>]) -> Self {
         let own_terms = own.iter().map(|source| (source.name().to_owned(), source.hash().to_string())).collect();
         Self { own_terms, ..self }
     }
 
-    /// Hash of what the stages of this stretch were made with, as their commits have it; `None` where it does not read.
+    /// Hash of all that decides the results of this stretch, as its commits name it; `None` where the scene cannot be
+    /// read.
     pub fn run_hash(&self) -> Option<Hash> {
         let hash = |hash: &str| Hash::from_hex(hash).ok();
         let terms: Option<Vec<_>> = self.own_terms.iter().map(|(name, of)| Some((&name[..], hash(of)?))).collect();
         Some(run_hash(&self.scene(&[]).ok()?, &terms?))
     }
 
-    /// Whether both were written by machines that compute alike as far as a manifest can tell.
+    /// Whether both stretches were written by machines that compute alike, as far as manifests show.
     pub fn same_machine(&self, other: &Self) -> bool {
         (&self.host, &self.cpu, &self.cpu_features) == (&other.host, &other.cpu, &other.cpu_features)
     }
 
-    /// Why this stretch may round otherwise than `before`, in words; `None` where both round alike, on whatever machines.
+    /// Why this stretch may round differently from `before`, in words; `None` where both round alike, on whatever
+    /// machines.
     pub fn rounds_otherwise(&self, before: &Self) -> Option<String> {
         let kernels = [before, self].map(|manifest| KernelClass::of(&manifest.kernel));
         let [was, is] = [before, self].map(|manifest| {
@@ -152,14 +156,14 @@ impl Manifest {
         match (before.numerics, self.numerics) {
             (was, is) if was == is => None,
             (0, is) => Some(format!(
-                "another revision of the numerics may have written it: the log does not say which, this is {is}"
+                "another revision of the numerics may have written it: the log does not state which, this is {is}"
             )),
             (was, is) => Some(format!("another revision of the numerics: {was} before, {is} now")),
         }
     }
 
-    /// The scene, with settings applied to it. It stands for itself: one that names a file is none that this program wrote, and
-    /// no file is opened.
+    /// Parses the scene, with settings applied to it. A scene that names a file was not written by this program, and no
+    /// file is opened.
     ///
     /// # Errors
     /// Where it is no scene, in the words of the parser.
@@ -178,7 +182,7 @@ impl Manifest {
         Ok(parse_with_settings(&self.scene_text, "the scene in the log", settings).map_err(Box::new)?)
     }
 
-    /// Checks that a log can hold the manifest.
+    /// Checks that the manifest is not too large for a log.
     ///
     /// # Errors
     /// Where the scene is larger than any that a reader takes.
@@ -281,7 +285,7 @@ pub(super) const LIBRARY: &str = "library";
 /// What the entries of terms of the caller's own begin with; their number in the order of the terms follows.
 const OWN_TERM: &str = "own_term_";
 
-/// Entry of a stretch that is not the first. It comes first in the record, so that even a torn one says whether its scene was
+/// Entry of a stretch that is not the first. It comes first in the record, so that even a torn one shows whether its scene was
 /// that of the stretch before.
 const AGAIN: &str = "again";
 const SAME_SCENE: &str = "same scene";

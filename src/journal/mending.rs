@@ -1,4 +1,4 @@
-//! Stages that a log has lost, put back: whole ones that stand behind them follow on them again. That they are the right ones says
+//! Stages that a log has lost, put back: whole ones behind them follow on them again. That they are the right ones is shown by
 //! the chain.
 
 use super::codec::{EncodedState, encode_mesh, encode_state_on};
@@ -10,19 +10,20 @@ use super::reader::ReadError;
 use crate::record::Record;
 use crate::state::State;
 
-/// Why stages cannot be put back.
+/// Why lost stages cannot be put back into a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MendError {
     /// They have no place in a log.
     #[error(transparent)]
     Encode(#[from] EncodeError),
-    /// What comes of it is no log.
+    /// The result is not a log.
     #[error(transparent)]
     Read(#[from] ReadError),
 }
 
 impl Log {
-    /// The same log with stages behind its good part; `None` where nothing that stands there follows on them.
+    /// Returns the same log with stages behind its good part; `None` where no later commit of the log follows on them.
     ///
     /// # Errors
     /// Where a stage cannot be put into a log.

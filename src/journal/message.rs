@@ -17,7 +17,7 @@ use crate::record::{Commit, Parameter, Reading, Record, Report, WrittenReport};
 use crate::scene::Stage;
 use crate::state::Hash;
 
-/// A hash as 64 lower-case hexadecimal digits.
+/// A hash that is written as 64 lower-case hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HexHash(pub Hash);
 
@@ -54,7 +54,7 @@ impl JsonSchema for HexHash {
     }
 }
 
-/// One message of a chunk, as its commit names it.
+/// The hash of one message of a chunk, as the commit of the chunk lists it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct MessageHash {
     /// Topic of the message.
@@ -66,7 +66,7 @@ pub struct MessageHash {
 }
 
 impl MessageHash {
-    /// Names this data on this topic by its hash.
+    /// Hashes this data on this topic.
     pub fn of(topic: &str, data: &[u8]) -> Self {
         Self::hashed(topic, data, blake3::hash(data))
     }
@@ -79,6 +79,7 @@ impl MessageHash {
 
 /// The message on `/foldline/commit`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct CommitMessage {
     /// Version of the log's layout.
     pub format: u32,
@@ -96,7 +97,7 @@ pub struct CommitMessage {
     pub scene_hash: HexHash,
     /// Hash of (chain so far, scene hash, stage, state hash).
     pub chain_hash: HexHash,
-    /// Hash of the mesh that the state stands on, which this chunk or an earlier one holds.
+    /// Hash of the mesh of the state, which this chunk or an earlier one holds.
     pub mesh_hash: HexHash,
     /// Hashes of the bytes of the state's fields, its displacements first, which this chunk or earlier ones hold; not there
     /// before version 3.
@@ -115,7 +116,8 @@ pub struct CommitMessage {
 }
 
 impl CommitMessage {
-    /// The message for a commit of the stretch that a manifest with the hash `manifest` begins, whose chunk holds `messages`.
+    /// Creates the message for a commit whose chunk holds `messages`, in the stretch whose manifest has the hash
+    /// `manifest`.
     pub fn new(commit: &Commit, manifest: Hash, mesh_hash: Hash, fields: &[Hash], messages: Vec<MessageHash>) -> Self {
         Self {
             format: FORMAT_VERSION,
@@ -135,12 +137,12 @@ impl CommitMessage {
         }
     }
 
-    /// Hashes of the bytes of the state's fields.
+    /// The hashes of the encoded fields of the state.
     pub fn fields(&self) -> impl Iterator<Item = Hash> {
         self.displacement_hash.iter().chain(&self.field_hashes).map(|hash| hash.0)
     }
 
-    /// The commit that the message stands for; its chain hash is as written, not yet recomputed.
+    /// Converts the message to a commit; its chain hash is as written, not yet computed again.
     pub fn commit(&self) -> Commit {
         Commit {
             ordinal: self.ordinal,
@@ -156,10 +158,11 @@ impl CommitMessage {
 
 /// The message on `/foldline/finished`: the run reached its end.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct FinishedMessage {
     /// Version of the log's layout.
     pub format: u32,
-    /// Commits in the log.
+    /// Number of commits in the log.
     pub commits: u64,
     /// Chain hash of the last commit.
     pub chain_hash: HexHash,
@@ -171,7 +174,8 @@ pub struct FinishedMessage {
 }
 
 impl FinishedMessage {
-    /// The end of a run whose last commit is this, in a stretch that a manifest with the hash `manifest` begins.
+    /// Creates the message for a run whose last commit is `last`, in the stretch whose manifest has the hash
+    /// `manifest`.
     pub fn after(last: &Commit, manifest: Hash) -> Self {
         Self {
             format: FORMAT_VERSION,
@@ -187,6 +191,7 @@ impl FinishedMessage {
 ///
 /// JSON has no NaN and no infinities; such a number is `null` in its place and spelt out in `not_finite`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct ReportMessage {
     /// What the stage reported.
     #[serde(flatten)]
@@ -258,8 +263,8 @@ impl ReportMessage {
         serde_json::to_vec(self)
     }
 
-    /// The message that the JSON holds, bit for bit as it was. Entries that a report does not have are passed over and not
-    /// kept, however much they hold.
+    /// Reads the message from JSON, bit for bit as it was written. Entries that a report does not have are ignored,
+    /// however long they are.
     ///
     /// # Errors
     /// Where the JSON is not a report.
@@ -342,8 +347,9 @@ const UNSEALED: HexHash = HexHash(Hash::from_bytes([0; 32]));
 /// The seal's 64 digits and the two characters that end the JSON.
 const SEAL_LEN: usize = 64 + 2;
 
-/// Why a sealed message cannot be trusted.
+/// Why a sealed message is rejected.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SealError {
     /// Too short to hold a seal.
     #[error("{bytes} bytes are too few for a sealed message")]
@@ -352,7 +358,7 @@ pub enum SealError {
         bytes: usize,
     },
     /// The bytes before the seal do not have the hash that it holds.
-    #[error("the bytes before the seal hash to {found}, and the seal says otherwise")]
+    #[error("the bytes before the seal hash to {found}, and the seal differs")]
     Broken {
         /// Hash of the bytes.
         found: Hash,
@@ -394,12 +400,13 @@ pub fn unseal<M: Sealed>(json: &[u8]) -> Result<M, SealError> {
     Ok(parsed(json)?)
 }
 
-/// A message whose last entry is its seal.
+/// A message that is written with a seal (a hash of its other bytes) as its last entry.
 pub trait Sealed: Serialize + for<'de> Deserialize<'de> {}
 impl Sealed for CommitMessage {}
 impl Sealed for FinishedMessage {}
 
-/// The JSON schema of a message, in the subset that viewers read: no references, and a choice of words as `enum`.
+/// Generates the JSON schema of a message, in the subset that viewers read: no references, and a choice of words as
+/// `enum`.
 pub fn schema_of<M: JsonSchema>(title: &str) -> Vec<u8> {
     let settings = schemars::generate::SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
     let mut schema = settings.into_generator().into_root_schema_for::<M>().to_value();
@@ -425,7 +432,7 @@ fn one_object(schema: &Value) -> Option<Value> {
     Some(json!({ "description": schema["description"], "type": "object", "properties": entries }))
 }
 
-/// Turns `oneOf` constants into one `enum` of words, and `oneOf` objects that a constant tells apart into one object with the
+/// Turns `oneOf` constants into one `enum` of words, and `oneOf` objects that a constant distinguishes into one object with the
 /// entries of all.
 fn plain_choices(schema: &mut Value) {
     if let Some(whole) = one_object(schema) {

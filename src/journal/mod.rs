@@ -8,10 +8,10 @@
 //! 2. **Every commit vouches for its chunk.** The commit message is sealed with the hash of its own bytes and names the
 //!    hash of every other message in the chunk and of the manifest of its stretch; its chain hash follows from the commit
 //!    before it. A log that was cut or
-//!    changed anywhere is read up to the last commit for which all of that holds, and [`Log::completeness`] says what
-//!    lies behind. States are decoded only when they are asked for, and compared with their content hash.
+//!    changed anywhere is read up to the last commit for which all of that holds, and [`Log::completeness`] reports what
+//!    lies behind. States are decoded only when they are needed, and compared with their content hash.
 //! 3. **The end is explicit.** MCAP's footer proves nothing (its writer adds one even while a panic unwinds), so a run
-//!    that reached its end says so in a message of its own.
+//!    that reached its end has a message for that.
 //!
 //! | file | holds |
 //! |---|---|
@@ -20,7 +20,7 @@
 //! | `message`, `manifest` | reports, commits, the end, who wrote it |
 //! | `ledger`, `summary`, `encoder`, `encode_error`, `backend`, `writer`, `write_error` | from a stage to bytes in a file |
 //! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
-//! | `checkpoint`, `parts`, `index`, `index_keeper`, `long`, `asked` | a long log, of which only what is asked for is read |
+//! | `checkpoint`, `parts`, `index`, `index_keeper`, `long`, `asked` | a long log, of which only what is needed is read |
 //! | `portions` | a log of any length, read through without holding it |
 //! | `resume`, `recovery` | continuing a log, copying what is good of one |
 //! | `new_log`, `thin` | a log that is made of another, without some of its states |
@@ -37,11 +37,11 @@
 //! it, and continues behind its last good commit.
 //!
 //! A log that is as it was written is continued in place, under a lock that no other process can hold; any other is
-//! copied (`resume` says how both survive a kill and a power cut).
+//! copied (`resume` explains how both survive a kill and a power cut).
 //!
 //! # Long logs
 //!
-//! From some four thousand commits on, `LOG.index` lies beside a log: where its commits are and the numbers of their
+//! From some four thousand commits on, `LOG.index` lies next to a log: where its commits are and the numbers of their
 //! reports, written as the run continues. [`LongLog`] and [`Resume`] read the end of such a log alone, and through the index
 //! what they are asked for, and check the seals and hashes of what they read. The index is a cache: without it, or where it
 //! does not fit, the log is read through, in parts that fit in memory, and the index is written again. [`verify()`] reads all
@@ -75,7 +75,7 @@
 //!
 //! `checkpoints/golden/` holds small logs for each layout that was ever released, named
 //! `v<format>-<program version>-<what happened to it>.mcap`: a finished one, an unfinished one, and damaged ones. The
-//! `README.md` there says how each was made and what it must give, and a test holds every later version to that table,
+//! `README.md` there states how each was made and what it must give, and a test holds every later version to that table,
 //! to the last state. A change of what is written takes these steps: raise [`format::FORMAT_VERSION`] (or
 //! [`CODEC_VERSION`], where only states or meshes change); keep the old structs and decode both; write the logs with
 //! the last program before the change, by the command that the `README.md` names, and add them with their rows. A
@@ -129,11 +129,11 @@ pub use codec::{
 pub use damage::{Completeness, Damage, LaterCommit, Problem};
 pub use encode_error::EncodeError;
 pub use encoder::{ViewerMessage, ViewerTopic};
-pub use index::word_number;
+pub(crate) use index::word_number;
 pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
 pub use long::{LongLog, LongLogError};
-pub use lost_manifest::stages_in_words;
+pub(crate) use lost_manifest::stages_in_words;
 pub use manifest::{Manifest, ManifestError, SceneInLogError};
 pub use mending::MendError;
 pub use new_log::NewLogError;
@@ -141,8 +141,10 @@ pub use portions::{Portion, Portions};
 pub use reader::ReadError;
 pub use recovery::{RecoverError, RecoverOutcome, recover, recover_mended};
 pub use resume::{Resume, ResumeError, Resumed};
-pub use soundness::{Flaw, check_mesh, check_state};
-pub use still_ours::Estranged;
+pub use soundness::Flaw;
+#[doc(hidden)]
+pub use soundness::check_state;
+pub use still_ours::LogChanged;
 pub use stretch::LostManifest;
 pub use thin::{ThinError, Thinned, thin};
 pub use trace::{ITERATE_TOPIC, TraceRow, trace_file};

@@ -16,8 +16,9 @@ use crate::whole_file::WholeFile;
 /// Bytes that are collected before they go to the new file.
 pub(super) const BATCH_BYTES: usize = 1 << 20;
 
-/// Why a new log cannot be made of another.
+/// Why a new log cannot be made from another.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum NewLogError {
     /// There is a file where it should go.
     #[error("{new} exists and is not overwritten: choose another name")]
@@ -30,16 +31,16 @@ pub enum NewLogError {
     Write {
         /// The new log.
         new: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
     /// MCAP refused a record of the log.
-    #[error("cannot write {new} anew from the log, which is as it was")]
+    #[error("cannot write {new} from the log, which is as it was")]
     Encode {
         /// The new log.
         new: String,
-        /// Why not.
+        /// The error of the encoder.
         #[source]
         source: EncodeError,
     },
@@ -54,7 +55,7 @@ pub(super) struct NewLog {
 }
 
 impl NewLog {
-    /// A new log without commits, whose header names `library`.
+    /// Creates a new log without commits, whose header names `library`.
     pub fn begin(target: &Path, library: &str) -> Result<Self, NewLogError> {
         // Asked again when it comes to its name; here it spares the work.
         if target.symlink_metadata().is_ok() {
@@ -65,7 +66,7 @@ impl NewLog {
         Ok(Self { target: target.to_owned(), file, encoder, pending: 0 })
     }
 
-    /// Adds a part of the other log, without the messages whose data begins at a place that `keeps` does not take.
+    /// Adds a part of the other log, except for messages whose data begins at an offset that `keeps` rejects.
     pub fn add(&mut self, log: &Log, part: &Part, keeps: impl Fn(usize) -> bool) -> Result<(), NewLogError> {
         let Some(Ok(record)) = frame::next(&log.bytes, part.at) else { return Ok(()) };
         let added = self.encoder.again_if(&log.bytes, &record, keeps);
@@ -74,17 +75,17 @@ impl NewLog {
         if self.pending >= BATCH_BYTES { self.write() } else { Ok(()) }
     }
 
-    /// Adds a record that says something about the log.
+    /// Adds a metadata record.
     pub fn metadata(&mut self, record: &Metadata) -> Result<(), NewLogError> {
         self.encoder.metadata(record).map_err(|source| refused(&self.target)(source.into()))
     }
 
-    /// Ends the log with the summary that viewers look for, and gives it its name; gives back its length, bytes.
+    /// Ends the log with the summary that viewers need, gives it its name, and returns its length, bytes.
     pub fn finish(self, commits: usize) -> Result<u64, NewLogError> {
         self.close(commits)?.keep()
     }
 
-    /// Ends the log with the summary that viewers look for.
+    /// Ends the log with the summary that viewers need.
     pub fn close(mut self, commits: usize) -> Result<ClosedLog, NewLogError> {
         self.write()?;
         let Self { target, file, encoder, .. } = self;
@@ -108,7 +109,7 @@ pub(super) struct ClosedLog {
 }
 
 impl ClosedLog {
-    /// Reads the new log as any reader would.
+    /// Reads the new log back to check it.
     pub fn read(&self) -> Result<Log, ReadError> {
         let io = |source| ReadError::Io { path: self.target.display().to_string(), source };
         let file = self.file.file();

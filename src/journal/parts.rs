@@ -39,7 +39,7 @@ pub(super) fn read_in_parts(
 }
 
 /// Reads a part of the first `length` bytes of a log, from a checkpoint or from its start, and enters all chunks before its last
-/// commit: so many bytes, or as many more as the next number says where there is no commit in them to continue from. Gives
+/// commit: so many bytes, or as many more as the next number gives where there is no commit in them to continue from. Gives
 /// back the checkpoint to continue from too; none where the log ends there, or where something is not as it was written.
 pub(super) fn read_part(
     file: &File,
@@ -53,12 +53,12 @@ pub(super) fn read_part(
     let log = Log::read_on(file, length, from, *at_most)?;
     let ends_here = ends(&log);
     let last = log.entries.last().map_or(log.base, |entry| entry.bytes.start);
-    let goes_on = !ends_here && last > log.base && log.is_clean();
-    if !ends_here && !goes_on && !more.is_empty() {
+    let continues = !ends_here && last > log.base && log.is_clean();
+    if !ends_here && !continues && !more.is_empty() {
         drop(log);
         return read_part(file, length, from, ledger, more, ends);
     }
     ledger.enter(log.base, &log.bytes[..(last - log.base) as usize]);
-    let next = if goes_on { Checkpoint::at_the_end_of(&log, ledger) } else { None };
+    let next = if continues { Checkpoint::at_the_end_of(&log, ledger) } else { None };
     Ok((log, next))
 }

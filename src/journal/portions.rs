@@ -11,8 +11,9 @@ use super::log::{Entry, Log, Part};
 use super::parts::{PART_BYTES, read_part};
 use super::reader::{ReadError, open_regular};
 
-/// The portions of a log, in their order; a short log is one. Where something is not as it was written, all of the rest is the
-/// last one, so that what can follow on it is found. What a running program adds meanwhile is not among them.
+/// A reader that goes through a log in portions, in their order; a short log is one portion. From the first damage on,
+/// all of the rest is the last portion, so that later commits are found. What a running program adds meanwhile is not
+/// read.
 #[derive(Debug)]
 pub struct Portions {
     file: File,
@@ -22,7 +23,7 @@ pub struct Portions {
     ledger: Ledger,
 }
 
-/// Stages of a log that follow on one another.
+/// A run of successive stages of a log.
 #[derive(Debug)]
 pub struct Portion {
     log: Log,
@@ -42,7 +43,7 @@ impl Portions {
         Ok(Self { file, name, length, from: None, ledger: Ledger::default() })
     }
 
-    /// The next portion; behind the last comes the first again.
+    /// Reads the next portion; after the last one reading starts again at the first.
     ///
     /// # Errors
     /// Where the file cannot be read or is not a log.
@@ -72,18 +73,18 @@ impl Portion {
         &self.log.entries[..self.own]
     }
 
-    /// The log as far as it is read: its stages are those of the portion and the one behind them. That of the last portion
-    /// tells what all of the log is worth.
+    /// The log as far as it is read: its stages are those of the portion and the one behind them. The completeness of
+    /// the last portion is that of the whole log.
     pub fn log(&self) -> &Log {
         &self.log
     }
 
-    /// The log as it is at its end, if this is the last portion.
+    /// The log at its end, if this is the last portion.
     pub fn into_end(self) -> Option<Log> {
         (self.own == self.log.entries.len()).then_some(self.log)
     }
 
-    /// Its good parts.
+    /// The good parts of the portion.
     pub(super) fn parts(&self) -> &[Part] {
         let end = self.log.entries.get(self.own).map(|next| (next.bytes.start - self.log.base) as usize);
         let parts = &self.log.parts;

@@ -3,7 +3,7 @@
 //! A commit is good where its seal holds, its messages have the hashes that it names, and its chain hash follows from
 //! the good commit before it. Whatever is not as it was written is listed as a problem. One that costs no commit (in an
 //! index, or in a manifest) leaves the chain whole, and reading continues past it. One that costs a commit breaks the
-//! chain: what stands behind it is looked through only to say what was lost.
+//! chain: what follows is searched only to report what was lost.
 
 use std::fs::File;
 use std::io::Read;
@@ -16,13 +16,14 @@ use super::scan::Scan;
 
 /// Why a file is refused as a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file cannot be read.
     #[error("cannot read the log {path}")]
     Io {
         /// The file.
         path: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: std::io::Error,
     },
@@ -32,7 +33,7 @@ pub enum ReadError {
         /// Length of the file.
         bytes: u64,
     },
-    /// Not an MCAP file.
+    /// The file is not an MCAP file.
     #[error("this is not a log: it does not begin like an MCAP file, and no commit of a run is in it")]
     NotMcap,
     /// An MCAP file of another program.
@@ -53,8 +54,8 @@ impl Log {
     /// Reads the log in a file. Takes the length of the file in memory, and a chunk more while reading.
     ///
     /// # Errors
-    /// Where the file cannot be read or is not a log. A damaged log is no error: what is good of it is returned, and
-    /// [`Log::completeness`] says what is not.
+    /// Where the file cannot be read or is not a log. A damaged log is no error: the good part of it is returned, and
+    /// [`Log::completeness`] reports what is not.
     pub fn read(path: &Path) -> Result<Log, ReadError> {
         let mut bytes = Vec::new();
         let read = open_regular(path).and_then(|file| {
@@ -65,7 +66,7 @@ impl Log {
         Log::from_bytes(bytes)
     }
 
-    /// Reads the log that the bytes hold; see [`Log::read`].
+    /// Reads a log from bytes in memory; see [`Log::read`].
     ///
     /// # Errors
     /// Where they are not a log.

@@ -57,7 +57,7 @@ pub(super) fn copy(log: &Log, keep: usize, encoder: &mut Encoder, backend: &mut 
     Ok(length)
 }
 
-/// What became of a log that was recovered.
+/// The outcome of recovering a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecoverOutcome {
     /// Every commit that the log ever held is in the new one.
@@ -73,12 +73,12 @@ pub enum RecoverOutcome {
         dropped: u64,
         /// Commits among them that are whole but have lost their predecessor.
         later_commits: u64,
-        /// What was lost first.
+        /// The first loss.
         why: String,
     },
     /// Nothing could be kept, and nothing was written.
     Hopeless {
-        /// Why.
+        /// Why nothing can be recovered.
         why: String,
         /// Commits that are whole but have lost their predecessor.
         later_commits: u64,
@@ -87,6 +87,7 @@ pub enum RecoverOutcome {
 
 /// Why a log cannot be recovered.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecoverError {
     /// The log cannot be read at all.
     #[error(transparent)]
@@ -96,7 +97,7 @@ pub enum RecoverError {
     New(#[from] NewLogError),
 }
 
-/// Copies what is good of a log to a new file, with the summary that viewers look for.
+/// Copies the good part of a log to a new file, with the summary that viewers need.
 ///
 /// # Errors
 /// Where the log cannot be read at all, or the new file exists or cannot be written. That nothing is good of the log is
@@ -105,7 +106,7 @@ pub fn recover(path: &Path, new: &Path) -> Result<RecoverOutcome, RecoverError> 
     recover_with(path, new, None)
 }
 
-/// The same; of a log in which whole commits have lost what they follow on `mend` may give back one in which they have not.
+/// Recovers a log as [`recover`] does, but lets `mend` put lost stages back where whole commits follow on them.
 ///
 /// # Errors
 /// Those of [`recover`].
@@ -159,7 +160,7 @@ fn recover_with(path: &Path, new: &Path, mut mend: Option<Mend>) -> Result<Recov
     }
 }
 
-/// Times that a log is mended: the first time may put back what tells how more is to be read.
+/// Times that a log is mended: the first time may put back what is needed to read more.
 const MOST_MENDS: usize = 4;
 
 /// A copy of a mended log with that log; `None` where no copy reads as its log does. What a copy lacks that was not described

@@ -1,4 +1,4 @@
-//! Going on with a log.
+//! Continuing a log.
 //!
 //! A log that is as it was written is continued in place: what a killed process left half done, the summary and the record
 //! of the end are cut off, that is made durable, and then the new stretch is added with its first commit, in one write. Before
@@ -10,7 +10,7 @@
 //! to `LOG.new`, which is forced to disk while the run already continues, and takes the log's place before the first new commit
 //! is added. A process that has lost the log only ever writes to the old file then.
 //!
-//! What a log loses when it is continued is kept beside it as `LOG.dropped-N` wherever it might still be worth something:
+//! What a log loses when it is continued is kept next to it as `LOG.dropped-N` wherever it might still be worth something:
 //! after damage always, after a cut only if whole commits lie behind it. The torn rest of the stage that was in flight is worth
 //! nothing, and goes.
 
@@ -41,13 +41,14 @@ use crate::whole_file::write_new;
 
 /// Why a log cannot be continued.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ResumeError {
     /// There is no such file.
     #[error("cannot resume {log}: there is no such file")]
     NoLog {
         /// The log.
         log: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -59,7 +60,7 @@ pub enum ResumeError {
     Read {
         /// The log.
         log: String,
-        /// Why not.
+        /// The error of the reader.
         #[source]
         source: ReadError,
     },
@@ -68,9 +69,9 @@ pub enum ResumeError {
     Copy {
         /// The log.
         log: String,
-        /// The copy, or the part that is kept beside it.
+        /// The copy, or the part that is kept next to it.
         path: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -79,13 +80,13 @@ pub enum ResumeError {
     Begin {
         /// The log.
         log: String,
-        /// Why not.
+        /// The error of the encoder.
         #[source]
         source: EncodeError,
     },
 }
 
-/// A log that this process, and no other, may continue.
+/// A log that this process alone may continue.
 #[derive(Debug)]
 pub struct Resume {
     path: PathBuf,
@@ -105,7 +106,7 @@ struct Before {
     builder: Builder,
 }
 
-/// A log that is being continued.
+/// A log that is being continued, and its last good state.
 #[derive(Debug)]
 pub struct Resumed {
     /// Takes the stages that follow.
@@ -118,7 +119,7 @@ pub struct Resumed {
 }
 
 impl Resume {
-    /// Claims a log and reads it. Changes nothing.
+    /// Acquires the right to write a log, and reads the log. Changes nothing.
     ///
     /// # Errors
     /// Where it is not there, not a log, or another process writes it.
@@ -136,7 +137,7 @@ impl Resume {
         Ok(Self { path, name, lock, log, before, copies: false })
     }
 
-    /// The same log, read from its start: for what the end of a long one does not tell.
+    /// Reads the log again from its start, for what the end of a long log does not show.
     ///
     /// # Errors
     /// Where it cannot be read.
@@ -148,7 +149,7 @@ impl Resume {
         Ok(Self { log, before: None, ..self })
     }
 
-    /// Goes on in a copy that takes the log's place, as where there are no locks.
+    /// Continues in a copy that takes the log's place, as where there are no locks.
     pub fn in_a_copy(self) -> Self {
         Self { copies: true, ..self }
     }
@@ -158,7 +159,7 @@ impl Resume {
         &self.log
     }
 
-    /// Begins a new stretch behind the last good commit. That the run was finished, where it was, is not carried over.
+    /// Starts a new stretch behind the last good commit. A record that the run was finished is not carried over.
     ///
     /// # Errors
     /// Where the copy cannot be made; the log is then as it was.
@@ -167,7 +168,7 @@ impl Resume {
         self.start_after(all, manifest, sync)
     }
 
-    /// The same behind the first `keep` commits; those after them go.
+    /// Starts a new stretch behind the first `keep` commits; those after them are dropped.
     ///
     /// # Errors
     /// Where the copy cannot be made; the log is then as it was.
@@ -183,7 +184,7 @@ impl Resume {
         if in_place { self.in_place(&manifest, sync) } else { self.whole()?.copied(keep, &[manifest], sync) }
     }
 
-    /// Puts back the scene of a manifest that is lost, of which `manifest` has the file, and behind it that of the last stretch, with
+    /// Puts back the scene of a lost manifest, which `manifest` holds, and behind it that of the last stretch, with
     /// which the log is continued as before. No stage is added.
     ///
     /// # Errors
@@ -283,7 +284,7 @@ impl Resume {
 }
 
 impl JournalWriter {
-    /// Goes on with a log: [`Resume::open`] and [`Resume::start`] in one, for callers who know the scene.
+    /// Continues a log: [`Resume::open`] and [`Resume::start`] in one, for callers who know the scene.
     ///
     /// # Errors
     /// Those of both.

@@ -20,13 +20,13 @@ pub(super) struct Rewriting<R> {
 const DATA_END_HEAD_LEN: u64 = 9;
 
 impl<R: Fn(u64, usize) -> Vec<u8>> Rewriting<R> {
-    /// Nothing is written yet of a log whose header names `library`.
+    /// Starts to write a log again whose header names `library`, and compares with the bytes of the original.
     pub fn new(library: &str, theirs: R) -> Result<Self, EncodeError> {
         let encoder = Encoder::new(library)?;
         Ok(Self { encoder, theirs, written: 0, checksum: crc32fast::Hasher::new(), differs: None })
     }
 
-    /// Writes what a part of the log holds before `end`, a place in that part.
+    /// Writes the records of a part of the log before `end`, an offset in that part.
     pub fn write(&mut self, part: &Log, end: usize) -> Result<(), EncodeError> {
         for place in part.parts.iter().filter(|place| place.at < end) {
             if let Some(Ok(record)) = frame::next(&part.bytes, place.at) {
@@ -39,7 +39,8 @@ impl<R: Fn(u64, usize) -> Vec<u8>> Rewriting<R> {
         Ok(())
     }
 
-    /// Writes the summary, where the log has one. Gives back the first byte that is another.
+    /// Writes the summary, where the log has one, and returns the first offset at which the bytes differ from the
+    /// original.
     pub fn end(mut self, log: &Log) -> Option<u64> {
         if log.parts.is_empty() {
             let bytes = self.encoder.take();

@@ -27,8 +27,8 @@ const PARSED_IN_VAIN: usize = 4;
 /// Largest header, bytes: it names a profile and a program.
 const HEADER_BYTES_LIMIT: usize = 4 << 10;
 
-/// Reading under way. Places in `entries`, `parts`, `meshes` and `fields` count from the first byte that is walked
-/// over, those that are told from the start of the file.
+/// The state of a scan. Places in `entries`, `parts`, `meshes` and `fields` count from the first byte that is scanned,
+/// those in the report from the start of the file.
 #[derive(Default)]
 pub(super) struct Scan {
     /// Place of the first byte in the file.
@@ -56,15 +56,15 @@ pub(super) struct Scan {
     pub newer_format: Option<u32>,
     /// Where the zeros begin that the bytes end with.
     content_end: usize,
-    /// Bytes of records that were parsed in vain.
+    /// Bytes of records that were parsed without success.
     in_vain: usize,
     /// Bytes of the manifests that are kept.
     manifests_bytes: usize,
 }
 
 impl Scan {
-    /// A walk that begins at a commit in the middle of a log; `bytes` are those from there on, and `meshes` and
-    /// `fields` say where the ones before it lie beside them.
+    /// Starts a scan at a commit in the middle of a log; `bytes` are those from there on, and `meshes` and `fields`
+    /// locate the earlier ones.
     pub fn from(checkpoint: &Checkpoint) -> Self {
         Self {
             base: checkpoint.at,
@@ -77,8 +77,8 @@ impl Scan {
         }
     }
 
-    /// Walks over the bytes. Where more of them follow in the file (`goes_on`), a record that they cut off is no damage.
-    pub fn run(&mut self, bytes: &[u8], goes_on: bool) {
+    /// Scans the bytes. Where more bytes follow in the file (`more_follows`), a record that they cut off is no damage.
+    pub fn run(&mut self, bytes: &[u8], more_follows: bool) {
         let mut at = 0;
         self.content_end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
         if self.from.is_none() {
@@ -90,7 +90,7 @@ impl Scan {
         self.good_end = at.min(bytes.len());
         self.stretch_end = self.good_end;
         while let Some(next) = frame::next(bytes, at) {
-            if goes_on && next.is_err() {
+            if more_follows && next.is_err() {
                 break;
             }
             let outcome = match &next {
@@ -110,7 +110,7 @@ impl Scan {
                         }
                     }
                     match self.closed {
-                        true if goes_on => None,
+                        true if more_follows => None,
                         true => frame::find(bytes, frame.body.end),
                         false => Some(frame.body.end),
                     }
@@ -141,10 +141,10 @@ impl Scan {
             }
         }
         let good = self.commits();
-        if !goes_on || self.closed {
+        if !more_follows || self.closed {
             self.stretches.end(good, self.problems.last().map(|problem| problem.at));
             if let Some(at) = self.stretches.unused {
-                let text = "the log ends in a manifest that cannot be read: no stage was run under it, and what it asked for is not \
+                let text = "the log ends in a manifest that cannot be read: no stage was run under it, and what it demanded is not \
                             known; the scene before it holds";
                 self.note(at, text.to_owned());
             }
@@ -305,7 +305,7 @@ impl Scan {
         Ok(())
     }
 
-    /// What is damaged of a chunk beside its messages; that channels are not described is told once.
+    /// Damage of a chunk outside its messages; that channels are not described is reported once.
     fn beside(&mut self, at: usize, beside: Option<Damage>) {
         let is_told = |problem: &Problem| matches!(problem.damage, Damage::UnknownChannel { .. });
         let again = matches!(beside, Some(Damage::UnknownChannel { .. })) && self.problems.iter().any(is_told);
@@ -361,7 +361,7 @@ impl Scan {
     }
 }
 
-/// Whether what stands behind a record is one that may stand behind a manifest, or the end.
+/// Whether the record behind another is one that may follow a manifest, or the end.
 fn is_before_another(bytes: &[u8], frame: &Frame) -> bool {
     match frame::next(bytes, frame.body.end) {
         None => true,

@@ -6,47 +6,48 @@ use crate::state::{
     Course, CriticalAhead, DriveMemory, Estimate, Mesh, PathMemory, Previous, Refinement, State, StepControl,
 };
 
-/// What is wrong with a mesh or a state.
+/// What is wrong with a decoded mesh or state.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Flaw {
     /// A degree that no kernel is built for.
-    #[error("degree {degree} in direction {} (it must be {} to {})", way + 1, DEGREES.start(), DEGREES.end())]
+    #[error("degree {degree} in direction {} (it must be {} to {})", direction + 1, DEGREES.start(), DEGREES.end())]
     Degree {
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// The degree.
         degree: usize,
     },
     /// Too few knots for the degree.
-    #[error("{found} knots in direction {} for degree {degree} (it takes at least {})", way + 1, 2 * (degree + 1))]
+    #[error("{found} knots in direction {} for degree {degree} (it takes at least {})", direction + 1, 2 * (degree + 1))]
     FewKnots {
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// The degree.
         degree: usize,
-        /// Knots there are.
+        /// Number of knots.
         found: usize,
     },
     /// A knot smaller than the one before it.
-    #[error("knot {index} in direction {} is {value}, smaller than the one before it", way + 1)]
+    #[error("knot {index} in direction {} is {value}, smaller than the one before it", direction + 1)]
     KnotOrder {
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// Place in the knot vector.
         index: usize,
         /// The knot.
         value: f64,
     },
     /// A knot repeated so often that the surface falls apart, or a knot vector that is not open.
-    #[error("knot {value} in direction {} stands {found} times for degree {degree}", way + 1)]
+    #[error("knot {value} in direction {} occurs {found} times for degree {degree}", direction + 1)]
     KnotMultiplicity {
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// The degree.
         degree: usize,
         /// The knot.
         value: f64,
-        /// How often it stands.
+        /// How often it occurs.
         found: usize,
     },
     /// A sequence of the wrong length.
@@ -56,13 +57,13 @@ pub enum Flaw {
         what: &'static str,
         /// Length that fits the knots and degrees.
         expected: usize,
-        /// Length there is.
+        /// Length of the sequence.
         found: usize,
     },
-    /// NaN or an infinity.
+    /// A number is NaN or infinite.
     #[error("{what} {index} is {value}")]
     NotFinite {
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
         /// Place in its sequence, flattened; 0 for a single number.
         index: usize,
@@ -72,18 +73,18 @@ pub enum Flaw {
     /// A weight that puts a control point at infinity or beyond.
     #[error("weight {index} is {value} (it must be above 0)")]
     Weight {
-        /// Control point.
+        /// Index of the control point.
         index: usize,
         /// Its weight.
         value: f64,
     },
     /// A marked knot that the mesh cannot have, or one that the refined mesh lacks.
-    #[error("{what} knot {value} in direction {} is not a knot that this mesh can have", way + 1)]
+    #[error("{what} knot {value} in direction {} is not a knot that this mesh can have", direction + 1)]
     ForeignKnot {
         /// "marked", "superfluous" or "the mesh's".
         what: &'static str,
         /// Parametric direction, 0 or 1.
-        way: usize,
+        direction: usize,
         /// The knot.
         value: f64,
     },
@@ -99,7 +100,7 @@ pub enum Flaw {
     /// A number that no run makes.
     #[error("{what} is {value}, and no run makes that")]
     Absurd {
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
         /// The value.
         value: f64,
@@ -124,19 +125,19 @@ fn finite(what: &'static str, values: impl IntoIterator<Item = f64, IntoIter: Cl
 /// # Errors
 /// The first flaw.
 pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
-    for way in 0..2 {
-        let (degree, knots) = (mesh.degree[way], &mesh.knots[way]);
+    for direction in 0..2 {
+        let (degree, knots) = (mesh.degree[direction], &mesh.knots[direction]);
         if !DEGREES.contains(&degree) {
-            return Err(Flaw::Degree { way, degree });
+            return Err(Flaw::Degree { direction, degree });
         }
         check_knots(knots, degree, 0.0).map_err(|flaw| match flaw {
-            KnotFlaw::Few { .. } => Flaw::FewKnots { way, degree, found: knots.len() },
+            KnotFlaw::Few { .. } => Flaw::FewKnots { direction, degree, found: knots.len() },
             KnotFlaw::NotFinite { index } => Flaw::NotFinite { what: "knot", index, value: knots[index] },
-            KnotFlaw::Descending { index } => Flaw::KnotOrder { way, index, value: knots[index] },
+            KnotFlaw::Descending { index } => Flaw::KnotOrder { direction, index, value: knots[index] },
             // No distance is asked for.
-            KnotFlaw::TooNear { pair: [value, _], .. } => Flaw::KnotMultiplicity { way, degree, value, found: 1 },
+            KnotFlaw::TooNear { pair: [value, _], .. } => Flaw::KnotMultiplicity { direction, degree, value, found: 1 },
             KnotFlaw::NotClamped { knot: value, times: found } | KnotFlaw::Tears { knot: value, times: found } => {
-                Flaw::KnotMultiplicity { way, degree, value, found }
+                Flaw::KnotMultiplicity { direction, degree, value, found }
             }
         })?;
     }
@@ -182,26 +183,26 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
     } = state;
     if let Some(refined) = refined {
         check_mesh(refined)?;
-        for way in 0..2 {
-            if refined.degree[way] != mesh.degree[way] {
-                return Err(Flaw::Degree { way, degree: refined.degree[way] });
+        for direction in 0..2 {
+            if refined.degree[direction] != mesh.degree[direction] {
+                return Err(Flaw::Degree { direction, degree: refined.degree[direction] });
             }
             // The refined mesh has every knot of the mesh, and more.
-            let mut finer = refined.knots[way].iter();
-            if let Some(&value) = mesh.knots[way].iter().find(|&knot| !finer.any(|other| other == knot)) {
-                return Err(Flaw::ForeignKnot { what: "the mesh's", way, value });
+            let mut finer = refined.knots[direction].iter();
+            if let Some(&value) = mesh.knots[direction].iter().find(|&knot| !finer.any(|other| other == knot)) {
+                return Err(Flaw::ForeignKnot { what: "the mesh's", direction, value });
             }
         }
     }
-    for way in 0..2 {
-        let knots = &mesh.knots[way];
-        for &value in &marked[way] {
+    for direction in 0..2 {
+        let knots = &mesh.knots[direction];
+        for &value in &marked[direction] {
             if !(value > knots[0] && value < knots[knots.len() - 1]) {
-                return Err(Flaw::ForeignKnot { what: "marked", way, value });
+                return Err(Flaw::ForeignKnot { what: "marked", direction, value });
             }
         }
-        if let Some(&value) = superfluous[way].iter().find(|value| !knots.contains(value)) {
-            return Err(Flaw::ForeignKnot { what: "superfluous", way, value });
+        if let Some(&value) = superfluous[direction].iter().find(|value| !knots.contains(value)) {
+            return Err(Flaw::ForeignKnot { what: "superfluous", direction, value });
         }
     }
     let expected = mesh.control_points.len();
@@ -272,9 +273,9 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
         estimate,
     } = state;
     let foreign = |what| Err(Flaw::Foreign { what });
-    for way in 0..2 {
-        if mesh.degree[way] != scene.mesh.degree[way] {
-            return Err(Flaw::Degree { way, degree: mesh.degree[way] });
+    for direction in 0..2 {
+        if mesh.degree[direction] != scene.mesh.degree[direction] {
+            return Err(Flaw::Degree { direction, degree: mesh.degree[direction] });
         }
     }
     let follows_a_path = scenes.iter().any(|scene| Drive::of(scene).follows_path());

@@ -15,16 +15,17 @@ const FIRST_PAUSE: Duration = Duration::from_millis(10);
 /// Between two tries at most.
 const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
-/// What became of a log in other hands.
+/// Why a log is no longer the file that this process wrote.
 #[derive(Debug, thiserror::Error)]
-pub enum Estranged {
-    /// It has no name any more.
+#[non_exhaustive]
+pub enum LogChanged {
+    /// It was removed.
     #[error("was removed while it was written, and its {} with it", stages(*.commits))]
     Removed {
         /// Stages that were in it.
         commits: u64,
     },
-    /// It has another name.
+    /// It was moved to another name.
     #[error("was moved elsewhere while it was written; there it holds {}, and can be resumed", stages(*.commits))]
     Moved {
         /// Stages that are in it.
@@ -37,18 +38,18 @@ pub enum Estranged {
     Replaced,
     /// Something else has written to it, or cut it.
     #[error(
-        "has {found} bytes where {expected} were written: something else writes to it or has cut it. `foldline verify` tells what is left"
+        "has {found} bytes where {expected} were written: something else writes to it or has cut it. `foldline verify` reports what is left"
     )]
     Length {
-        /// Bytes that it has.
+        /// Present length, bytes.
         found: u64,
         /// Bytes that it had when it was last written.
         expected: u64,
     },
-    /// Nobody can tell.
-    #[error("cannot be looked at any more")]
+    /// It cannot be found out.
+    #[error("can no longer be accessed")]
     Unknown {
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -58,21 +59,25 @@ fn stages(commits: u64) -> String {
     if commits == 1 { "1 stage".to_owned() } else { format!("{commits} stages") }
 }
 
-/// Looks whether `path` still leads to `file`, which had `length` bytes when it was last written, and `commits` stages.
-pub(super) fn still_ours(file: &File, path: &Path, length: u64, commits: u64) -> Result<(), Estranged> {
-    let unknown = |source| Estranged::Unknown { source };
+/// Checks that `path` still leads to `file`, which had `length` bytes when it was last written, and `commits` stages.
+pub(super) fn still_ours(file: &File, path: &Path, length: u64, commits: u64) -> Result<(), LogChanged> {
+    let unknown = |source| LogChanged::Unknown { source };
     let ours = patiently(|| file.metadata()).map_err(unknown)?;
     let named = match patiently(|| fs::metadata(path)) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Err(if ours.nlink() == 0 { Estranged::Removed { commits } } else { Estranged::Moved { commits } });
+            return Err(if ours.nlink() == 0 {
+                LogChanged::Removed { commits }
+            } else {
+                LogChanged::Moved { commits }
+            });
         }
         named => named.map_err(unknown)?,
     };
     if (ours.dev(), ours.ino()) != (named.dev(), named.ino()) {
-        return Err(Estranged::Replaced);
+        return Err(LogChanged::Replaced);
     }
     if ours.len() != length {
-        return Err(Estranged::Length { found: ours.len(), expected: length });
+        return Err(LogChanged::Length { found: ours.len(), expected: length });
     }
     Ok(())
 }

@@ -12,9 +12,9 @@ use crate::state::Hash;
 /// A manifest that a log should hold and does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LostManifest {
-    /// Where it stood, or where its loss shows, bytes.
+    /// Where it was, or where its loss shows, bytes.
     pub at: u64,
-    /// Ordinal of the first commit that it would say something about.
+    /// Ordinal of the first commit that it would describe.
     pub ordinal: u64,
     /// Manifests before it that are there.
     pub(super) before: usize,
@@ -39,7 +39,7 @@ pub(super) struct Stretches {
 }
 
 impl Stretches {
-    /// Takes a manifest that follows on the commits before it.
+    /// Adds a manifest that follows on the commits before it.
     pub fn begin(&mut self, manifest: Manifest, hash: Hash) {
         self.manifests.push(manifest);
         self.hashes.push(hash);
@@ -47,30 +47,30 @@ impl Stretches {
         self.suspect = None;
     }
 
-    /// The name of the manifest of the stretch that was read last.
+    /// Hash of the manifest of the stretch that was read last.
     pub fn last_hash(&self) -> Option<Hash> {
         self.hashes.last().copied()
     }
 
-    /// A manifest that does not: commits before it are lost.
+    /// Adds a manifest before which commits are lost.
     pub fn begin_later(&mut self, at: u64, manifest: Manifest, hash: Hash) {
         self.later.push((at, hash, manifest.scene_text));
     }
 
-    /// Something at `at` that may have been a manifest, and more beside it.
+    /// Notes that at `at`, a manifest may have been lost, together with other records.
     pub fn suspect(&mut self, at: u64) {
         self.suspect_is_alone = false;
         self.suspect.get_or_insert(at);
     }
 
-    /// A record at `at` that was a manifest, and nothing more.
+    /// Notes that a damaged record at `at` was a manifest, and nothing else is lost with it.
     pub fn suspect_alone(&mut self, at: u64) {
         self.suspect_is_alone = self.suspect.is_none();
         self.suspect.get_or_insert(at);
     }
 
-    /// What lies between two records that can be read, from `at` on, might have been a manifest; or the file ends in it
-    /// (`is_cut`). A torn manifest of the scene that the run had before is none that is missed.
+    /// Notes unreadable bytes from `at` on, between two records or up to the end of the file (`is_cut`), which may have
+    /// been a manifest. A torn manifest of the scene that the run had before is none that is missed.
     pub fn gap(&mut self, at: u64, gap: &[u8], is_cut: bool) {
         let opcode = gap.first().copied();
         let torn = is_cut && opcode == Some(op::METADATA);
@@ -89,7 +89,8 @@ impl Stretches {
         }
     }
 
-    /// The stretch of a commit that names its manifest by `hash`, as from version 2 on; `None` where it is lost.
+    /// Finds the stretch of a commit that names its manifest by `hash`, as from version 2 on; `None` where the manifest
+    /// is lost.
     pub fn of_commit(&mut self, at: u64, ordinal: u64, hash: Option<Hash>) -> Option<usize> {
         let is_last = match hash {
             Some(hash) => self.hashes.last() == Some(&hash),
@@ -103,7 +104,7 @@ impl Stretches {
         self.manifests.len().checked_sub(1).filter(|_| is_last)
     }
 
-    /// Takes a commit behind a loss.
+    /// Adds a commit that follows a loss.
     pub fn of_later_commit(&mut self, at: u64, hash: Option<Hash>) {
         let known = |hash| self.hashes.last() == Some(&hash) || self.later.iter().any(|(_, later, _)| *later == hash);
         match hash {
@@ -113,8 +114,8 @@ impl Stretches {
         }
     }
 
-    /// The end of the log, behind `commits` commits and the last thing that is not as it was written. It may end in the manifest
-    /// of a stretch that came to no stage.
+    /// Ends the stretches behind `commits` commits and the last damage. The log may end in the manifest of a stretch
+    /// that has no stage.
     pub fn end(&mut self, commits: u64, last_problem: Option<u64>) {
         let ends_in_it = self.suspect.is_some_and(|at| last_problem.is_none_or(|last| last <= at));
         if ends_in_it && self.suspect_is_alone && self.later.is_empty() && !self.manifests.is_empty() {
@@ -127,7 +128,7 @@ impl Stretches {
         }
     }
 
-    /// The stretches of the commits up to this one, of a log that has lost no manifest.
+    /// The stretches of the commits up to this one, in a log that has lost no manifest.
     pub fn up_to(&self, ordinal: u64) -> Self {
         let count = self.manifests.iter().take_while(|manifest| manifest.first_ordinal <= ordinal).count();
         let (manifests, hashes) = (self.manifests[..count].to_vec(), self.hashes[..count].to_vec());

@@ -91,7 +91,7 @@ fn statistics(ledger: &Ledger, commits: u64, body: &mut Vec<u8>) {
 fn chunk_index(ledger: &Ledger, number: usize, commits: u64, body: &mut Vec<u8>) {
     let chunk = ledger.chunks[number];
     let pattern = &ledger.patterns[chunk.pattern as usize];
-    // The record of the end stands at the time of the last stage.
+    // The record of the end has the time of the last stage.
     let time = log_time_ns((number as u64).min(commits.saturating_sub(1)));
     let content = u64::from(chunk.bytes) - (PREFIX_LEN + CHUNK_HEADER_LEN) as u64;
     let behind = chunk.at + u64::from(chunk.bytes);

@@ -1,8 +1,8 @@
 //! A log without the states between some load steps: every commit and every report stays, and with them the chain.
 //!
 //! A commit names its messages by their hashes, and continues naming those that are left out. So a thinned chunk lacks a state,
-//! and a mesh or fields that no kept state stands on, and nothing else; its commit, sealed as ever, says what the state
-//! hashed to. A metadata record in front says that this was meant, so that a state which is lost otherwise is told from one that
+//! and a mesh or fields that no kept state uses, and nothing else; its commit, sealed as ever, names what the state
+//! hashed to. A metadata record in front marks this as intended, so that a state which is lost otherwise is distinguished from one that
 //! was dropped.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -15,8 +15,9 @@ use super::portions::{Portion, Portions};
 use super::reader::ReadError;
 use crate::state::Hash;
 
-/// What became of a log that was thinned.
+/// The outcome of thinning a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Thinned {
     /// Stages in the new log: all.
     pub commits: usize,
@@ -32,8 +33,9 @@ pub struct Thinned {
 
 /// Why a log cannot be thinned.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ThinError {
-    /// It cannot be read.
+    /// The log cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// It is damaged or torn.
@@ -56,8 +58,8 @@ pub enum ThinError {
     New(#[from] NewLogError),
 }
 
-/// Writes a log again with the states that end the load steps which `keeps` takes, and the last one; `kept_as` says in words
-/// which. The new log is whole or not there.
+/// Copies a log to a new one that holds only the states that end load steps for which `keeps` is true, and the last
+/// state; `kept_as` describes them in words. The new log is written whole or not at all.
 ///
 /// # Errors
 /// Where the log cannot be read or is damaged, or the new one exists or cannot be written.
@@ -125,7 +127,7 @@ fn keeps_state(log: &Log, place: usize, keeps: impl Fn(u64) -> bool) -> bool {
     log.entries[place].state.is_some() && ends_step && (is_last || step(place).is_some_and(keeps))
 }
 
-/// First bytes of the messages of a portion that go: states, and meshes and fields that no kept state stands on.
+/// First bytes of the messages of a portion that go: states, and meshes and fields that no kept state uses.
 fn dropped_messages(portion: &Portion, needed: &HashSet<Hash>, keeps: impl Fn(u64) -> bool) -> HashSet<usize> {
     let log = portion.log();
     let go = (0..portion.entries().len()).filter(|place| !keeps_state(log, *place, &keeps));

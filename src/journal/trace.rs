@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use super::message::schema_of;
 
-/// Topic of the iterates.
+/// Topic of the messages with Newton iterates.
 pub const ITERATE_TOPIC: &str = "/foldline/iterate";
 
-/// A Newton iterate of a stage.
+/// A Newton iterate of a stage, as a row of the trace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TraceRow {
     /// Ordinal of the stage in its log.
@@ -41,7 +41,7 @@ pub struct TraceRow {
     pub worst_point_mm: [f64; 3],
 }
 
-/// Iterates, in order, as an MCAP file; their time is their number in milliseconds.
+/// Encodes iterates, in order, as an MCAP file; their time is their number in milliseconds.
 ///
 /// # Errors
 /// Where MCAP refuses one.

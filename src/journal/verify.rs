@@ -15,10 +15,10 @@ use super::reader::{open_regular, read_at};
 use super::rewriting::Rewriting;
 use crate::units::count;
 
-/// How much a finding matters.
+/// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Good to know.
+    /// Information that needs no action.
     Info,
     /// Costs no state, and yet is not as it should be.
     Warning,
@@ -28,12 +28,13 @@ pub enum Level {
 
 /// One result of checking a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Finding {
-    /// How much it matters.
+    /// Severity of the finding.
     pub level: Level,
     /// What it is about: the log, a byte, or a commit.
     pub place: String,
-    /// What it is.
+    /// The finding in words.
     pub text: String,
 }
 
@@ -100,7 +101,7 @@ fn verify_in_parts(path: &Path) -> io::Result<Option<Vec<Finding>>> {
     Ok(Some(findings))
 }
 
-/// Checks a log that was read; see [`verify`].
+/// Checks a log that was read before; see [`verify`].
 pub fn verify_log(log: &Log) -> Vec<Finding> {
     let mut findings = of_the_whole(log);
     findings.extend(states_kept(log, kept_in(log.entries())));
@@ -134,7 +135,7 @@ fn of_the_whole(log: &Log) -> Vec<Finding> {
             false => {
                 let at = lost.at;
                 let text = format!(
-                    "the manifest at byte {at} is lost; a scene that was given anew behind it makes the same states"
+                    "the manifest at byte {at} is lost; a scene that was given again behind it makes the same states"
                 );
                 (Level::Info, text)
             }
@@ -266,6 +267,6 @@ fn not_written(error: &EncodeError) -> Finding {
 
 fn other_byte(at: u64) -> Finding {
     let text = "not the byte that would be written here; no state depends on it, but viewers may. \
-                `foldline recover` writes the log anew";
+                `foldline recover` writes the log again";
     finding(Level::Warning, format!("byte {at}"), text)
 }

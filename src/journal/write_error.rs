@@ -4,18 +4,17 @@ use std::io;
 
 use super::encode_error::EncodeError;
 use super::lock::LockError;
-use super::still_ours::Estranged;
+use super::still_ours::LogChanged;
 use crate::record::SinkError;
 use crate::state::Hash;
 use crate::whole_file::shortage;
 
-/// Why a stage could not be kept, or a log not be begun.
+/// Why a stage could not be written to a log, or a log could not be started.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum WriteError {
     /// There is a file of that name.
-    #[error(
-        "{log} exists and is not overwritten: `foldline resume {log}` goes on with it, `-o OTHER` writes elsewhere"
-    )]
+    #[error("{log} exists and is not overwritten: `foldline resume {log}` continues it, `-o OTHER` writes elsewhere")]
     Exists {
         /// The log.
         log: String,
@@ -46,7 +45,7 @@ pub enum WriteError {
         wanted: u64,
         /// Bytes that the disk has room for, where that is known.
         room: Option<u64>,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -55,17 +54,17 @@ pub enum WriteError {
     NotBegun {
         /// The log.
         log: String,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
-    /// The log is not the file any more that was written, or not as it was left.
+    /// The log is no longer the file that was written, or not as it was left.
     #[error("{log} {estranged}. This run stops, and adds nothing to it")]
-    Estranged {
+    LogChanged {
         /// The log.
         log: String,
-        /// What became of it.
-        estranged: Estranged,
+        /// What happened to it.
+        estranged: LogChanged,
     },
     /// The disk is full.
     #[error(
@@ -83,22 +82,22 @@ pub enum WriteError {
         wanted: u64,
         /// Bytes that the disk has room for, where that is known.
         room: Option<u64>,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
-    /// The system would not.
+    /// The operating system refused.
     #[error(
-        "cannot {action} {log}; it holds {commits} stages. `foldline resume {log}` goes on behind the last good one"
+        "cannot {action} {log}; it holds {commits} stages. `foldline resume {log}` continues after the last good one"
     )]
     Io {
-        /// "write", "sync" or "begin again".
+        /// "write", "sync" or "start".
         action: &'static str,
         /// The log.
         log: String,
         /// Stages that are in the log.
         commits: u64,
-        /// What the system says.
+        /// The error of the operating system.
         #[source]
         source: io::Error,
     },
@@ -109,7 +108,7 @@ pub enum WriteError {
         ordinal: u64,
         /// The log.
         log: String,
-        /// Why.
+        /// The error of the encoder.
         #[source]
         source: EncodeError,
     },
@@ -124,7 +123,7 @@ pub enum WriteError {
         log: String,
     },
     /// A state that is not the one its commit names.
-    #[error("the state of commit {ordinal} hashes to {found}, and the commit says {expected}")]
+    #[error("the state of commit {ordinal} hashes to {found}, and the commit has {expected}")]
     StateHash {
         /// Ordinal of the stage.
         ordinal: u64,
@@ -134,7 +133,7 @@ pub enum WriteError {
         found: Hash,
     },
     /// A stage after one that failed.
-    #[error("{log} was given up after an earlier error; `foldline resume {log}` goes on behind its {commits} stages")]
+    #[error("{log} was given up after an earlier error; `foldline resume {log}` continues after its {commits} stages")]
     GivenUp {
         /// The log.
         log: String,
@@ -152,7 +151,7 @@ impl From<WriteError> for SinkError {
             | WriteError::NoRoom { source, .. }
             | WriteError::NotBegun { source, .. }
             | WriteError::Io { source, .. }
-            | WriteError::Estranged { estranged: Estranged::Unknown { source }, .. }
+            | WriteError::LogChanged { estranged: LogChanged::Unknown { source }, .. }
             | WriteError::Lock(LockError::Io { source, .. } | LockError::Unreadable { source, .. }) => {
                 Some(Box::new(source))
             }

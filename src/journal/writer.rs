@@ -15,7 +15,7 @@ use super::lock::LogLock;
 use super::log::Log;
 use super::manifest::Manifest;
 use super::reader::{ReadError, open_regular};
-use super::still_ours::Estranged;
+use super::still_ours::LogChanged;
 use super::write_error::WriteError;
 use crate::record::{Commit, Record, Sink, SinkError};
 use crate::scene::SyncPolicy;
@@ -25,8 +25,8 @@ use crate::whole_file::room_for;
 /// How often [`SyncPolicy::EachSecond`] forces the log to disk at most.
 const SYNC_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Makes messages for viewers out of a stage. They go into the stage's commit, and into none of the hashes that states
-/// and runs are told apart by.
+/// A source of messages for viewers, made from each stage. They are stored in the stage's commit, but enter no hash of
+/// a state or of the chain.
 pub trait ViewerTopics: Send {
     /// The messages about this stage; none where it changed nothing to look at.
     fn messages(&mut self, state: &State, record: &Record) -> Vec<ViewerMessage>;
@@ -39,8 +39,8 @@ pub(super) struct KnownPieces {
     pub fields: Vec<EncodedField>,
 }
 
-/// Writes a run to a log, one commit a stage. Dropped without [`JournalWriter::finish`] or [`JournalWriter::close`] it
-/// leaves what a killed process leaves: every commit, and no summary.
+/// A writer of a run to a log, one commit for each stage. Dropped without [`JournalWriter::finish`] or
+/// [`JournalWriter::close`] it leaves what a killed process leaves: every commit, and no summary.
 pub struct JournalWriter {
     pub(super) encoder: Encoder,
     pub(super) backend: Box<dyn Backend>,
@@ -69,7 +69,7 @@ impl fmt::Debug for JournalWriter {
 }
 
 impl JournalWriter {
-    /// Begins a log. Never touches a file that is there already.
+    /// Creates a log. An existing file is never touched.
     ///
     /// # Errors
     /// Where there is one, where another process writes it, or where it cannot be written.
@@ -85,14 +85,14 @@ impl JournalWriter {
         Self::begin(path, lock, manifest, sync)
     }
 
-    /// Begins a log where a file is that holds nothing, not even a header, as a power cut may leave it. Whether it does is
-    /// asked again under the lock.
+    /// Creates a log in place of a file that holds nothing, not even a header, as a power cut may leave it. Whether it
+    /// does is checked again under the lock.
     ///
     /// # Errors
     /// As for [`Self::create`]; a file that holds more is left alone.
-    pub fn create_anew(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
+    pub fn create_over_empty(path: &Path, manifest: &Manifest, sync: SyncPolicy) -> Result<Self, WriteError> {
         let log = path.display().to_string();
-        let begin = |source| WriteError::Io { action: "begin anew", log: log.clone(), commits: 0, source };
+        let begin = |source| WriteError::Io { action: "start", log: log.clone(), commits: 0, source };
         // Through links, as it was found to hold nothing.
         let path = path.canonicalize().map_err(begin)?;
         let lock = LogLock::take(&path)?;
@@ -123,7 +123,7 @@ impl JournalWriter {
         }
     }
 
-    /// Begins a log on a backend, which is empty; `log` is its name in messages. Takes no lock.
+    /// Creates a log on an empty backend; `log` is its name in messages. Takes no lock.
     ///
     /// # Errors
     /// Where the backend cannot be written.
@@ -155,7 +155,7 @@ impl JournalWriter {
         }
     }
 
-    /// The same writer, with messages for viewers in every commit from here on.
+    /// Adds messages for viewers to every commit from here on.
     pub fn with_viewer(self, topics: Box<dyn ViewerTopics>) -> Self {
         Self { viewer: Some(topics), ..self }
     }
@@ -165,7 +165,7 @@ impl JournalWriter {
         self.last.as_ref()
     }
 
-    /// Bytes of the log so far.
+    /// Length of the log so far, bytes.
     pub fn len(&self) -> u64 {
         self.length
     }
@@ -175,26 +175,26 @@ impl JournalWriter {
         self.last.is_none()
     }
 
-    /// Whether the log is still the file that was written, as it was left.
+    /// Whether the log is still the file that was written, as this writer left it.
     pub fn is_still_there(&self) -> bool {
         self.backend.check(self.length, self.commits()).is_ok()
     }
 
-    /// Keeps a stage: one commit, one write, and a sync where the policy asks for it. The state is compared with the hash that
-    /// the commit names.
+    /// Writes a stage: one commit, one write, and a sync where the policy demands it. The state is compared with the
+    /// hash that the commit names.
     ///
     /// # Errors
-    /// Where it could not be kept. The log is good up to the last commit, and takes no more.
+    /// Where it could not be written. The log is good up to the last commit, and accepts no more stages.
     pub fn commit(&mut self, state: &State, record: &Record) -> Result<(), WriteError> {
         let found = state.hash_on(self.mesh_hash.of(&state.mesh));
         self.keep(state, record, found)
     }
 
-    /// Ends the log of a run that reached its end: a record that says so, MCAP's summary, and a sync. Where there is no
-    /// commit there is no such record either.
+    /// Ends the log of a run that reached its end with a record of that, MCAP's summary, and a sync. A log without
+    /// commits gets no such record.
     ///
     /// # Errors
-    /// Where it could not be written; the commits stand.
+    /// Where it could not be written; the commits are kept.
     pub fn finish(mut self) -> Result<(), WriteError> {
         if let Some(last) = self.last {
             self.encoder.finished(&last).map_err(|source| self.encode_error(last.ordinal, source))?;
@@ -202,11 +202,11 @@ impl JournalWriter {
         self.close()
     }
 
-    /// Ends the log of a run that was stopped: MCAP's summary, so that viewers open it at once, and a sync. It can be
-    /// resumed.
+    /// Ends the log of a run that was stopped with MCAP's summary, so that viewers open it at once, and a sync. It can
+    /// be resumed.
     ///
     /// # Errors
-    /// Where it could not be written; the commits stand.
+    /// Where it could not be written; the commits are kept.
     pub fn close(mut self) -> Result<(), WriteError> {
         if self.given_up {
             return Err(WriteError::GivenUp { log: self.log.clone(), commits: self.commits() });
@@ -298,16 +298,16 @@ impl JournalWriter {
         if let Some(lock) = &self.lock {
             lock.check()?;
         }
-        let estranged = |estranged| WriteError::Estranged { log: self.log.clone(), estranged };
+        let estranged = |estranged| WriteError::LogChanged { log: self.log.clone(), estranged };
         self.backend.check(self.length, self.commits()).map_err(estranged)
     }
 
-    /// Takes off what a failed append left behind, which would only be dropped by the next reader; but nothing of a rival
+    /// Takes off what a failed append left behind, which would only be dropped by the next reader; but nothing of another process
     /// that has come in meanwhile.
     fn take_back(&mut self, appended: u64) {
         let ours = match self.check() {
             Ok(()) => true,
-            Err(WriteError::Estranged { estranged: Estranged::Length { found, .. }, .. }) => {
+            Err(WriteError::LogChanged { estranged: LogChanged::Length { found, .. }, .. }) => {
                 (self.length..=self.length + appended).contains(&found)
             }
             Err(_) => false,

@@ -3,7 +3,7 @@
 use crate::model::ModelError;
 use crate::model::edge::edge_rows;
 use crate::model::parametrize::parameters_of;
-use crate::scene::{Place, Scene};
+use crate::scene::{Region, Scene};
 use crate::spline::{Mesh, basis_derivatives, basis_derivatives_len, evaluate_surface, find_span};
 
 /// A weighted sum over control points: (control point, weight).
@@ -11,19 +11,19 @@ pub(super) type Sum = Vec<(usize, f64)>;
 
 /// Expresses the displacements of a place as weighted sums over control points (weights sum to 1): of each control
 /// point of an edge, of the point, of each control point of a line.
-pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Place) -> Result<Vec<Sum>, ModelError> {
+pub(crate) fn control_expressions(scene: &Scene, mesh: &Mesh, on: Region) -> Result<Vec<Sum>, ModelError> {
     Ok(match on {
-        Place::Edge(edge) => edge_rows(mesh, edge)?.outer.into_iter().map(|point| vec![(point, 1.0)]).collect(),
-        Place::Point(fractions) => {
+        Region::Edge(edge) => edge_rows(mesh, edge)?.outer.into_iter().map(|point| vec![(point, 1.0)]).collect(),
+        Region::Point(fractions) => {
             let (first, functions) = evaluate_surface(mesh, parameters_of(&scene.geometry, fractions));
             vec![nonzero(mesh.window(first).zip(functions[0].iter().copied()).collect())]
         }
-        Place::Line(direction, fraction) => {
+        Region::Line(direction, fraction) => {
             let direction = direction.index();
             let terms = line_terms(mesh, direction, parameters_of(&scene.geometry, [fraction; 2])[direction]);
             terms.iter().map(|[values, _]| shares(values)).collect()
         }
-        Place::Whole => (0..mesh.control_points.len()).map(|point| vec![(point, 1.0)]).collect(),
+        Region::Whole => (0..mesh.control_points.len()).map(|point| vec![(point, 1.0)]).collect(),
     })
 }
 

@@ -9,7 +9,7 @@ use crate::model::scene_supports::supports_of;
 use crate::model::supports::{Footprint, PrescribedMotion, Section, Supports};
 use crate::model::symmetric_line::Line;
 use crate::model::ties::Ties;
-use crate::scene::{Hold, Motion, Place, Scene, Support};
+use crate::scene::{Hold, Motion, Region, Scene, Support};
 use crate::shell::{add, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
@@ -42,7 +42,7 @@ impl Supports {
                 pole: [0.0; 3],
                 section: None,
             });
-            if let (Hold::Rigid { .. }, Place::Edge(edge)) = (&support.hold, support.on) {
+            if let (Hold::Rigid { .. }, Region::Edge(edge)) = (&support.hold, support.on) {
                 supports.hold_rigidly(index, support, &ties.rows(mesh, edge)?, &points)?;
             }
         }
@@ -53,7 +53,7 @@ impl Supports {
                 (Hold::Symmetric, on) => {
                     let Some(mirror) = mirrors.next() else { continue };
                     match on {
-                        Place::Edge(edge) => supports.mirror(index, &edge_rows(mesh, edge)?, &mirror)?,
+                        Region::Edge(edge) => supports.mirror(index, &edge_rows(mesh, edge)?, &mirror)?,
                         _ => supports.mirror_line(index, mesh, &mirror)?,
                     }
                 }

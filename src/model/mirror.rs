@@ -6,7 +6,7 @@ use crate::model::limits::{ANGLE, SAME_PARAMETER};
 use crate::model::parametrize::parameters_of;
 use crate::model::symmetric_line::Line;
 use crate::model::symmetry_plane::{NoPlane, square_to, symmetry_plane};
-use crate::scene::{Edge, Hold, Place, Scene, Support};
+use crate::scene::{Edge, Hold, Region, Scene, Support};
 use crate::shell::{dot, norm, sub};
 use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
 
@@ -36,15 +36,17 @@ impl Mirror {
         let mut mirrors: Vec<Self> = Vec::new();
         for support in supports.iter().filter(|support| support.hold == Hold::Symmetric) {
             let (edge, direction, parameter) = match support.on {
-                Place::Edge(edge) => {
+                Region::Edge(edge) => {
                     let (direction, at_end) = side(edge);
                     (Some(edge), direction, if at_end { 1.0 } else { 0.0 })
                 }
-                Place::Line(direction, fraction) => {
+                Region::Line(direction, fraction) => {
                     let direction = direction.index();
                     (None, direction, parameters_of(&scene.geometry, [fraction; 2])[direction])
                 }
-                Place::Point(_) | Place::Whole => return Err(ModelError::NotAnEdge { support: support.name.clone() }),
+                Region::Point(_) | Region::Whole => {
+                    return Err(ModelError::NotAnEdge { support: support.name.clone() });
+                }
             };
             let plane = plane_of(mesh, edge, direction, parameter).map_err(|reason| ModelError::NotASymmetryPlane {
                 support: support.name.clone(),

@@ -12,7 +12,7 @@ use crate::model::mirror_image::check_own_image;
 use crate::model::parametrize::parameters_of;
 use crate::model::scene_supports::supports_of;
 use crate::model::symmetry_plane::unit;
-use crate::scene::{ActionKind, ForceVector, Material, Place, Scene, SurfaceDirection};
+use crate::scene::{ActionKind, ForceVector, Material, Region, Scene, SurfaceDirection};
 use crate::shell::{cross, dot, shell_stiffness, thermal_strain};
 use crate::spline::Mesh;
 use crate::units::{place, significant};
@@ -116,20 +116,20 @@ fn shear_coupling(material: &Material, [a1, a2]: [[f64; 3]; 2], tangent: [f64; 3
 fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
     let axis = place(mirror.normal);
     let normal = axis.trim_end_matches(" mm");
-    let is_on = |on: &Place| match on {
-        Place::Edge(edge) => Some(*edge) == mirror.edge,
-        Place::Line(direction, fraction) => {
+    let is_on = |on: &Region| match on {
+        Region::Edge(edge) => Some(*edge) == mirror.edge,
+        Region::Line(direction, fraction) => {
             let direction = direction.index();
             direction == mirror.direction && mirror.is_at(parameters_of(&scene.geometry, [*fraction; 2])[direction])
         }
-        Place::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.direction]),
-        Place::Whole => false,
+        Region::Point(at) => mirror.is_at(parameters_of(&scene.geometry, *at)[mirror.direction]),
+        Region::Whole => false,
     };
     // A line in the other direction meets the plane in a point.
-    let meets = |on: &Place| match on {
-        Place::Edge(edge) => side(*edge).0 != mirror.direction,
-        Place::Line(direction, _) => direction.index() != mirror.direction,
-        Place::Point(_) | Place::Whole => false,
+    let meets = |on: &Region| match on {
+        Region::Edge(edge) => side(*edge).0 != mirror.direction,
+        Region::Line(direction, _) => direction.index() != mirror.direction,
+        Region::Point(_) | Region::Whole => false,
     };
     for action in &scene.actions {
         let across = |force: &ForceVector, unit: &str| match force {
@@ -141,7 +141,7 @@ fn check_loads(scene: &Scene, mirror: &Mirror) -> Result<(), ModelError> {
             ForceVector::Along(_, SurfaceDirection::Normal | SurfaceDirection::Radial) => None,
         };
         let how = match &action.kind {
-            ActionKind::Force { on, force_n } if is_on(&Place::Point(*on)) => across(force_n, "N"),
+            ActionKind::Force { on, force_n } if is_on(&Region::Point(*on)) => across(force_n, "N"),
             ActionKind::LineForce { on, force_n_per_mm } if is_on(on) => across(force_n_per_mm, "N/mm"),
             // Outward of such a line lies in the plane, as its line crosses that at right angles.
             ActionKind::LineForce { on, force_n_per_mm: force @ ForceVector::Components(_) } if meets(on) => {

@@ -15,7 +15,7 @@ use crate::model::parametrize::{parameters_of, sample_parameters};
 use crate::model::scene_supports::supports_of;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{
-    Action, ActionKind, ForceVector, History, Hold, Motion, ParametricDirection, Place, Scene, Support,
+    Action, ActionKind, ForceVector, History, Hold, Motion, ParametricDirection, Region, Scene, Support,
 };
 use crate::shell::{dot, norm, scaled, sub};
 use crate::spline::{Mesh, mid_surface_point};
@@ -95,19 +95,19 @@ fn samples(mesh: &Mesh, direction: usize) -> Vec<[[f64; 3]; 2]> {
 }
 
 /// Points that distinguish a place from others.
-fn points_of(scene: &Scene, mesh: &Mesh, on: Place) -> Vec<[f64; 3]> {
+fn points_of(scene: &Scene, mesh: &Mesh, on: Region) -> Vec<[f64; 3]> {
     let along = |direction: usize, fraction: f64| {
         [0.0, 0.5, 1.0].map(|along| if direction == 0 { [fraction, along] } else { [along, fraction] }).to_vec()
     };
     let fractions = match on {
-        Place::Point(at) => vec![at],
-        Place::Line(ParametricDirection::U, fraction) => along(0, fraction),
-        Place::Line(ParametricDirection::V, fraction) => along(1, fraction),
-        Place::Edge(edge) => {
+        Region::Point(at) => vec![at],
+        Region::Line(ParametricDirection::U, fraction) => along(0, fraction),
+        Region::Line(ParametricDirection::V, fraction) => along(1, fraction),
+        Region::Edge(edge) => {
             let (direction, at_end) = side(edge);
             along(direction, if at_end { 1.0 } else { 0.0 })
         }
-        Place::Whole => vec![],
+        Region::Whole => vec![],
     };
     let position = |at: [f64; 2]| mid_surface_point(mesh, &[], parameters_of(&scene.geometry, at)).position;
     fractions.into_iter().map(position).collect()
@@ -147,12 +147,12 @@ impl SupportOrAction {
             ForceVector::Along(size, direction) => (format!("{kind} of {size:?} {direction:?}"), vec![], vec![]),
         };
         let (on, (kind, vectors, turns)) = match action.kind {
-            ActionKind::Force { on, force_n } => (Place::Point(on), forced("force", force_n)),
+            ActionKind::Force { on, force_n } => (Region::Point(on), forced("force", force_n)),
             ActionKind::LineForce { on, force_n_per_mm } => (on, forced("line force", force_n_per_mm)),
             ActionKind::EdgeMoment { on, moment_n } => {
                 let (direction, _) = side(on);
                 let along = unit(on_edge(mesh, on, 0.5).derivatives[1 - direction]);
-                (Place::Edge(on), ("edge moment".into(), vec![], vec![scaled(moment_n, along).map(Some)]))
+                (Region::Edge(on), ("edge moment".into(), vec![], vec![scaled(moment_n, along).map(Some)]))
             }
             ActionKind::AreaForce { .. }
             | ActionKind::Gravity { .. }

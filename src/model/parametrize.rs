@@ -3,7 +3,7 @@
 //! A rational quadratic segment of sweep s reaches the angle s/2 + 2 atan((2t − 1) tan(s/4)) at its parameter t: with
 //! the weights (1, cos(s/2), 1), the half-angle tangent about its middle is linear in t.
 
-use crate::scene::{Geometry, Place, Scene};
+use crate::scene::{Geometry, Region, Scene};
 use crate::spline::{Mesh, Spans, segment_count};
 
 /// Finds the parameters of a point at fractions of the length or the angle in u and v.
@@ -50,8 +50,8 @@ pub struct LinePlace {
 }
 
 /// Finds where a line or an edge lies; `None` for other places.
-pub fn line_place(scene: &Scene, mesh: &Mesh, on: Place) -> Option<LinePlace> {
-    let Place::Line(direction, fraction) = on else { return None };
+pub fn line_place(scene: &Scene, mesh: &Mesh, on: Region) -> Option<LinePlace> {
+    let Region::Line(direction, fraction) = on else { return None };
     let direction = direction.index();
     let parameter = parameters_of(&scene.geometry, [fraction; 2])[direction];
     let degree = mesh.degree[direction];

@@ -15,7 +15,7 @@ use crate::model::expressions::control_expressions;
 use crate::model::parametrize::parameters_of;
 use crate::model::rigid_motion::free_motions;
 use crate::model::supports::Supports;
-use crate::scene::{Place, Scene};
+use crate::scene::{Region, Scene};
 use crate::shell::{cross, dot, norm, sub};
 use crate::spline::{Mesh, mid_surface_point};
 
@@ -75,7 +75,7 @@ impl Supports {
         let mut spread: Vec<Point> = Vec::new();
         for fractions in FRACTIONS.iter().flat_map(|u| FRACTIONS.map(|v| [*u, v])) {
             let position = mid_surface_point(mesh, &[], parameters_of(&scene.geometry, fractions)).position;
-            let sum = control_expressions(scene, mesh, Place::Point(fractions))?.swap_remove(0);
+            let sum = control_expressions(scene, mesh, Region::Point(fractions))?.swap_remove(0);
             if sum.iter().all(|(control, _)| self.section_of[*control].is_none()) {
                 spread.push(Point { position, sum });
             }

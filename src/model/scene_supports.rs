@@ -1,6 +1,6 @@
 //! The supports of a scene: those that it names, or those that turning ends are equivalent to.
 
-use crate::scene::{Edge, Geometry, History, Hold, Load, Motion, Place, Scene, Sense, Support};
+use crate::scene::{Edge, Geometry, History, Hold, Load, Motion, Region, Scene, Sense, Support};
 
 /// Lists the supports of a scene: those that it names, or those that turning ends are equivalent to.
 pub fn supports_of(scene: &Scene) -> Vec<Support> {
@@ -20,7 +20,7 @@ pub fn supports_of(scene: &Scene) -> Vec<Support> {
     let zero = Motion::Given(0.0);
     let end = |name: &str, edge: Edge, x: f64, slide: Motion, sign: f64| Support {
         name: name.into(),
-        on: Place::Edge(edge),
+        on: Region::Edge(edge),
         hold: Hold::Rigid {
             motions: [slide, zero, zero, zero, Motion::Given(sign), zero],
             reference_mm: Some([x, 0.0, height]),
@@ -30,7 +30,7 @@ pub fn supports_of(scene: &Scene) -> Vec<Support> {
     };
     let mirror = |name: &str, edge: Edge| Support {
         name: name.into(),
-        on: Place::Edge(edge),
+        on: Region::Edge(edge),
         hold: Hold::Symmetric,
         history: History::default(),
     };

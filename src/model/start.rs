@@ -8,7 +8,7 @@ use crate::model::overhang::check_overhangs;
 use crate::model::shape::{Shape, shape};
 use crate::model::subdivision::subdivide;
 use crate::model::thinness::check_thinness;
-use crate::scene::{Hold, Place, Scene};
+use crate::scene::{Hold, Region, Scene};
 use crate::spline::{Grid, Mesh};
 
 /// Builds the starting mesh.
@@ -44,7 +44,7 @@ fn check_rows(scene: &Scene, shape: &Shape) -> Result<(), ModelError> {
     let is_held = |direction: usize, at_end: bool| {
         scene.supports.iter().any(|support| {
             let turns = matches!(support.hold, Hold::Rigid { normals_turn: true, .. });
-            turns && matches!(support.on, Place::Edge(edge) if side(edge) == (direction, at_end))
+            turns && matches!(support.on, Region::Edge(edge) if side(edge) == (direction, at_end))
         })
     };
     for direction in 0..2 {

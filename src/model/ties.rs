@@ -4,7 +4,7 @@ use crate::model::ModelError;
 use crate::model::edge::{EdgeRows, edge_rows};
 use crate::model::joint::{Joint, joints, seam};
 use crate::model::soundness::closed_directions;
-use crate::scene::{Edge, Geometry, Hold, NurbsPatch, ParametricDirection, Place, Scene, Seam, Support};
+use crate::scene::{Edge, Geometry, Hold, NurbsPatch, ParametricDirection, Region, Scene, Seam, Support};
 use crate::spline::Mesh;
 
 /// Ties between rows of control points of a mesh.
@@ -35,7 +35,7 @@ impl Ties {
             if closed[direction] { seam(mesh, direction).map(|joint| vec![joint]) } else { Ok(vec![]) }
         };
         let mirrors = supports.iter().filter(|support| support.hold == Hold::Symmetric).filter_map(|s| match s.on {
-            Place::Edge(edge) => Some(edge),
+            Region::Edge(edge) => Some(edge),
             _ => None,
         });
         Ok(Self {

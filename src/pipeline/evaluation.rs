@@ -6,8 +6,8 @@ use crate::adapt::{DirectionalError, JudgedMesh, evaluate_indicators, length_lim
 use crate::energy::TermSource;
 use crate::equilibrium::{Configuration, WorkspaceError};
 use crate::model::{ModelError, starting_mesh};
-use crate::pipeline::measured::Measured;
 use crate::pipeline::current_mesh::CurrentMesh;
+use crate::pipeline::measured::Measured;
 use crate::record::{Report, Warning};
 use crate::scene::{Adapt, Indicator, Scene, Stage};
 use crate::state::{Estimate, State};

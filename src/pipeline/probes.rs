@@ -9,7 +9,7 @@ use crate::model::{
     Exerted, ModelError, Placement, Site, control_expressions, direction_at, line_place, parameters_of,
 };
 use crate::record::Reading;
-use crate::scene::{Axis, Component, Place, Probe, ProbeKind, Reaction, Scene, SurfaceDirection};
+use crate::scene::{Axis, Component, Probe, ProbeKind, Reaction, Region, Scene, SurfaceDirection};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::mid_surface_point;
 
@@ -148,7 +148,7 @@ impl Reader<'_> {
     /// other terms there are carried across the line. Terms are summed over just that side. Where supports hold within
     /// one element of the line, their forces are shared out between the sides as the functions of the control points
     /// are.
-    fn section_moment(&self, probe: &str, on: Place, component: Axis) -> Result<f64, ModelError> {
+    fn section_moment(&self, probe: &str, on: Region, component: Axis) -> Result<f64, ModelError> {
         let Discretization { mesh, shell, terms, .. } = self.discretization;
         let Some(line) = line_place(self.scene, mesh, on) else {
             return Err(ModelError::NotASection { probe: probe.to_owned() });

@@ -82,7 +82,7 @@ fn increment_of(scene: &Scene, halvings: i32) -> f64 {
 
 /// Whether a value of the parameter is reached, up to the rounding of steps.
 pub fn has_reached(scene: &Scene, state: &State, parameter: f64) -> bool {
-    Drive::of(scene).way_of(state.parameter) >= parameter - SAME * scene.load.increment()
+    Drive::of(scene).progress(state.parameter) >= parameter - SAME * scene.load.increment()
 }
 
 /// Chooses the stage that follows a state; `None` where the run has reached its target.

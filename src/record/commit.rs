@@ -4,7 +4,7 @@ use crate::record::Report;
 use crate::scene::Stage;
 use crate::state::Hash;
 
-/// A stage's place in the run. `chain_hash` binds it to everything before it.
+/// The place of a stage in the run, and the hashes that bind it there; `chain_hash` depends on all commits before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Commit {
     /// 0 for the first stage of the run.
@@ -24,7 +24,8 @@ pub struct Commit {
 }
 
 impl Commit {
-    /// The commit that follows `previous` (or opens the run on the state that hashes to `parent_hash`).
+    /// Creates the commit that follows `previous`, or the first one of a run whose start state has the hash
+    /// `parent_hash`.
     pub fn next(
         previous: Option<&Commit>,
         stage: Stage,
@@ -54,9 +55,9 @@ impl Commit {
 /// A finished stage as the loop hands it to sinks, and as `--json` prints it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// What the stage said.
+    /// The report of the stage.
     pub report: Report,
-    /// Where it stands in the run.
+    /// Its place in the run.
     pub commit: Commit,
     /// Wall time of the stage, seconds; the only number here that differs between equal runs.
     pub wall_s: f64,

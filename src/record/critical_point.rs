@@ -15,7 +15,8 @@ pub struct CriticalPoint {
 }
 
 impl CriticalPoint {
-    /// Between two points of the path, each with the rate of the parameter there and the negative pivots.
+    /// Returns the critical point between two points of the path, if there is one; each is given by the rate of the
+    /// parameter along the path and the number of negative pivots.
     pub fn between(before: (f64, u64), after: (f64, u64)) -> Option<Self> {
         let limit_point = before.0.signum() != after.0.signum();
         let pivots_changed = after.1 as i64 - before.1 as i64;
@@ -29,7 +30,7 @@ impl CriticalPoint {
         passed.filter(|critical| critical.pivots_changed > 0)
     }
 
-    /// Name of the critical point: limit point or bifurcation.
+    /// Name of the critical point: "limit point" or "bifurcation".
     pub fn name(&self) -> &'static str {
         match (self.limit_point, self.is_bifurcation()) {
             // The parameter turns back, and stability stays as it is.
@@ -40,7 +41,7 @@ impl CriticalPoint {
         }
     }
 
-    /// For a table: what it is, and how the pivots changed.
+    /// Describes the critical point in a table: its kind, and how the pivots changed.
     pub fn in_words(&self) -> String {
         let plural = if self.pivots_changed.abs() == 1 { "" } else { "s" };
         format!("{} ({:+} negative pivot{plural})", self.name(), self.pivots_changed)

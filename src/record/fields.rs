@@ -4,12 +4,12 @@ use serde_json::Value;
 
 use crate::record::Report;
 
-/// Fields of a report by name, pairs also one by one.
+/// Lists the fields of a report by name; the numbers of a pair also follow one by one.
 pub fn fields_of(report: &Report) -> Vec<(String, Value)> {
     let Ok(Value::Object(object)) = serde_json::to_value(report) else { return Vec::new() };
     let mut fields = Vec::new();
     for (name, value) in object {
-        // Probes are asked for by their own names, below.
+        // Probes are listed by their own names, below.
         if name == "probes" {
             continue;
         }
@@ -34,7 +34,7 @@ pub fn fields_of(report: &Report) -> Vec<(String, Value)> {
     fields
 }
 
-/// A field as a number: truth is 1, what is neither is none.
+/// Reads a field as a number: true is 1, and what is neither number nor truth is `None`.
 pub fn as_number(value: &Value) -> Option<f64> {
     value.as_f64().or_else(|| value.as_bool().map(|truth| if truth { 1.0 } else { 0.0 }))
 }

@@ -1,11 +1,11 @@
-//! What is kept of a run: every stage with its place in the chain of hashes, and who keeps it.
+//! What is kept of a run: every stage with its place in the chain of hashes, and what keeps it.
 //!
 //! | file | what |
 //! |---|---|
 //! | `commit` | a stage's place in the chain, and all that is kept of it |
-//! | `report`, `fields` | what a stage says of what it did; its entries by name |
+//! | `report`, `fields` | what a stage reports of what it did; its entries by name |
 //! | `critical_point` | limit points and bifurcations |
-//! | `warning` | when numbers are doubted, and how it is said |
+//! | `warning` | when numbers are doubted, and the words for it |
 //! | `run_hash`, `revision` | the identity of a run; the revision of the numerics |
 //! | `sink` | where stages go |
 
@@ -21,8 +21,10 @@ mod warning;
 pub use crate::scene::Parameter;
 pub use commit::{Commit, Record};
 pub use critical_point::CriticalPoint;
-pub use fields::{as_number, fields_of};
-pub use report::{Outcome, Reading, Report, WrittenReport, released_in_words};
+pub(crate) use fields::as_number;
+pub use fields::fields_of;
+pub(crate) use report::released_in_words;
+pub use report::{Outcome, Reading, Report, WrittenReport};
 pub use revision::NUMERICS_REVISION;
 pub use run_hash::run_hash;
 pub use sink::{MemorySink, Sink, SinkError};

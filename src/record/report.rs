@@ -1,4 +1,4 @@
-//! What a stage says of what it did: a function of model and state.
+//! What a stage reports of what it did: a function of model and state.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,8 @@ use crate::record::{CriticalPoint, Warning};
 use crate::scene::{Parameter, Scene, Stage};
 use crate::state::State;
 
-/// What a stage reports beside the state that it made. Pure: holds no clock and no host.
+/// What a stage did and the numbers of the state that it made. It depends on model and state alone, on no clock and no
+/// machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "WrittenReport", into = "WrittenReport")]
 pub struct Report {
@@ -71,7 +72,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Of a state as it stands, on a mesh with so many free unknowns; the stage fills in what it did.
+    /// The report of a state, on a mesh with so many free unknowns; the stage fills in what it did.
     pub(crate) fn of(scene: &Scene, state: &State, unknowns: usize) -> Self {
         Self {
             step: state.step,
@@ -104,7 +105,7 @@ impl Report {
     }
 }
 
-/// Energy that a jump released, in words, with so many decimals; it may not be known for two reasons.
+/// Describes the energy that a jump released, with this number of decimals, or why it is not known.
 pub fn released_in_words(energy_n_mm: Option<f64>, loads_follow: bool, decimals: usize) -> String {
     match energy_n_mm {
         Some(energy) => format!("released {energy:.decimals$} N·mm"),
@@ -113,7 +114,7 @@ pub fn released_in_words(energy_n_mm: Option<f64>, loads_follow: bool, decimals:
     }
 }
 
-/// What a probe of the scene measured.
+/// The value of a probe of the scene at an equilibrium.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reading {
     /// Name of the probe.
@@ -131,7 +132,7 @@ fn is_nothing(energy: &f64) -> bool {
     *energy == 0.0
 }
 
-/// A report as it is written: JSON that names its parameter, and leaves out what the scene has no use for.
+/// A report in the form of its JSON, which names the parameter and leaves out what the scene has no use for.
 #[derive(Clone, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Report")]
 pub struct WrittenReport {
@@ -291,6 +292,7 @@ impl From<Report> for WrittenReport {
 /// How a stage ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Outcome {
     /// The stage did its work.
     Done,

@@ -3,8 +3,8 @@
 use crate::digest::{Feed, Hash};
 use crate::scene::Scene;
 
-/// Hash of what decides the results of a run: of its scene, and of the terms of the caller's own, by name and hash, where there
-/// are any.
+/// Hashes what decides the results of a run: its scene, and the energy terms of the caller's own, by name and hash,
+/// where there are any.
 pub fn run_hash(scene: &Scene, terms: &[(&str, Hash)]) -> Hash {
     if terms.is_empty() {
         return scene.hash();

@@ -3,7 +3,7 @@
 use crate::record::Record;
 use crate::state::State;
 
-/// Why a sink could not take a stage. The sink says what happened and what to do about it.
+/// Why a sink could not accept a stage; `context` describes what happened and what to do about it.
 #[derive(Debug, thiserror::Error)]
 #[error("{context}")]
 pub struct SinkError {
@@ -14,17 +14,17 @@ pub struct SinkError {
     pub source: Option<Box<dyn std::error::Error + Send + Sync>>,
 }
 
-/// Sees every finished stage, in order.
+/// A receiver of every finished stage of a run, in order.
 pub trait Sink {
     /// Takes a stage, whose commit names the hash of this very state; when this returns, the stage is as safe as this sink makes
     /// it.
     ///
     /// # Errors
-    /// Where the stage could not be kept; the loop stops, and the stages taken before stand.
+    /// Where the stage could not be kept; the loop stops, and the stages taken before are kept.
     fn take(&mut self, state: &State, record: &Record) -> Result<(), SinkError>;
 }
 
-/// Keeps every stage in memory.
+/// A sink that keeps every stage in memory.
 #[derive(Debug, Default)]
 pub struct MemorySink {
     /// States and records in the order of the run.

@@ -1,4 +1,4 @@
-//! What a stage says of the worth of its numbers: where its mesh cannot show what the shell does.
+//! What a stage reports of the worth of its numbers: where its mesh cannot show what the shell does.
 //!
 //! | warning | measure | looked for |
 //! |---|---|---|
@@ -16,16 +16,17 @@ use crate::adapt::Blocked;
 use crate::state::State;
 use crate::units::{count, signed, significant};
 
-/// Change of the strain energy, relative to it, from which on it is said.
+/// Change of the strain energy, relative to it, from which on there is a warning.
 pub(crate) const LARGE: f64 = 0.05;
 
-/// Where numbers are not what they seem, with those that say so.
+/// A reason to doubt numbers of the run, with the numbers that show it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Warning {
     /// Halving every element would change the strain energy by much.
     CoarseElements {
-        /// The scene's parameter at the equilibrium that this is said of.
+        /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// Elements each way of the model there.
         elements: [usize; 2],
@@ -34,24 +35,24 @@ pub enum Warning {
     },
     /// A probe would read another value with every element halved.
     ProbeOff {
-        /// The scene's parameter at the equilibrium that this is said of.
+        /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// Elements each way of the model there.
         elements: [usize; 2],
         /// The probe that is off the most, relative to its value.
         probe: String,
-        /// What it reads.
+        /// The reading of the probe.
         value: f64,
         /// What it reads on the halved mesh.
         halved: f64,
-        /// Unit of both.
+        /// Unit of both readings.
         unit: String,
         /// Other probes that are off as well.
         others: usize,
     },
     /// With every element halved the shell would have buckled before.
     LateBuckling {
-        /// The scene's parameter at the equilibrium that this is said of.
+        /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// Elements each way of the model there.
         elements: [usize; 2],
@@ -60,7 +61,7 @@ pub enum Warning {
     },
     /// Strains that the material law is not meant for.
     LargeStrains {
-        /// The scene's parameter at the equilibrium that this is said of.
+        /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// The largest magnitude of a Green–Lagrange strain along u or v in a surface of the shell.
         strain: f64,
@@ -71,7 +72,7 @@ pub enum Warning {
     RefinementBlocked {
         /// The scene's parameter.
         parameter: f64,
-        /// Such spans each way.
+        /// Number of such spans in each direction.
         spans: [usize; 2],
         /// Length of the longest, in decay lengths √(t/κ) of its bending.
         decay_lengths: f64,
@@ -105,7 +106,7 @@ impl Warning {
         Self::RefinementBlocked { parameter: state.parameter, spans, decay_lengths, over_threshold }
     }
 
-    /// Name of the kind of warning, in few words.
+    /// Short name of the kind of warning.
     pub fn name(&self) -> &'static str {
         match self {
             Self::CoarseElements { .. } => "coarse elements",
@@ -129,12 +130,12 @@ impl Warning {
         }
     }
 
-    /// Whether it says that results read at or before its parameter are wrong.
+    /// Whether results up to the warning's parameter are wrong.
     pub fn doubts_results(&self) -> bool {
         !matches!(self, Self::RefinementBlocked { .. })
     }
 
-    /// The warning as a sentence, with its numbers and what to do.
+    /// Describes the warning in a sentence, with its numbers and what to do.
     pub fn in_words(&self) -> String {
         match self {
             &Self::CoarseElements { elements: [n1, n2], energy_share, .. } => {

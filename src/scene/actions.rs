@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::data::{Action, ActionKind, ForceVector, Geometry, Material, Place, SurfaceDirection};
+use super::data::{Action, ActionKind, ForceVector, Geometry, Material, Region, SurfaceDirection};
 use super::fault::Checked;
 use super::histories::history;
 use super::table::{Table, data};
@@ -30,12 +30,12 @@ fn vector(table: &Table, name: &str, force: Value, geometry: &Geometry) -> Check
         (None, true) => Ok(force),
         (None, false) => Err(table.wrong_at(
             name,
-            format!("`{name}` is one number, and says no direction"),
+            format!("`{name}` is one number, and gives no direction"),
             format!("write three components, such as `{name} = [0.0, 0.0, 1.0]`, or add `along = \"normal\"` (or \"radial\", or \"outward\" on an edge)"),
         )),
         (Some(_), true) => Err(table.wrong_at(
             "along",
-            format!("`{name}` has components, which say the direction already"),
+            format!("`{name}` has components, which give the direction already"),
             format!("take `along` out, or write one number, such as `{name} = 1.0`"),
         )),
         (Some(direction), false) => {
@@ -51,7 +51,7 @@ fn vector(table: &Table, name: &str, force: Value, geometry: &Geometry) -> Check
 fn check(table: &Table, kind: &ActionKind, material: &Material) -> Checked<()> {
     match kind {
         ActionKind::LineForce {
-            on: Place::Line(..),
+            on: Region::Line(..),
             force_n_per_mm: ForceVector::Along(_, SurfaceDirection::Outward),
         } => Err(table.wrong_at(
             "along",

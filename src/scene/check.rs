@@ -8,7 +8,7 @@ use super::data::{
 };
 use super::document::Document;
 use super::error::SceneError;
-use super::fault::{Checked, CheckedWhole, Fault, Faults, Place, Source};
+use super::fault::{Checked, CheckedWhole, Fault, Faults, Source, TextSpan};
 use super::key_table::SECTIONS;
 use super::problem::{Direction, Problem};
 use super::structure::structure;
@@ -26,7 +26,7 @@ const TAPE_SPRING: &str = "tape-spring";
 /// Kinds of geometry without curvature.
 const FLAT: [&str; 2] = ["plate", "annulus"];
 
-/// Reads a scene from TOML. `file_name` is only what errors call the text.
+/// Parses and checks a scene in TOML; errors call the text `file_name`.
 ///
 /// # Errors
 /// What is wrong: the syntax; or all wrong names, missing tables and keys, and wrong values; or else what does not go
@@ -35,8 +35,8 @@ pub fn parse(text: &str, file_name: &str) -> Result<Scene, SceneError> {
     parse_with_settings::<&str>(text, file_name, &[])
 }
 
-/// Reads a scene from TOML with settings of the form `section.key=value` applied to it before it is checked, as if
-/// the file said so; the last setting of a key holds. A value is TOML, but a word needs no quotes.
+/// Parses and checks a scene in TOML with settings of the form `section.key=value`, which replace what the file has;
+/// the last setting of a key holds. A value is TOML, but a word needs no quotes.
 ///
 /// # Errors
 /// As [`parse`]; what is wrong with a setting is shown in the setting.
@@ -304,8 +304,8 @@ fn continuation(tables: &Tables, load: &Load) -> Checked<Option<ArcLength>> {
     }
 }
 
-/// The error for two values that do not go together; either may be a default, which stands nowhere.
-fn between(problem: Problem, first: Option<Place>, second: Option<Place>, table: &Table) -> Box<Fault> {
+/// The error for two values that do not go together; either may be a default, which is not in the text.
+fn between(problem: Problem, first: Option<TextSpan>, second: Option<TextSpan>, table: &Table) -> Box<Fault> {
     match (first, second) {
         (Some(first), second) => Fault::new(problem, &first).also(second.as_ref()),
         (None, Some(second)) => Fault::new(problem, &second),
@@ -323,7 +323,7 @@ mod tests {
     fn every_key_stands_in_a_section_of_the_table_and_ends_in_its_unit() {
         for key in all_keys() {
             let section = SECTIONS.iter().find(|section| section.name == key.section).unwrap();
-            assert!(section.keys.contains(key), "{} stands in another table", key.path());
+            assert!(section.keys.contains(key), "{} is in another table", key.path());
             assert!(key.name.ends_with(key.unit.suffix()), "{}", key.path());
             assert!(!key.meaning.is_empty(), "{}", key.path());
             let words: Vec<&str> = section.kind_key().into_iter().flat_map(|kind| kind.words()).collect();
@@ -331,7 +331,7 @@ mod tests {
             let same = section.keys.iter().filter(|other| other.name == key.name);
             let beside =
                 same.filter(|other| other.kinds.is_empty() || other.kinds.iter().any(|kind| key.belongs_to(kind)));
-            assert_eq!(beside.count(), 1, "{} stands twice", key.path());
+            assert_eq!(beside.count(), 1, "{} occurs twice", key.path());
         }
     }
 

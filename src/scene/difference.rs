@@ -7,10 +7,10 @@ use serde_json::Value;
 use super::key_table::SECTIONS;
 use super::keys::Reach;
 
-/// A key on which two scenes differ.
+/// A key that has different values in two scenes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// The key as it stands in a scene file: `solver.tolerance`; of a table that has a name `support.hinge.on`.
+    /// The key as written in a scene file: `solver.tolerance`; of a table that has a name `support.hinge.on`.
     pub path: String,
     /// Its value in the first scene; `None` where that has no use for it.
     pub a: Option<Value>,
@@ -21,7 +21,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Its values in the two scenes, each in a line.
+    /// The values of the key in the two scenes, each in one line.
     pub fn values(&self) -> [String; 2] {
         shown_values(&self.a, &self.b)
     }
@@ -66,7 +66,7 @@ fn named<'v>(list: &'v [Value], table: &Value) -> Option<&'v Value> {
     list.iter().find(|other| other["name"] == table["name"])
 }
 
-/// Differences of two tables, a key each; of one alone, or of two kinds, the whole table. How far each reaches says `reach`.
+/// Differences of two tables, a key each; of one alone, or of two kinds, the whole table. `reach` gives how far each reaches.
 fn of_table(
     table: &str,
     was: Option<&Value>,
@@ -94,8 +94,8 @@ fn of_table(
 /// Characters of a scene's value that are shown at most.
 const LONGEST_SHOWN: usize = 60;
 
-/// Two values of a scene that differ, as they stand in its file, each in one line: of long ones no more than what is around
-/// the first place at which they do.
+/// Formats two values of a scene that differ, as a scene file would have them, each in one line; of long ones only what
+/// is around the first difference.
 pub fn shown_values(a: &Option<Value>, b: &Option<Value>) -> [String; 2] {
     let texts = [a, b].map(|value| value.as_ref().map_or("not set".to_string(), ToString::to_string));
     let alike = texts[0].chars().zip(texts[1].chars()).take_while(|(a, b)| a == b).count();
@@ -141,7 +141,7 @@ mod tests {
         assert_differ("probes", fewer, both, &[("probe.a", Reach::Free)]);
     }
 
-    /// A history means the same only where all else stands in its place.
+    /// A history means the same only where nothing else has changed.
     #[test]
     fn histories_reach_as_far_as_the_loads() {
         let push = |name: &str, end: f64| json!({ "name": name, "kind": "force", "history": [[0.0, 0.0], [1.0, end]] });

@@ -6,22 +6,22 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::entry::Entry;
-use super::fault::{Checked, Fault, Place};
+use super::fault::{Checked, Fault, TextSpan};
 use super::keys::Section;
 use super::problem::Problem;
 use super::{meant, syntax};
 use crate::printable::one_line;
 
-/// What stands in a scene file, with settings applied.
+/// The content of a scene file, with settings applied.
 pub(super) struct Document<'t> {
-    /// What may stand there.
+    /// The descriptions of the tables that are allowed.
     pub sections: &'static [Section],
-    /// The tables, in the order of the text; those that settings add stand behind.
+    /// The tables, in the order of the text; those that settings add come last.
     pub tables: Vec<Written<'t>>,
     /// Keys and values in front of all tables, and tables of the wrong form.
     pub strays: Vec<Entry<'t>>,
     /// Behind the last text of the file.
-    pub end: Place,
+    pub end: TextSpan,
     /// The file.
     text: &'t str,
 }
@@ -32,19 +32,19 @@ pub(super) struct Written<'t> {
     pub name: String,
     /// Its number, from 1, where it is an item of an array of tables.
     pub number: Option<usize>,
-    pub place: Place,
+    pub place: TextSpan,
     pub entries: Vec<Entry<'t>>,
     /// Whether it is written in brackets on a line of its own, so that lines may be added below.
     own_line: bool,
 }
 
 impl<'t> Written<'t> {
-    /// The value of a key.
+    /// Returns the entry with this key.
     pub fn entry(&self, name: &str) -> Option<&Entry<'t>> {
         self.entries.iter().find(|entry| entry.name == name)
     }
 
-    /// What errors call it: `[geometry]`, `[[support]] 2`, `[[support]] "root"`.
+    /// The name of the table in errors: `[geometry]`, `[[support]] 2`, `[[support]] "root"`.
     pub fn title(&self) -> String {
         let name = self.entry("name").and_then(|entry| entry.value.get_ref().as_str());
         match (self.number, name) {
@@ -56,12 +56,12 @@ impl<'t> Written<'t> {
 }
 
 impl<'t> Document<'t> {
-    /// Reads the file (source 0) and then each setting (sources 1, 2, …) over it.
+    /// Reads the file (source 0), and then each setting (sources 1, 2, …) in place of what the file has.
     pub fn read<S: AsRef<str>>(text: &'t str, settings: &'t [S], sections: &'static [Section]) -> Checked<Self> {
         let root =
-            DeTable::parse(text).map_err(|error| syntax::fault(&error, text, &Place { source: 0, span: 0..0 }))?;
+            DeTable::parse(text).map_err(|error| syntax::fault(&error, text, &TextSpan { source: 0, span: 0..0 }))?;
         let last = text.trim_end().len();
-        let end = Place { source: 0, span: last..last };
+        let end = TextSpan { source: 0, span: last..last };
         let mut document = Self { sections, tables: vec![], strays: vec![], end, text };
         for (name, value) in in_order_of_text(root.into_inner()) {
             document.take_root(name, value);
@@ -72,13 +72,13 @@ impl<'t> Document<'t> {
         Ok(document)
     }
 
-    /// What may stand in a table of this name.
+    /// The description of tables of this name.
     pub fn section(&self, name: &str) -> Option<&'static Section> {
         self.sections.iter().find(|section| section.name == name)
     }
 
-    /// Where a line can be added to a table: the end of the line of its last entry, or of its header.
-    pub fn line_end(&self, table: &Written<'_>) -> Option<Place> {
+    /// Where a line can be added to a table: at the end of the line of its last entry, or of its header.
+    pub fn line_end(&self, table: &Written<'_>) -> Option<TextSpan> {
         if !table.own_line {
             return None;
         }
@@ -87,7 +87,7 @@ impl<'t> Document<'t> {
         let rest = self.text.get(last..)?;
         let line = rest.find('\n').map_or(rest, |length| &rest[..length]);
         let at = last + line.trim_end_matches('\r').len();
-        Some(Place { source: 0, span: at..at })
+        Some(TextSpan { source: 0, span: at..at })
     }
 
     fn is_array(&self, name: &str) -> bool {
@@ -95,31 +95,32 @@ impl<'t> Document<'t> {
     }
 
     fn take_root(&mut self, name: Spanned<Cow<'t, str>>, value: Spanned<DeValue<'t>>) {
-        let place = Place { source: 0, span: name.span() };
+        let place = TextSpan { source: 0, span: name.span() };
         let name = name.into_inner().into_owned();
         let span = value.span();
         match value.into_inner() {
             DeValue::Table(table) => self.take_table(name, None, place, table),
             DeValue::Array(tables) if self.is_array(&name) => {
                 for (index, table) in tables.into_iter().enumerate() {
-                    let place = Place { source: 0, span: if index == 0 { place.span.clone() } else { table.span() } };
+                    let place =
+                        TextSpan { source: 0, span: if index == 0 { place.span.clone() } else { table.span() } };
                     let table = if let DeValue::Table(table) = table.into_inner() { table } else { DeTable::new() };
                     self.take_table(name.clone(), Some(index + 1), place, table);
                 }
             }
             other => {
                 let value = Spanned::new(span, other);
-                self.strays.push(Entry { name, place, value, base: Place { source: 0, span: 0..0 } });
+                self.strays.push(Entry { name, place, value, base: TextSpan { source: 0, span: 0..0 } });
             }
         }
     }
 
-    fn take_table(&mut self, name: String, number: Option<usize>, place: Place, table: DeTable<'t>) {
+    fn take_table(&mut self, name: String, number: Option<usize>, place: TextSpan, table: DeTable<'t>) {
         let entry = |(key, value): (Spanned<Cow<'t, str>>, Spanned<DeValue<'t>>)| Entry {
-            place: Place { source: 0, span: key.span() },
+            place: TextSpan { source: 0, span: key.span() },
             name: key.into_inner().into_owned(),
             value,
-            base: Place { source: 0, span: 0..0 },
+            base: TextSpan { source: 0, span: 0..0 },
         };
         let entries = in_order_of_text(table).into_iter().map(entry).collect();
         let (before, from) = self.text.split_at(place.span.start);
@@ -129,29 +130,29 @@ impl<'t> Document<'t> {
 
     /// Applies one setting, `section.key=value`.
     fn set(&mut self, source: usize, setting: &'t str) -> Checked<()> {
-        let whole = Place { source, span: 0..setting.len() };
+        let whole = TextSpan { source, span: 0..setting.len() };
         let Some((path, value_text)) = setting.split_once('=') else {
             let key = meant::key(self.sections, setting.trim());
             return Err(Fault::new(Problem::SettingWithoutValue { key }, &whole));
         };
         let start = path.len() - path.trim_start().len();
-        let place = Place { source, span: start..start + path.trim().len() };
+        let place = TextSpan { source, span: start..start + path.trim().len() };
         let Some((section, name)) = path.trim().split_once('.') else {
             return Err(meant::setting_without_section(self.sections, path.trim(), &place));
         };
-        let section_place = Place { source, span: start..start + section.len() };
+        let section_place = TextSpan { source, span: start..start + section.len() };
         if self.is_array(section) {
             let problem = Problem::Table {
                 table: format!("[[{section}]]"),
-                problem: "a setting cannot say which of several tables it means".into(),
+                problem: "a setting cannot name one of several tables".into(),
                 remedy: "change it in the scene file".into(),
             };
             return Err(Fault::new(problem, &section_place));
         }
-        let name_place = Place { source, span: start + section.len() + 1..place.span.end };
+        let name_place = TextSpan { source, span: start + section.len() + 1..place.span.end };
 
         let value_start = setting.len() - value_text.trim_start().len();
-        let base = Place { source, span: value_start..setting.len() };
+        let base = TextSpan { source, span: value_start..setting.len() };
         let value =
             setting_value(value_text.trim()).map_err(|error| syntax::fault(&error, value_text.trim(), &base))?;
 

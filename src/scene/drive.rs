@@ -3,8 +3,9 @@
 use super::data::{ArcLength, Load, Scene};
 use crate::units::rounded;
 
-/// What moves the structure on, step after step.
+/// What advances a run from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Drive<'s> {
     /// The load: a step is an increment of the parameter.
     Load(Parameter),
@@ -13,7 +14,7 @@ pub enum Drive<'s> {
 }
 
 impl<'s> Drive<'s> {
-    /// Of a scene.
+    /// Returns the drive of a scene.
     pub fn of(scene: &'s Scene) -> Self {
         let parameter = match scene.load {
             Load::EndRotation(_) => Parameter::Rotation,
@@ -25,7 +26,7 @@ impl<'s> Drive<'s> {
         }
     }
 
-    /// What the parameter is.
+    /// The parameter of the run.
     pub fn parameter(self) -> Parameter {
         match self {
             Drive::Load(parameter) | Drive::Path(parameter, _) => parameter,
@@ -37,8 +38,9 @@ impl<'s> Drive<'s> {
         matches!(self, Drive::Path(..))
     }
 
-    /// How far a parameter is on the way to the target: along a path it may get there on the other side of 0.
-    pub fn way_of(self, parameter: f64) -> f64 {
+    /// Progress of the parameter towards the target: its magnitude along a path, which may reach the target on the
+    /// other side of 0.
+    pub fn progress(self, parameter: f64) -> f64 {
         match self {
             Drive::Load(_) => parameter,
             Drive::Path(..) => parameter.abs(),
@@ -46,8 +48,9 @@ impl<'s> Drive<'s> {
     }
 }
 
-/// What the parameter of a run is.
+/// The quantity that the parameter of a run measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Parameter {
     /// Rotation of each end, degrees.
     Rotation,
@@ -56,12 +59,12 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// Of a scene.
+    /// Returns the parameter of a scene.
     pub fn of(scene: &Scene) -> Self {
         Drive::of(scene).parameter()
     }
 
-    /// A value with its unit.
+    /// Formats a value with its unit.
     pub fn shown(self, value: f64) -> String {
         match self {
             Parameter::Rotation => format!("{value}°"),
@@ -69,7 +72,7 @@ impl Parameter {
         }
     }
 
-    /// The same with no more decimals than say something.
+    /// Formats a value with its unit, rounded to the decimals that matter.
     pub fn shown_short(self, value: f64) -> String {
         match self {
             Parameter::Rotation => format!("{}°", rounded(value)),

@@ -9,11 +9,11 @@ use super::{explain, render};
 /// Mistakes shown at most.
 const MOST_SHOWN: usize = 10;
 
-/// Why a text is no scene: all that is wrong with its names and values, or else what does not go together. Its `Display`
+/// Why a text is rejected as a scene: all wrong names and values, or else what does not go together. Its `Display`
 /// shows the file, the line, the offending text underlined, what is allowed and the nearest right spelling.
 #[derive(Clone, PartialEq)]
 pub struct SceneError {
-    /// At least one.
+    /// The faults, at least one.
     faults: Vec<Fault>,
     sources: Vec<Source>,
 }
@@ -23,34 +23,34 @@ impl SceneError {
         Self { faults, sources }
     }
 
-    /// What is wrong.
+    /// The problems, in the order in which they are shown.
     pub fn problems(&self) -> impl Iterator<Item = &Problem> {
         self.faults.iter().map(|fault| &fault.problem)
     }
 
-    /// The first thing that is wrong, in one line.
+    /// The first problem, in one line.
     pub fn summary(&self) -> String {
         explain::explain(self.first()).title
     }
 
-    /// Where the first stands: the file name given to the parser, or `--set`.
+    /// The source of the first problem: the file name given to the parser, or `--set`.
     pub fn source_name(&self) -> &str {
         &self.sources[self.first().place.source].name
     }
 
-    /// The line of the first in that source, from 1.
+    /// The line of the first problem in its source, from 1.
     pub fn line(&self) -> usize {
         let text = self.sources[self.first().place.source].text.as_bytes();
         let end = self.first().place.span.start.min(text.len());
         1 + text[..end].iter().filter(|byte| **byte == b'\n').count()
     }
 
-    /// The annotated snippets in plain ASCII lines, for pipes, logs and tests.
+    /// Renders the annotated snippets in plain ASCII, for pipes, logs and tests.
     pub fn plain(&self) -> String {
         self.rendered(render::plain)
     }
 
-    /// The annotated snippets in colour, for terminals.
+    /// Renders the annotated snippets in colour, for terminals.
     pub fn coloured(&self) -> String {
         self.rendered(render::coloured)
     }

@@ -1,50 +1,53 @@
-//! A problem, and where it stands in the text.
+//! A problem, and its place in the text.
 
 use std::ops::Range;
 
 use super::problem::Problem;
 
-/// A problem, where it stands, and the edits that would mend it.
+/// A problem, its place, and the edits that would mend it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {
     pub problem: Problem,
-    /// The table that it stands in, where there may be several of its name.
+    /// The table that holds it, where there may be several of its name.
     pub item: Option<String>,
-    pub place: Place,
-    /// A second place that the problem hangs on.
-    pub also: Option<Place>,
+    pub place: TextSpan,
+    /// A second place that is part of the problem.
+    pub also: Option<TextSpan>,
     /// Replacements that mend it.
-    pub edits: Vec<(Place, String)>,
+    pub edits: Vec<(TextSpan, String)>,
 }
 
 impl Fault {
-    pub fn new(problem: Problem, place: &Place) -> Box<Self> {
+    /// Creates a fault at a span of text.
+    pub fn new(problem: Problem, place: &TextSpan) -> Box<Self> {
         Box::new(Self { problem, item: None, place: place.clone(), also: None, edits: Vec::new() })
     }
 
-    pub fn also(mut self: Box<Self>, place: Option<&Place>) -> Box<Self> {
+    /// Adds a second span that is part of the problem.
+    pub fn also(mut self: Box<Self>, place: Option<&TextSpan>) -> Box<Self> {
         self.also = place.cloned();
         self
     }
 
-    /// The same in a table of which there may be several.
+    /// Names the table of the fault, where there may be several of its name.
     pub fn in_item(mut self: Box<Self>, item: Option<String>) -> Box<Self> {
         self.item = item;
         self
     }
 
-    /// Without the edits.
+    /// Removes the edits.
     pub fn unmended(mut self: Box<Self>) -> Box<Self> {
         self.edits.clear();
         self
     }
 
-    pub fn edit(mut self: Box<Self>, place: &Place, text: impl Into<String>) -> Box<Self> {
+    /// Adds an edit that replaces a span of text.
+    pub fn edit(mut self: Box<Self>, place: &TextSpan, text: impl Into<String>) -> Box<Self> {
         self.edits.push((place.clone(), text.into()));
         self
     }
 
-    /// The same, mended together with another fault.
+    /// Adds the edits of another fault, which mend both.
     pub fn edits_of(mut self: Box<Self>, other: Fault) -> Box<Self> {
         self.edits.extend(other.edits);
         self
@@ -61,12 +64,12 @@ pub(super) type CheckedWhole<T> = Result<T, Vec<Fault>>;
 pub(super) struct Faults(pub Vec<Fault>);
 
 impl Faults {
-    /// The value, or `None` and one fault more.
+    /// Returns the value, or keeps the fault and returns `None`.
     pub fn keep<T>(&mut self, checked: Checked<T>) -> Option<T> {
         checked.map_err(|fault| self.0.push(*fault)).ok()
     }
 
-    /// The value, if nothing is wrong.
+    /// Returns the value if there is no fault.
     pub fn or<T>(self, value: T) -> CheckedWhole<T> {
         if self.0.is_empty() { Ok(value) } else { Err(self.0) }
     }
@@ -81,7 +84,7 @@ pub(super) struct Source {
 
 /// Bytes of one of the sources.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct TextSpan {
     /// Index of the source: 0 is the file, then one for each setting.
     pub source: usize,
     pub span: Range<usize>,

@@ -79,13 +79,13 @@ const CONVERTED_DIGITS: usize = 12;
 const LONGEST_QUANTITY: usize = 64;
 
 impl ForeignUnit {
-    /// The unit of this spelling that measures what `unit` measures.
+    /// Finds the unit of this spelling that measures the same quantity as `unit`.
     pub fn find(spelling: &str, unit: Unit) -> Option<&'static ForeignUnit> {
         let spelling = spelling.to_lowercase();
         FOREIGN_UNITS.iter().find(|foreign| foreign.unit == unit && foreign.spellings.contains(&&*spelling))
     }
 
-    /// A value in this unit, in the unit of the scene.
+    /// Converts a value in this unit to the unit of the scene.
     pub fn convert(&self, value: f64) -> f64 {
         let digits = CONVERTED_DIGITS - 1;
         format!("{:.digits$e}", value * self.factor).parse().unwrap_or(value * self.factor)

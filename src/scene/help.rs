@@ -35,7 +35,7 @@ moment or rotation about an axis turns as a right-handed screw along it.
 /// A scene of supports, actions and probes.
 const STRUCTURE_EXAMPLE: &str = include_str!("structure_example.toml");
 
-/// Every key of a scene with its unit, its default and an example, and two complete scenes that parse.
+/// Describes every key of a scene with its unit, its default and an example, and gives two complete scenes that parse.
 pub fn help_text() -> String {
     let sections: String = SECTIONS.iter().map(of_section).collect();
     let example = |title: &str, scene: &str| {
@@ -49,7 +49,7 @@ pub fn help_text() -> String {
         + &example("A complete scene with supports and actions of its own", STRUCTURE_EXAMPLE)
 }
 
-/// The part of [`help_text`] on one table, by its name, or on `places`; `None` where there is no such topic.
+/// Returns the part of [`help_text`] on one table, by its name, or on `places`; `None` where there is no such topic.
 pub fn help_on_topic(topic: &str) -> Option<String> {
     let name = topic.trim_matches(['[', ']']);
     let section = SECTIONS.iter().find(|section| section.name == name);
@@ -57,7 +57,7 @@ pub fn help_on_topic(topic: &str) -> Option<String> {
     text.map(|text| text.trim_start().to_owned())
 }
 
-/// The topics on which there is help.
+/// The names of the topics on which there is help.
 pub fn help_topics() -> impl Iterator<Item = &'static str> {
     SECTIONS.iter().map(|section| section.name).chain([PLACES_TOPIC])
 }
@@ -87,7 +87,7 @@ fn of_key(key: &Key) -> String {
     text
 }
 
-/// One scene with every key of a tape spring that can stand beside the others.
+/// One scene with every key of a tape spring that can be combined with the others.
 pub(super) fn example_scene() -> String {
     let mut text = String::new();
     for section in SECTIONS.iter().filter(|section| !section.many) {

@@ -23,9 +23,8 @@ const RENAMED: [(&str, &str); 3] = [
 const DOMAIN: &str = "foldline scene 1";
 
 impl Scene {
-    /// Hash over everything that decides states: all keys but `output.*`, `expect.*` and `load.rotation_deg`. Those
-    /// are free, so that a run can be extended, or written with more beside it, and every stage done so far is found
-    /// again.
+    /// Hashes everything that decides states: all keys but `output.*`, `expect.*` and `load.rotation_deg`. Those may
+    /// change, so that a run can be extended, or written with more output, and every stage done so far is found again.
     ///
     /// Fed are the domain string and then, in the order of their paths, each key and its value as JSON, each with its
     /// length in front: independent of the order of fields, of formatting and of comments in the scene file.
@@ -45,7 +44,7 @@ impl Scene {
         hasher.finalize()
     }
 
-    /// Every key on which the scenes differ, in alphabetical order; supports, actions and probes table by table.
+    /// Lists every key on which the scenes differ, in alphabetical order; supports, actions and probes table by table.
     pub fn differences(&self, other: &Scene) -> Vec<Difference> {
         let (a, b) = (self.leaves(), other.leaves());
         let mut paths: Vec<_> = a.keys().chain(b.keys()).cloned().collect();

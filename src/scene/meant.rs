@@ -1,6 +1,6 @@
 //! What was meant by a wrong name: a key of another table, one with another unit, a symbol, a slip of the finger.
 
-use super::fault::{Fault, Place};
+use super::fault::{Fault, TextSpan};
 use super::foreign_unit::ForeignUnit;
 use super::keys::{Key, Presence, Section, Unit};
 use super::nearest::{LONGEST_NAME, nearest, plain, slip};
@@ -17,7 +17,7 @@ fn of_settings(sections: &'static [Section]) -> impl Iterator<Item = &'static Ke
 }
 
 /// The error for a setting such as `max_iterations=200`.
-pub(super) fn setting_without_section(sections: &'static [Section], found: &str, place: &Place) -> Box<Fault> {
+pub(super) fn setting_without_section(sections: &'static [Section], found: &str, place: &TextSpan) -> Box<Fault> {
     let meant = meant_anywhere(sections, found);
     let fault = Fault::new(Problem::SettingWithoutSection { found: found.into(), meant }, place);
     match meant {

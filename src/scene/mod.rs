@@ -12,11 +12,11 @@
 //! | `syntax` | text that is not TOML |
 //! | `names` | wrong names |
 //! | `meant`, `nearest`, `foreign_unit` | what was meant by a wrong name |
-//! | `read`, `places` | one entry to one value, within the limits of its key |
+//! | `read`, `regions` | one entry to one value, within the limits of its key |
 //! | `table`, `tables` | one table, and all of them, with every default filled in |
 //! | `geometries`, `nurbs`, `materials`, `supports`, `actions`, `histories`, `probes` | tables to data, and what must hold between their keys |
 //! | `check`, `structure`, `stage_order`, `nearness` | tables to a scene; what must hold between tables, between supports and actions, between stages, between places |
-//! | `problem`, `fault` | what can be wrong, and where it stands |
+//! | `problem`, `fault` | what can be wrong, and where |
 //! | `explain`, `render`, `error` | that in words, with the text underlined, as callers see it |
 //! | `identity`, `difference` | hash and differences of scenes; how a difference is shown |
 //! | `write` | a scene as TOML |
@@ -48,10 +48,10 @@ mod nearness;
 #[cfg(test)]
 mod new_key;
 mod nurbs;
-mod places;
 mod probes;
 mod problem;
 mod read;
+mod regions;
 mod render;
 mod schema;
 mod stage_order;
@@ -67,11 +67,12 @@ pub use check::{parse, parse_with_settings};
 pub use data::{
     Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Component, Edge, EndRotation, Expectation,
     ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, LengthLimit, Load, LoadSteps,
-    LoadedArea, Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Place, Ply, Probe,
-    ProbeKind, Quadrature, Reaction, Scene, Seam, Sense, Solver, Splitting, Stage, Support, SurfaceDirection, Symmetry,
-    SyncPolicy,
+    LoadedArea, Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Ply, Probe,
+    ProbeKind, Quadrature, Reaction, Region, Scene, Seam, Sense, Solver, Splitting, Stage, Support, SurfaceDirection,
+    Symmetry, SyncPolicy,
 };
-pub use difference::{Difference, shown_values};
+pub use difference::Difference;
+pub(crate) use difference::shown_values;
 pub use drive::{Drive, Parameter};
 pub use error::SceneError;
 pub use help::{help_on_topic, help_text, help_topics};

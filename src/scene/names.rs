@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use super::document::{Document, Written};
 use super::entry::Entry;
-use super::fault::{Fault, Place};
+use super::fault::{Fault, TextSpan};
 use super::foreign_unit::ForeignUnit;
 use super::keys::{Key, Section, toml_float};
 use super::meant::{also_called, meant_anywhere, near, other_unit};
@@ -25,7 +25,7 @@ pub(super) fn check(document: &Document<'_>) -> Vec<Fault> {
     faults
 }
 
-fn in_single_brackets(section: &Section, place: &Place) -> Box<Fault> {
+fn in_single_brackets(section: &Section, place: &TextSpan) -> Box<Fault> {
     let problem = Problem::Table {
         table: format!("[{}]", section.name),
         problem: "there may be several, so each is an item of an array".into(),
@@ -94,12 +94,12 @@ impl Names<'_, '_> {
         })
     }
 
-    /// The keys that may stand here.
+    /// The keys that are allowed here.
     fn here(&self) -> impl Iterator<Item = &'static Key> + Clone + use<'_> {
         self.section.keys_of(self.kind)
     }
 
-    /// Whether a key is given beside an entry. A setting takes the place of what is given; a line of the file does not.
+    /// Whether a key is given together with an entry. A setting takes the place of what is given; a line of the file does not.
     fn is_given(&self, key: &Key, entry: &Entry<'_>) -> bool {
         entry.place.source == 0 && self.table.entry(key.name).is_some()
     }

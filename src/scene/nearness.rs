@@ -1,8 +1,8 @@
 //! Places that are almost one: what holds or moves two of them differently tears at a gap that no element resolves.
 
-use super::data::{Action, ActionKind, ParametricDirection, Place, Support};
+use super::data::{Action, ActionKind, ParametricDirection, Region, Support};
 use super::fault::Checked;
-use super::places::EDGES;
+use super::regions::EDGES;
 use super::table::Table;
 use super::tables::Tables;
 use crate::units::significant;
@@ -13,7 +13,7 @@ const APART: f64 = 1e-4;
 /// A place of a scene and where it is written.
 struct Site<'a> {
     name: String,
-    on: Place,
+    on: Region,
     table: &'a Table,
 }
 
@@ -28,7 +28,7 @@ pub(super) fn check(tables: &Tables, supports: &[Support], actions: &[Action]) -
     let actions = actions.iter().zip(loaded).filter_map(|(action, table)| {
         Some(Site { name: format!("action \"{}\"", action.name), on: place_of(&action.kind)?, table })
     });
-    let edges = EDGES.map(|(edge, name)| (Place::Edge(edge), format!("the edge \"{name}\"")));
+    let edges = EDGES.map(|(edge, name)| (Region::Edge(edge), format!("the edge \"{name}\"")));
     let mut before: Vec<Site> = Vec::new();
     for site in supports.chain(actions) {
         let edges = edges.iter().map(|(on, name)| (*on, name));
@@ -37,7 +37,7 @@ pub(super) fn check(tables: &Tables, supports: &[Support], actions: &[Action]) -
         if let Some((gap, other)) = gaps.next() {
             return Err(site.table.wrong_at(
                 "on",
-                format!("{} lies {} of a side beside {other}, which is almost the same place", site.name, significant(gap, 2)),
+                format!("{} lies {} of a side from {other}, which is almost the same place", site.name, significant(gap, 2)),
                 format!("no element resolves what is between them: write the same place for both, or put them {APART} of the side apart"),
             ));
         }
@@ -47,33 +47,33 @@ pub(super) fn check(tables: &Tables, supports: &[Support], actions: &[Action]) -
 }
 
 /// Where an action is, unless it is on the whole surface.
-fn place_of(kind: &ActionKind) -> Option<Place> {
+fn place_of(kind: &ActionKind) -> Option<Region> {
     match kind {
-        ActionKind::Force { on, .. } => Some(Place::Point(*on)),
+        ActionKind::Force { on, .. } => Some(Region::Point(*on)),
         ActionKind::LineForce { on, .. } => Some(*on),
-        ActionKind::EdgeMoment { on, .. } => Some(Place::Edge(*on)),
+        ActionKind::EdgeMoment { on, .. } => Some(Region::Edge(*on)),
         _ => None,
     }
 }
 
 /// Fractions of u and v that a place has; `None` for one that it runs along.
-fn fractions(on: Place) -> [Option<f64>; 2] {
+fn fractions(on: Region) -> [Option<f64>; 2] {
     match on {
-        Place::Edge(edge) => {
+        Region::Edge(edge) => {
             let (direction, at_end) = edge.side();
-            fractions(Place::Line(direction, if at_end { 1.0 } else { 0.0 }))
+            fractions(Region::Line(direction, if at_end { 1.0 } else { 0.0 }))
         }
-        Place::Line(ParametricDirection::U, fraction) => [Some(fraction), None],
-        Place::Line(ParametricDirection::V, fraction) => [None, Some(fraction)],
-        Place::Point(at) => at.map(Some),
-        Place::Whole => [None; 2],
+        Region::Line(ParametricDirection::U, fraction) => [Some(fraction), None],
+        Region::Line(ParametricDirection::V, fraction) => [None, Some(fraction)],
+        Region::Point(at) => at.map(Some),
+        Region::Whole => [None; 2],
     }
 }
 
 /// How far two places are apart that are almost one, as a fraction of a side.
-fn gap(one: Place, other: Place) -> Option<f64> {
+fn gap(one: Region, other: Region) -> Option<f64> {
     let [one, other] = [one, other].map(fractions);
-    let apart = (0..2).filter_map(|way| Some((one[way]? - other[way]?).abs())).fold(0.0, f64::max);
+    let apart = (0..2).filter_map(|direction| Some((one[direction]? - other[direction]?).abs())).fold(0.0, f64::max);
     (0.0 < apart && apart < APART).then_some(apart)
 }
 
@@ -84,14 +84,14 @@ mod tests {
 
     #[test]
     fn places_are_one_or_apart_or_almost_one() {
-        let line = |u: f64| Place::Line(ParametricDirection::U, u);
-        assert_eq!(gap(line(1e-6), Place::Edge(Edge::UStart)), Some(1e-6));
-        assert!(gap(Place::Point([0.3, 0.5]), Place::Point([0.300_01, 0.5])).is_some());
-        assert!(gap(Place::Point([0.3, 0.5]), line(0.300_01)).is_some());
-        assert_eq!(gap(Place::Point([0.3, 0.5]), Place::Point([0.300_01, 0.6])), None);
-        assert_eq!(gap(Place::Point([0.3, 0.5]), line(0.3)), None);
+        let line = |u: f64| Region::Line(ParametricDirection::U, u);
+        assert_eq!(gap(line(1e-6), Region::Edge(Edge::UStart)), Some(1e-6));
+        assert!(gap(Region::Point([0.3, 0.5]), Region::Point([0.300_01, 0.5])).is_some());
+        assert!(gap(Region::Point([0.3, 0.5]), line(0.300_01)).is_some());
+        assert_eq!(gap(Region::Point([0.3, 0.5]), Region::Point([0.300_01, 0.6])), None);
+        assert_eq!(gap(Region::Point([0.3, 0.5]), line(0.3)), None);
         assert_eq!(gap(line(0.3), line(0.301)), None);
-        assert_eq!(gap(line(1e-6), Place::Edge(Edge::VStart)), None);
-        assert_eq!(gap(line(0.3), Place::Whole), None);
+        assert_eq!(gap(line(1e-6), Region::Edge(Edge::VStart)), None);
+        assert_eq!(gap(line(0.3), Region::Whole), None);
     }
 }

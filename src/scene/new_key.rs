@@ -1,4 +1,4 @@
-//! A key is added in one place: all that is said and done about it follows from there.
+//! A key is added in one place: all that uses it follows from there.
 
 use super::document::Document;
 use super::error::SceneError;

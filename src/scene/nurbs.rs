@@ -6,7 +6,8 @@ use super::keys::number;
 use super::table::{Table, data};
 use crate::spline::{Grid, KnotFlaw, check_knots, control_count};
 
-/// Largest scene file, and largest file of a surface, bytes: a log holds the one with the other, and reads no larger ones.
+/// Size of the largest scene file, and of the largest file of a surface, bytes: a log holds the one with the other, and
+/// reads no larger ones.
 pub const SCENE_BYTES_LIMIT: u64 = 8 << 20;
 
 /// Knots that differ by less than this share of their range are meant to be one: text of six digits does not say more, and
@@ -35,7 +36,7 @@ pub(super) fn nurbs(table: &Table, folder: &std::path::Path) -> Checked<NurbsPat
         }
         Some(_) if table.place_of("weights").is_some() => {
             let remedy = "take `weights` out, or write them into the file";
-            return Err(table.wrong_at("weights", "the surface stands in a file, and so do its weights", remedy));
+            return Err(table.wrong_at("weights", "the surface is in a file, and so are its weights", remedy));
         }
         Some(name) => read(&folder.join(name)).map_err(|problem| {
             table.wrong_at("file", problem, "the path is relative to the scene file; the file is a JSON object with the keys degrees, knots_u, knots_v, control_points_mm, weights")
@@ -90,7 +91,7 @@ impl Unsound {
     }
 }
 
-const CLAMPED: &str = "knots are ascending and clamped: the first and the last stand degree + 1 times";
+const CLAMPED: &str = "knots are ascending and clamped: the first and the last occur degree + 1 times";
 
 fn sound(patch: &NurbsPatch) -> Result<(), Unsound> {
     sound_knots("u", "knots_u", &patch.knots_u, patch.degrees[0])?;
@@ -139,7 +140,7 @@ fn sound_knots(name: &str, key: &'static str, knots: &[f64], degree: usize) -> R
         }
         KnotFlaw::NotFinite { index } => wrong(format!("knot {} in {name} is not a finite number", index + 1)),
         KnotFlaw::Descending { index } => wrong(format!(
-            "the knots in {name} do not ascend: {} stands behind {}",
+            "the knots in {name} do not ascend: {} comes after {}",
             number(knots[index]),
             number(knots[index - 1])
         )),
@@ -151,14 +152,14 @@ fn sound_knots(name: &str, key: &'static str, knots: &[f64], degree: usize) -> R
             Err(Unsound::new(key, problem, remedy))
         }
         KnotFlaw::NotClamped { knot, times } => wrong(format!(
-            "the knots in {name} are not clamped: {} stands {times} times at an end, not {}",
+            "the knots in {name} are not clamped: {} occurs {times} times at an end, not {}",
             number(knot),
             degree + 1
         )),
         KnotFlaw::Tears { knot, times } => Err(Unsound::new(
             key,
-            format!("knot {} in {name} stands {times} times: the surface would tear", number(knot)),
-            format!("inside, a knot stands at most as often as the degree: {degree} times"),
+            format!("knot {} in {name} occurs {times} times: the surface would tear", number(knot)),
+            format!("inside, a knot occurs at most as often as the degree: {degree} times"),
         )),
     }
 }

@@ -3,7 +3,7 @@
 use super::data::Stage;
 use super::keys::{Form, Key, Section};
 
-/// Type of a TOML value.
+/// The type of a TOML value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueType {
     /// `"text"`
@@ -32,16 +32,17 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// In the order of pairs.
+    /// Both directions, in the order of pairs.
     pub const BOTH: [Direction; 2] = [Direction::Length, Direction::Arc];
 }
 
-/// A common way of not writing TOML.
+/// A common mistake in writing TOML.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SyntaxSlip {
-    /// A key or a table stands twice.
+    /// A key or a table is given twice.
     Twice,
-    /// A table of which there may be several stands twice, in single brackets.
+    /// A table of which there may be several is given twice, in single brackets.
     TwiceInSingleBrackets,
     /// A word without quotes.
     BareWord,
@@ -61,10 +62,11 @@ pub enum SyntaxSlip {
 
 /// What is wrong with a scene. Values are in the units of their keys.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Problem {
     /// The text is not TOML.
     Syntax {
-        /// What the TOML reader says.
+        /// The message of the TOML parser.
         message: String,
         /// What it most likely is.
         slip: Option<SyntaxSlip>,
@@ -76,14 +78,14 @@ pub enum Problem {
     },
     /// A setting's key is not of the form section.key.
     SettingWithoutSection {
-        /// What stands there.
+        /// What was found.
         found: String,
         /// What was most likely meant.
         meant: Option<&'static Key>,
     },
     /// No table of a scene has this name.
     UnknownSection {
-        /// What stands there.
+        /// What was found.
         found: String,
         /// The nearest right spelling.
         meant: Option<&'static str>,
@@ -92,14 +94,14 @@ pub enum Problem {
     },
     /// A table of a scene is given as a value or as an array of tables.
     NotATable {
-        /// The table.
+        /// The description of the table.
         section: &'static Section,
-        /// What stands there.
+        /// What was found.
         found: ValueType,
     },
-    /// A key stands in front of all tables.
+    /// A key is given in front of all tables.
     KeyOutsideTables {
-        /// What stands there.
+        /// What was found.
         found: String,
         /// What was most likely meant.
         meant: Option<&'static Key>,
@@ -108,9 +110,9 @@ pub enum Problem {
     UnknownKey {
         /// The table.
         section: &'static Section,
-        /// Its kind, where its keys hang on that and it is known.
+        /// Its kind, where its keys depend on that and it is known.
         kind: Option<&'static str>,
-        /// What stands there.
+        /// What was found.
         found: String,
         /// What was most likely meant; may be a key of another table.
         meant: Option<&'static Key>,
@@ -119,7 +121,7 @@ pub enum Problem {
     OfOtherKind {
         /// The table.
         section: &'static Section,
-        /// What stands there.
+        /// What was found.
         found: String,
         /// The kinds that have it.
         kinds: Vec<&'static str>,
@@ -130,11 +132,11 @@ pub enum Problem {
     },
     /// A key's name ends in another unit.
     OtherUnit {
-        /// What stands there.
+        /// What was found.
         found: String,
         /// The key that is meant.
         key: &'static Key,
-        /// The unit that stands there.
+        /// The unit that was found.
         unit: &'static str,
         /// The value, and the same in the unit of the key, where it is a number.
         values: Option<(f64, f64)>,
@@ -149,32 +151,32 @@ pub enum Problem {
         /// The key.
         key: &'static Key,
     },
-    /// Two keys stand for the same thing.
+    /// Two keys mean the same thing.
     BothGiven {
         /// The key that is given in place of the other.
         key: &'static Key,
-        /// The other.
+        /// The other key.
         other: &'static Key,
     },
     /// The value has another type than the key takes.
     WrongType {
         /// The key.
         key: &'static Key,
-        /// What stands there.
+        /// What was found.
         found: ValueType,
     },
     /// A number with a fraction where whole numbers count.
     NotWhole {
         /// The key.
         key: &'static Key,
-        /// What stands there.
+        /// What was found.
         value: f64,
     },
     /// A list of too few or too many.
     WrongLength {
         /// The key.
         key: &'static Key,
-        /// How many stand there.
+        /// How many were found.
         found: usize,
     },
     /// Text that is not one line of ordinary characters.
@@ -185,10 +187,10 @@ pub enum Problem {
         character: char,
     },
     /// No part of the surface is called so.
-    UnknownPlace {
+    UnknownRegion {
         /// The key.
         key: &'static Key,
-        /// What stands there.
+        /// What was found.
         found: String,
         /// The nearest right spelling.
         meant: Option<&'static str>,
@@ -197,7 +199,7 @@ pub enum Problem {
     NoSuchLine {
         /// The key.
         key: &'static Key,
-        /// What stands there.
+        /// What was found.
         found: String,
     },
     /// A point outside of the surface.
@@ -211,14 +213,14 @@ pub enum Problem {
     WrongForm {
         /// The key.
         key: &'static Key,
-        /// Its form.
+        /// The form of the value.
         found: Form,
     },
     /// The key does not take this word.
     UnknownWord {
         /// The key.
         key: &'static Key,
-        /// What stands there.
+        /// What was found.
         found: String,
         /// The nearest right spelling.
         meant: Option<&'static str>,
@@ -227,14 +229,14 @@ pub enum Problem {
     NotFinite {
         /// The key.
         key: &'static Key,
-        /// What stands there.
+        /// What was found.
         value: f64,
     },
     /// A number past the limits of its key.
     OutOfRange {
         /// The key.
         key: &'static Key,
-        /// What stands there.
+        /// What was found.
         value: f64,
     },
     /// The symmetry cuts through an element.
@@ -243,7 +245,7 @@ pub enum Problem {
         direction: Direction,
         /// Elements that way over the whole shell.
         elements: usize,
-        /// The part that is modelled, as it stands in the scene.
+        /// The part that is modelled, as written in the scene.
         part: String,
     },
     /// The shell is not thin: thickness ≥ radius.
@@ -283,7 +285,7 @@ pub enum Problem {
     },
     /// A table whose keys depend on its kind is wrong.
     Table {
-        /// The table, as it stands in the file.
+        /// The table, as written in the file.
         table: String,
         /// What is wrong.
         problem: String,
@@ -292,7 +294,7 @@ pub enum Problem {
     },
     /// `[adapt]` is given, and no stage reads it.
     AdaptUnused,
-    /// The stages cannot run as they stand.
+    /// The stages cannot run in this order.
     Stages(StageOrderProblem),
 }
 
@@ -313,27 +315,28 @@ impl Problem {
 
 /// Why a list of stages cannot run.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum StageOrderProblem {
-    /// There is none.
+    /// The list is empty.
     Empty,
     /// No stage has this name.
     Unknown {
-        /// What stands there.
+        /// What was found.
         found: String,
         /// The nearest right spelling.
         meant: Option<Stage>,
     },
     /// An item of the list is not a name.
     NotAName {
-        /// What stands there.
+        /// What was found.
         found: ValueType,
     },
-    /// A stage stands twice.
+    /// A stage is listed twice.
     Twice {
         /// The stage.
         stage: Stage,
     },
-    /// A stage stands in front of one whose work it needs.
+    /// A stage is listed before one whose work it needs.
     TooEarly {
         /// The stage.
         stage: Stage,

@@ -5,13 +5,13 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::entry::Entry;
-use super::fault::{Checked, Fault, Place};
+use super::fault::{Checked, Fault, TextSpan};
 use super::foreign_unit;
 use super::keys::{Choice, Key, Kind, Length, Limits, toml_float};
 use super::nearest::nearest;
 use super::problem::Problem;
 use super::value::{as_float, integer_value, value_type};
-use super::{places, stage_order};
+use super::{regions, stage_order};
 use crate::printable::breaks_a_line;
 
 /// An item of a value, and the key and entry that it belongs to.
@@ -52,7 +52,7 @@ pub(super) fn value(key: &'static Key, entry: &Entry<'_>) -> Checked<Value> {
             }
         }
         Kind::Pair(limits) => item.whole(limits).map(|both| json!([both, both])),
-        Kind::Place(forms) => places::read(key, forms, entry),
+        Kind::Region(forms) => regions::read(key, forms, entry),
         Kind::Switch => entry.value.get_ref().as_bool().map(Value::from).ok_or_else(|| item.wrong_type()),
         Kind::Stages => stage_order::read(key, entry).map(|stages| json!(stages)),
         Kind::Text => item.text().map(Value::from),
@@ -60,7 +60,7 @@ pub(super) fn value(key: &'static Key, entry: &Entry<'_>) -> Checked<Value> {
 }
 
 impl<'d, 't> Item<'d, 't> {
-    fn place(&self) -> Place {
+    fn place(&self) -> TextSpan {
         self.entry.place_of(self.value.span())
     }
 

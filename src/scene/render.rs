@@ -7,7 +7,7 @@ use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Patch, Renderer, Snippet};
 
 use super::explain::{Explanation, explain};
-use super::fault::{Fault, Place, Source};
+use super::fault::{Fault, Source, TextSpan};
 use crate::printable::is_obeyed;
 
 pub(super) fn plain(fault: &Fault, sources: &[Source]) -> String {
@@ -58,7 +58,7 @@ fn how_to_mend_it<'a>(fault: &'a Fault, sources: &'a [Source], words: &'a Explan
     Level::HELP.secondary_title(&words.fix).element(Snippet::source(shown(&source.text)).patches(patches))
 }
 
-fn annotation<'a>(kind: AnnotationKind, source: &Source, place: &Place, label: &'a str) -> Annotation<'a> {
+fn annotation<'a>(kind: AnnotationKind, source: &Source, place: &TextSpan, label: &'a str) -> Annotation<'a> {
     let annotation = kind.span(within(source, place));
     if label.is_empty() { annotation } else { annotation.label(label) }
 }
@@ -80,7 +80,7 @@ fn shown(text: &str) -> Cow<'_, str> {
 }
 
 /// The bytes of a place, cut to whole characters of the text.
-fn within(source: &Source, place: &Place) -> Range<usize> {
+fn within(source: &Source, place: &TextSpan) -> Range<usize> {
     let text = &source.text;
     let floor = |at: usize| (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
     let start = floor(place.span.start);

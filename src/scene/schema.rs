@@ -8,9 +8,9 @@ use serde_json::{Map, Value, json};
 use super::data::Stage;
 use super::key_table::SECTIONS;
 use super::keys::{Choice, Form, Key, Kind, Length, Limits, Presence, Section};
-use super::places::EDGES;
+use super::regions::EDGES;
 
-/// The schema of a scene file (draft 7), pretty-printed.
+/// Generates the JSON schema (draft 7) of a scene file, pretty-printed.
 pub fn json_schema() -> String {
     format!("{:#}\n", of_scene(SECTIONS))
 }
@@ -35,7 +35,7 @@ fn of_section(section: &Section) -> Value {
     if section.many { json!({ "type": "array", "description": section.meaning, "items": table }) } else { table }
 }
 
-/// All keys of a table, and what its kind says of them: editors complete the former, and tell which of the latter is broken.
+/// All keys of a table, and the rules of its kind for them: editors complete the former, and show which of the latter is broken.
 fn of_table(section: &Section) -> Value {
     let mut properties = Map::new();
     for key in section.keys {
@@ -128,7 +128,7 @@ fn of_values(kind: &Kind) -> Value {
         }
         Kind::Count(limits) => within("integer", limits),
         Kind::Pair(limits) => either(within("integer", limits), list(Length::Exactly(2), within("integer", limits))),
-        Kind::Place(forms) => json!({ "anyOf": forms.iter().map(|form| place(*form)).collect::<Vec<_>>() }),
+        Kind::Region(forms) => json!({ "anyOf": forms.iter().map(|form| place(*form)).collect::<Vec<_>>() }),
         Kind::Switch => json!({ "type": "boolean" }),
         Kind::Stages => {
             json!({ "type": "array", "items": { "enum": Stage::ALL.map(Stage::name) }, "minItems": 1, "uniqueItems": true })

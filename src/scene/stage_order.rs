@@ -6,7 +6,7 @@ use toml::de::DeValue;
 
 use super::data::Stage;
 use super::entry::Entry;
-use super::fault::{Checked, Fault, Place};
+use super::fault::{Checked, Fault, TextSpan};
 use super::keys::Key;
 use super::nearest::nearest;
 use super::problem::{Problem, StageOrderProblem, ValueType};
@@ -60,11 +60,11 @@ fn by_name(name: &str) -> Option<Stage> {
     Stage::ALL.into_iter().find(|stage| stage.name() == name)
 }
 
-fn problem(problem: StageOrderProblem, place: &Place) -> Box<Fault> {
+fn problem(problem: StageOrderProblem, place: &TextSpan) -> Box<Fault> {
     Fault::new(Problem::Stages(problem), place)
 }
 
-fn stage(item: &DeValue<'_>, place: &Place) -> Checked<Stage> {
+fn stage(item: &DeValue<'_>, place: &TextSpan) -> Checked<Stage> {
     let Some(found) = item.as_str() else {
         return Err(problem(StageOrderProblem::NotAName { found: value_type(item) }, place));
     };
@@ -78,7 +78,7 @@ fn stage(item: &DeValue<'_>, place: &Place) -> Checked<Stage> {
     })
 }
 
-fn check(named: &[(Stage, Place)], whole: &Place) -> Checked<()> {
+fn check(named: &[(Stage, TextSpan)], whole: &TextSpan) -> Checked<()> {
     if named.is_empty() {
         return Err(problem(StageOrderProblem::Empty, whole));
     }
@@ -109,7 +109,7 @@ fn check(named: &[(Stage, Place)], whole: &Place) -> Checked<()> {
     for (stage, place) in named {
         if let Some(sequel) = sequel(*stage).filter(|sequel| at(*sequel).is_none()) {
             let last = named.last().map_or(place, |(_, place)| place);
-            let behind = Place { source: last.source, span: last.span.end..last.span.end };
+            let behind = TextSpan { source: last.source, span: last.span.end..last.span.end };
             let fault = problem(StageOrderProblem::WithoutSequel { stage: *stage, sequel }, place);
             let begun = Stage::REFINING.into_iter().skip_while(|earlier| *earlier != *stage);
             let rest = begun.filter(|later| at(*later).is_none());
@@ -138,8 +138,8 @@ mod tests {
             from += 1;
         }
         assert_eq!(lists.len(), 1957);
-        let whole = Place { source: 0, span: 0..0 };
-        let place = |index| Place { source: 0, span: index..index + 1 };
+        let whole = TextSpan { source: 0, span: 0..0 };
+        let place = |index| TextSpan { source: 0, span: index..index + 1 };
         let can_run = |list: &Vec<Stage>| {
             let named: Vec<_> = list.iter().enumerate().map(|(index, stage)| (*stage, place(index))).collect();
             check(&named, &whole).is_ok()

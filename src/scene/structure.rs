@@ -111,7 +111,7 @@ fn check_steps(tables: &Tables, supports: &[Support], actions: &[Action]) -> Che
     Ok(())
 }
 
-/// Whether the material says what a change of temperature does to it.
+/// Whether the material gives the effect of a change of temperature.
 fn check_temperature(tables: &Tables, material: &Material, actions: &[Action]) -> Checked<()> {
     let is_thermal = |action: &Action| matches!(action.kind, ActionKind::Temperature { .. });
     let heated = actions.iter().zip(tables.all("action")).find(|(action, _)| is_thermal(action) && !material.expands());

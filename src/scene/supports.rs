@@ -1,6 +1,6 @@
 //! The array of tables `[[support]]`: what holds the shell.
 
-use super::data::{History, Hold, Motion, Place, Support};
+use super::data::{History, Hold, Motion, Region, Support};
 use super::fault::Checked;
 use super::histories::history;
 use super::table::Table;
@@ -27,10 +27,10 @@ pub(super) fn support(table: &Table) -> Checked<Support> {
             (table.get("on"), Hold::Displacement { displacement_mm })
         }
         "symmetric" => (table.get("on"), Hold::Symmetric),
-        "rigid-motions" => (Place::Whole, Hold::RigidMotions),
+        "rigid-motions" => (Region::Whole, Hold::RigidMotions),
         "clamped" => {
             let hold = Hold::Rigid { motions: [Motion::Given(0.0); 6], reference_mm: None, normals_turn: true };
-            (Place::Edge(table.get("on")), hold)
+            (Region::Edge(table.get("on")), hold)
         }
         _ => {
             let names = ["x_mm", "y_mm", "z_mm", "rotation_x_deg", "rotation_y_deg", "rotation_z_deg"];
@@ -39,7 +39,7 @@ pub(super) fn support(table: &Table) -> Checked<Support> {
                 reference_mm: table.get("reference_mm"),
                 normals_turn: table.word("normals") == "turn",
             };
-            (Place::Edge(table.get("on")), hold)
+            (Region::Edge(table.get("on")), hold)
         }
     };
     let history: History = history(table)?;

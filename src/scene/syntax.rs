@@ -1,15 +1,15 @@
-//! Text that is not TOML: what the reader of TOML says, and the slip that it most likely is.
+//! Text that is not TOML: the message of the TOML parser, and the mistake that it most likely is.
 
 use std::ops::Range;
 
-use super::fault::{Fault, Place};
+use super::fault::{Fault, TextSpan};
 use super::key_table::SECTIONS;
 use super::problem::{Problem, SyntaxSlip};
 
 /// The error for a text that is not TOML; `base` is where the text begins.
-pub(super) fn fault(error: &toml::de::Error, text: &str, base: &Place) -> Box<Fault> {
+pub(super) fn fault(error: &toml::de::Error, text: &str, base: &TextSpan) -> Box<Fault> {
     let span = error.span().unwrap_or(text.len()..text.len());
-    let at = |span: Range<usize>| Place {
+    let at = |span: Range<usize>| TextSpan {
         source: base.source,
         span: base.span.start + span.start..base.span.start + span.end,
     };
@@ -78,7 +78,7 @@ fn line_around(text: &str, at: usize) -> &str {
     text.get(start..end).unwrap_or_default()
 }
 
-/// Where a key or table stands that is given a second time at `second`: the last line before that begins with the same
+/// The place of the first of two keys or tables of one name, where the second is given at `second`: the last line before that begins with the same
 /// name. (Between the two lies nothing but the table that they share.)
 fn first_of_two(text: &str, second: &Range<usize>) -> Option<Range<usize>> {
     let name = text.get(second.clone()).filter(|name| !name.is_empty())?;

@@ -7,31 +7,31 @@ use serde_json::{Map, Value};
 
 use super::document::{Document, Written};
 use super::entry::Entry;
-use super::fault::{CheckedWhole, Fault, Place};
+use super::fault::{CheckedWhole, Fault, TextSpan};
 use super::keys::{Key, Presence, Section};
 use super::problem::Problem;
 use super::read;
 
-/// What one table says.
+/// The content of one table.
 pub(super) struct Table {
     pub section: &'static Section,
-    /// What errors call it.
+    /// Name of the table in errors.
     pub title: String,
     /// Its number, from 1, where there may be several.
     pub number: usize,
     /// Whether the file has it, or a setting.
     pub is_given: bool,
-    /// Where it begins.
-    pub place: Place,
+    /// Span of the table's header.
+    pub place: TextSpan,
     /// Values in the form that the data of a scene have in JSON, by key.
     pub values: Map<String, Value>,
     /// Places of given values: of the whole, and of the items of a list.
-    places: BTreeMap<&'static str, (Place, Vec<Place>)>,
+    places: BTreeMap<&'static str, (TextSpan, Vec<TextSpan>)>,
 }
 
 impl Table {
-    /// Reads a table, or one that is not there, with the defaults of its keys. A key that one of
-    /// `wrong_names` is said to mean is not said to be missing as well.
+    /// Reads a table, or one that is missing, with the defaults of its keys. A key for which one of `wrong_names` is
+    /// the likely misspelling is not reported as missing as well.
     pub fn read(
         document: &Document<'_>,
         section: &'static Section,
@@ -100,51 +100,51 @@ impl Table {
         Ok(())
     }
 
-    /// The word of its kind.
+    /// The word for the table's kind.
     pub fn kind(&self) -> &str {
         self.word("kind")
     }
 
-    /// Its name, or else one by its number: "support 2".
+    /// The name of the table, or else one with its number: "support 2".
     pub fn name(&self) -> String {
         let numbered = || format!("{} {}", self.section.name, self.number);
         self.get::<Option<String>>("name").unwrap_or_else(numbered)
     }
 
-    /// The word of a key; empty where it has none.
+    /// The value of a key that is a word; empty where it has none.
     pub fn word(&self, name: &str) -> &str {
         self.values.get(name).and_then(Value::as_str).unwrap_or_default()
     }
 
-    /// The value of a key, or its default; `None` of what may be left out where it is.
+    /// Returns the value of a key, or its default; `None` for an optional key without one.
     pub fn get<T: DeserializeOwned>(&self, name: &str) -> T {
         let value = self.values.get(name).cloned().unwrap_or_default();
         serde_json::from_value(value).unwrap_or_else(|error| unreachable!("{} {name}: {error}", self.title))
     }
 
-    /// All its values as the data of a scene.
+    /// Converts all values of the table to the data of a scene.
     pub fn data<T: DeserializeOwned>(&self) -> T {
         data(&self.title, self.values.clone())
     }
 
-    /// Where a key's value stands, if it is given.
-    pub fn place_of(&self, name: &str) -> Option<Place> {
+    /// The span of a key's value, if it is given.
+    pub fn place_of(&self, name: &str) -> Option<TextSpan> {
         self.places.get(name).map(|(whole, _)| whole.clone())
     }
 
-    /// Where an item of a key's value stands, or the whole where it is no list.
-    pub fn place_of_item(&self, name: &str, index: usize) -> Option<Place> {
+    /// The span of an item of a key's value, or of the whole value where it is no list.
+    pub fn place_of_item(&self, name: &str, index: usize) -> Option<TextSpan> {
         let (whole, items) = self.places.get(name)?;
         Some(items.get(index).unwrap_or(whole).clone())
     }
 
-    /// An error about this table.
-    pub fn wrong(&self, place: Option<&Place>, problem: impl Into<String>, remedy: impl Into<String>) -> Box<Fault> {
+    /// Creates a fault about this table.
+    pub fn wrong(&self, place: Option<&TextSpan>, problem: impl Into<String>, remedy: impl Into<String>) -> Box<Fault> {
         let problem = Problem::Table { table: self.title.clone(), problem: problem.into(), remedy: remedy.into() };
         Fault::new(problem, place.unwrap_or(&self.place))
     }
 
-    /// An error about the value of a key.
+    /// Creates a fault about the value of a key.
     pub fn wrong_at(&self, name: &str, problem: impl Into<String>, remedy: impl Into<String>) -> Box<Fault> {
         self.wrong(self.place_of(name).as_ref(), problem, remedy)
     }

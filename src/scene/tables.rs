@@ -1,7 +1,7 @@
 //! All tables of a scene file, each read by itself: what is wrong with one hides nothing of another.
 
 use super::document::{Document, Written};
-use super::fault::{CheckedWhole, Fault, Place};
+use super::fault::{CheckedWhole, Fault, TextSpan};
 use super::keys::{Presence, Section};
 use super::names;
 use super::problem::Problem;
@@ -14,13 +14,14 @@ const MOST_OF_A_NAME: usize = 2000;
 pub(super) struct Tables(Vec<Table>);
 
 impl Tables {
-    /// Reads them. What is wrong comes as in the text where it is a name, and else in the order of the table of keys.
+    /// Reads all tables of a document. Faults of names come in the order of the text, others in the order of the table
+    /// of keys.
     pub fn read(document: &Document<'_>) -> CheckedWhole<Self> {
         let wrong_names = names::check(document);
         let is_told = |name: &str| wrong_names.iter().any(|fault| fault.problem.meant().as_deref() == Some(name));
-        // Of a table that is most likely of another kind nothing can be said.
+        // Of a table that is most likely of another kind nothing is reported.
         let of_other_kind = |fault: &&Fault| matches!(fault.problem, Problem::OfOtherKind { .. });
-        let unread: Vec<&Place> = wrong_names.iter().filter(of_other_kind).map(|fault| &fault.place).collect();
+        let unread: Vec<&TextSpan> = wrong_names.iter().filter(of_other_kind).map(|fault| &fault.place).collect();
         let is_read = |table: &&Written<'_>| !table.entries.iter().any(|entry| unread.contains(&&entry.place));
         let (mut tables, mut faults) = (Vec::new(), Vec::new());
         let mut keep = |table: CheckedWhole<Table>| match table {
@@ -44,19 +45,19 @@ impl Tables {
         if faults.is_empty() { Ok(Self(tables)) } else { Err(faults) }
     }
 
-    /// The table of this name, of which there is one.
+    /// The only table of this name.
     pub fn one(&self, name: &str) -> &Table {
         let mut tables = self.all(name);
         tables.next().unwrap_or_else(|| unreachable!("there is no table [{name}]"))
     }
 
-    /// The tables of this name.
+    /// All tables of this name.
     pub fn all(&self, name: &str) -> impl Iterator<Item = &Table> {
         self.0.iter().filter(move |table| table.section.name == name)
     }
 }
 
-fn too_many(section: &Section, count: usize, place: &Place) -> Box<Fault> {
+fn too_many(section: &Section, count: usize, place: &TextSpan) -> Box<Fault> {
     let problem = Problem::Table {
         table: section.title(),
         problem: format!("there are {count} of them, and a scene takes no more than {MOST_OF_A_NAME}"),

@@ -9,7 +9,7 @@ use super::key_table::SECTIONS;
 use super::keys::{Section, toml_float};
 
 impl Scene {
-    /// The scene as TOML, every key spelled out; parsing it gives the same scene.
+    /// Writes the scene as TOML with every key spelled out; parsing it gives the same scene.
     pub fn to_toml(&self) -> String {
         let leaves = self.leaves();
         let tables = SECTIONS.iter().flat_map(|section| {

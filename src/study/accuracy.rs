@@ -1,8 +1,8 @@
-//! Error against run time: a run beside a reference run of the same structure.
+//! Error against run time: a run compared with a reference run of the same structure.
 //!
 //! Both are compared at the load steps that end at the same parameter, before their first jumps and behind them: the largest
 //! difference, as a share of the largest value of the reference on that side. Where one has jumped and the other has not they
-//! stand on different branches, and what differs is where they jump.
+//! are on different branches, and what differs is where they jump.
 
 use serde::Serialize;
 
@@ -16,7 +16,7 @@ use crate::study::timed_run::timed_run;
 /// Parameters closer than this, relatively, are one.
 const SAME: f64 = 1e-9;
 
-/// A run, as far as it is compared: moment, or first probe, over the parameter.
+/// The results of a run that are compared with others: moment, or first probe, against the parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     curve: Vec<CurvePoint>,
@@ -24,7 +24,7 @@ pub struct Measured {
     jump_at: Option<f64>,
     /// What the parameter is.
     what: &'static str,
-    /// What is compared.
+    /// Name of the quantity that is compared.
     quantity: String,
     steps: u64,
     elements: [usize; 2],
@@ -43,8 +43,9 @@ struct CurvePoint {
     behind: bool,
 }
 
-/// A run compared with the reference.
+/// The errors of one run, relative to a reference run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct AccuracyRow {
     /// Elements (along u, along v) of the model at the end.
     pub elements: [usize; 2],
@@ -52,9 +53,9 @@ pub struct AccuracyRow {
     pub unknowns: usize,
     /// What is compared: the moment of turning ends, or the name of the first probe with its unit.
     pub quantity: String,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Load steps.
+    /// Number of load steps.
     pub steps: u64,
     /// Load steps that the reference has too.
     pub compared: usize,
@@ -74,6 +75,7 @@ pub struct AccuracyRow {
 
 /// Why runs cannot be compared.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AccuracyError {
     /// The scene cannot be made discrete.
     #[error(transparent)]
@@ -81,11 +83,11 @@ pub enum AccuracyError {
     /// The run stopped.
     #[error("the run stopped")]
     Run(#[from] Box<RunError>),
-    /// Nothing to compare.
+    /// The run has nothing that can be compared.
     #[error("the scene has no moment and no probe to compare: turn its ends, or write a [[probe]]")]
     NothingMeasured,
     /// Another structure than the reference.
-    #[error("it is another structure than the reference, so that nothing says how accurate it is: {}", differences.join("; "))]
+    #[error("it is another structure than the reference, so that nothing shows how accurate it is: {}", differences.join("; "))]
     OtherStructure {
         /// Keys with the value of the reference and its own.
         differences: Vec<String>,
@@ -93,7 +95,7 @@ pub enum AccuracyError {
     /// Another quantity than that of the reference.
     #[error("it measures {own}, and the reference {other}: give both the same first [[probe]]")]
     OtherQuantity {
-        /// What it measures.
+        /// The quantity that this run measures.
         own: String,
         /// What the reference measures.
         other: String,
@@ -103,18 +105,18 @@ pub enum AccuracyError {
         "by arc length a path passes one {what} more than once: compare runs under load control (of tape springs, `foldline converge` compares paths)"
     )]
     AlongPath {
-        /// What is driven.
+        /// What drives the run.
         what: &'static str,
     },
     /// No load step ends where one of the reference does.
     #[error("no load step ends at the same {what} as one of the reference: give both the same increment")]
     NothingInCommon {
-        /// What is driven.
+        /// What drives the run.
         what: &'static str,
     },
 }
 
-/// Whether two scenes are of one structure, as far as their keys say: geometry, material, sense of the bending.
+/// Checks that two scenes describe one structure, as far as their keys show: geometry, material, sense of the bending.
 ///
 /// # Errors
 /// Where they differ.
@@ -130,7 +132,7 @@ pub fn is_one_structure(scene: &Scene, reference: &Scene) -> Result<(), Accuracy
     }
 }
 
-/// Runs a scene to its end.
+/// Runs a scene to its end and measures its results and its time.
 ///
 /// # Errors
 /// Where the run stops before, or measures nothing.
@@ -183,7 +185,7 @@ fn curve(path: &[PathPoint], parameter: Parameter) -> Vec<CurvePoint> {
 }
 
 impl Measured {
-    /// What is compared: the moment of turning ends, or the name of the first probe with its unit.
+    /// Name of the quantity that is compared: the moment of turning ends, or the name of the first probe with its unit.
     pub fn quantity(&self) -> &str {
         &self.quantity
     }
@@ -263,7 +265,7 @@ mod tests {
     fn branches_are_compared_apart() {
         let reference =
             measured(&[(1.0, 10.0, false), (2.0, 20.0, false), (3.0, 5.0, true), (4.0, 5.0, true), (5.0, 6.0, true)]);
-        // Jumps later: at 3 it stands on the other branch. The fold is largest at 5, which it does not reach.
+        // Jumps later: at 3 it is on the other branch. The fold is largest at 5, which it does not reach.
         let run = measured(&[
             (1.0, 10.5, false),
             (1.5, 99.0, false),

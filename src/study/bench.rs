@@ -1,10 +1,10 @@
-//! How fast the kernels are, beside what the machine can do: each figure also as a fraction of a limit measured in the
+//! How fast the kernels are, compared with what the machine can do: each figure also as a fraction of a limit measured in the
 //! same run.
 //!
 //! Limits: the floating-point rate of a dense product (faer), for the assembly and the factorization; the rate of a
 //! memory copy, for the solve, which reads the factor twice, and for the residual, which reads the tables of functions
 //! and points; each on as many threads as the kernel can use. What lies in the caches beats the copy, which does not. An
-//! iteration stands as the time that assembly, factorization and solve would take at their limits.
+//! iteration is given as the time that assembly, factorization and solve would take at their limits.
 //! Floating-point operations are those that the method needs (the upper half of Fᵀ H F with the Hessian's own cost left
 //! out, the squares of the column counts of the factor), not those that padding adds.
 
@@ -30,9 +30,9 @@ const ROTATION_DEG: f64 = 4.0;
 /// One measured figure.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figure {
-    /// What was timed.
+    /// Name of what was timed.
     pub name: &'static str,
-    /// Scene file.
+    /// Name of the scene file.
     pub scene: String,
     /// Elements each way.
     pub elements: [usize; 2],
@@ -40,9 +40,9 @@ pub struct Figure {
     pub degree: [usize; 2],
     /// Integration rule.
     pub quadrature: String,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Free unknowns.
+    /// Number of free unknowns.
     pub unknowns: usize,
     /// Median time, ms; of a whole run its only one.
     pub median_ms: f64,
@@ -50,8 +50,9 @@ pub struct Figure {
     pub fraction_of_peak: Option<f64>,
 }
 
-/// Why there are no figures.
+/// Why nothing could be measured.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BenchError {
     /// The scene cannot be made discrete.
     #[error(transparent)]
@@ -67,7 +68,7 @@ pub enum BenchError {
     Run(#[from] Box<RunError>),
 }
 
-/// Times the kernels on the scene's own starting mesh, deformed; `repeats` of each.
+/// Times the kernels on the scene's own starting mesh, deformed, `repeats` times each.
 ///
 /// # Errors
 /// Where the scene has no deformed state to time at.
@@ -128,7 +129,7 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     Ok(figures.into_iter().map(|figure| Figure { scene: name.to_string(), ..figure }).collect())
 }
 
-/// Times a whole run of a scene, with nothing logged.
+/// Times a whole run of a scene, without a log.
 ///
 /// # Errors
 /// Where the run stops before its end.

@@ -17,8 +17,9 @@ const PARTS: usize = 2000;
 /// Limit points are located to this, degrees: a hundredth of what is asked of them.
 const LOCATED_DEG: f64 = 1e-4;
 
-/// Results of one mesh.
+/// The results of a scene on one mesh.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct ConvergenceRow {
     /// Degree each way.
     pub degree: [usize; 2],
@@ -32,11 +33,11 @@ pub struct ConvergenceRow {
     pub limit: Option<[f64; 2]>,
     /// Lowest limit point, where the unstable path ends in the fold: rotation and moment.
     pub fold_begins: Option<[f64; 2]>,
-    /// Moment on the unstable path at the rotation that was asked for, N·mm.
+    /// Moment on the unstable path at the requested rotation, N·mm.
     pub unstable_n_mm: Option<f64>,
     /// Moment on the fold at the last rotation, N·mm.
     pub fold_n_mm: Option<f64>,
-    /// Load steps.
+    /// Number of load steps.
     pub steps: u64,
     /// Newton iterations.
     pub iterations: usize,
@@ -46,6 +47,7 @@ pub struct ConvergenceRow {
 
 /// Why a mesh gives no results.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConvergenceError {
     /// Not a tape spring whose ends turn.
     #[error(
@@ -80,7 +82,7 @@ pub fn check_spring(scene: &Scene) -> Result<(), ConvergenceError> {
     }
 }
 
-/// Follows the path of a scene on the uniform mesh that it starts with, and reads off it.
+/// Follows the path of a scene on the uniform mesh that it starts with, and evaluates its critical points and moments.
 ///
 /// # Errors
 /// Where the scene is not one of a tape spring, or its path is lost.

@@ -1,4 +1,4 @@
-//! Scenes at and beyond the edge, each run to see whether it ends as its `[expect]` says, with what the numbers are
+//! Scenes at and beyond the edge, each run to see whether it ends as its `[expect]` states, with what the numbers are
 //! worth: residuals, balance of work and energy, condition and symmetry of the stiffness, digits that survive.
 
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ const MOST_ASYMMETRY: f64 = 1e-12;
 /// What running an equilibrium again from its state may change of its energy, relatively.
 const STANDS: f64 = 1e-9;
 
-/// What came of a scene. Numbers are `None` where the scene did not get so far.
+/// The results of one scene of a suite. Numbers are `None` where the scene did not get so far.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExtremeRow {
     /// Name of the scene.
@@ -34,7 +34,7 @@ pub struct ExtremeRow {
     pub message: Option<String>,
     /// Whether it ended as it states, and nothing else is wrong with it.
     pub as_stated: bool,
-    /// What is wrong.
+    /// The faults that were found.
     pub faults: Vec<ExtremeFault>,
     /// Largest relative error of what the scene states: see [`Expectation::peak`] and [`Expectation::last`].
     pub error: Option<f64>,
@@ -93,12 +93,12 @@ pub struct ExtremesSuite {
 }
 
 impl ExtremesSuite {
-    /// Scenes by their file names; each run may take `limit`.
+    /// Creates a suite of scenes by their file names; each run may take `limit`.
     pub fn new(scenes: BTreeMap<String, Scene>, limit: Duration) -> Self {
         Self { scenes, curves: BTreeMap::new(), limit }
     }
 
-    /// Runs a scene and looks at what came of it; `None` where the suite has none of this name. Panics end the scene
+    /// Runs a scene and checks its results; `None` where the suite has none of this name. A panic ends that scene
     /// alone.
     pub fn run(&mut self, name: &str) -> Option<ExtremeRow> {
         let scene = self.scenes.get(name)?.clone();
@@ -196,7 +196,7 @@ fn diagnose(scene: &Scene, state: &State, row: &mut ExtremeRow) {
     }
 }
 
-/// An equilibrium stands where its state alone gives it again, within an iteration.
+/// An equilibrium is confirmed where its state alone gives it again, within an iteration.
 fn stands(scene: &Scene, state: &State, record: &Record, row: &mut ExtremeRow) {
     let Ok(mut work) = Workspace::new(scene, &state.mesh) else { return };
     let again = Equilibrium::new(scene, &mut work).relax(Configuration::of(state), &mut |_| false);
@@ -205,11 +205,11 @@ fn stands(scene: &Scene, state: &State, record: &Record, row: &mut ExtremeRow) {
         again.effort.iterations <= 1 && (again.balance.stored - energy).abs() <= STANDS * energy.abs()
     });
     if !same {
-        row.faults.push(ExtremeFault::DoesNotStand { step: record.report.step });
+        row.faults.push(ExtremeFault::NotFoundAgain { step: record.report.step });
     }
 }
 
-/// Numbers that are none, and those that say that the result is worth nothing.
+/// Results that are not numbers, and results that are worth nothing.
 fn judge_numbers(scene: &Scene, done: &Done, row: &mut ExtremeRow) {
     for (state, record) in &done.stages {
         let report = &record.report;

@@ -20,6 +20,7 @@ pub(super) struct Curve {
 }
 
 impl Curve {
+    /// Collects the curve of a run of `scene` from its records.
     pub fn of<'r>(scene: &Scene, records: impl Iterator<Item = &'r Record>) -> Self {
         let scale = modulus(&scene.material) * scene.material.thickness_mm().powi(3);
         let point = |Record { report, .. }: &Record| {
@@ -32,7 +33,7 @@ impl Curve {
         Self { points: records.filter(|record| is_equilibrium(record)).map(point).collect() }
     }
 
-    /// Where the curves part, if they do.
+    /// Returns where the curves differ, if they do, as a fault.
     pub fn differs_from(&self, theirs: &Self, other: &str) -> Option<ExtremeFault> {
         let pairs = || self.points.iter().zip(&theirs.points);
         let same = |((a, _), (b, _)): &(&(f64, f64), &(f64, f64))| (a - b).abs() <= SAME_PARAMETER * a.abs();

@@ -5,13 +5,14 @@ use serde::{Serialize, Serializer};
 use crate::equilibrium::SolveError;
 use crate::scene::{ExpectedOutcome, Stage};
 
-/// One thing that is wrong.
+/// A fault found in a run that is checked against its `[expect]` table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ExtremeFault {
     /// It did not end as it states.
     #[error("the scene states that it ends `{}` (within {limit_s} s)", expected.name())]
     EndedOtherwise {
-        /// As stated.
+        /// The end that the scene states.
         expected: ExpectedOutcome,
         /// Time for a run, seconds.
         limit_s: f64,
@@ -28,9 +29,9 @@ pub enum ExtremeFault {
         /// The first stage that differs.
         ordinal: u64,
     },
-    /// The last equilibrium is none when it is run again from its state.
+    /// The last equilibrium is not found again from its own state.
     #[error("the equilibrium of step {step} is not found again from its own state")]
-    DoesNotStand {
+    NotFoundAgain {
         /// Load step.
         step: u64,
     },
@@ -42,7 +43,7 @@ pub enum ExtremeFault {
         /// The stage.
         stage: Stage,
     },
-    /// An equilibrium is none.
+    /// The residual of an equilibrium is too large.
     #[error("an equilibrium has a residual of {residual:.1e} of the forces; solver.tolerance is {tolerance:e}")]
     OutOfBalance {
         /// |residual| over the forces that it is compared with.
@@ -57,27 +58,27 @@ pub enum ExtremeFault {
     EnergyOutOfBalance {
         /// Work less strain energy, relative.
         balance: f64,
-        /// The most.
+        /// The largest imbalance allowed.
         most: f64,
     },
     /// The stiffness at the end has no factor.
     #[error("no condition at the end: {cause}")]
     NoFactor {
-        /// What the solver said.
+        /// The error of the solver.
         cause: Box<SolveError>,
     },
     /// The stiffness at the end is singular.
     #[error("the condition of the stiffness at the end is {condition}")]
     Singular {
-        /// The estimate.
+        /// Estimate of the condition number.
         condition: f64,
     },
     /// The stiffness at the end is not symmetric.
     #[error("the stiffness at the end is not symmetric: {error:.1e}, and rounding is below {most:e}")]
     NotSymmetric {
-        /// Error.
+        /// Relative asymmetry of the stiffness.
         error: f64,
-        /// The most.
+        /// The largest asymmetry allowed.
         most: f64,
     },
     /// Changing an input in its last place changes the result.
@@ -85,15 +86,15 @@ pub enum ExtremeFault {
         "{bits:.0} bits of the result survive a change of one unit in the last place of an input; {least} are the least"
     )]
     Noise {
-        /// Bits.
+        /// Number of bits that survive.
         bits: f64,
-        /// The least.
+        /// The least number of bits allowed.
         least: f64,
     },
     /// Changing an input in its last place changes how the run ends.
     #[error("with one unit more in the last place of an input it ends `{ended}`")]
     NudgedEndedOtherwise {
-        /// How.
+        /// How the run with the changed input ended.
         ended: &'static str,
     },
     /// The result is not what it should be, and the scene does not say why.
@@ -106,21 +107,21 @@ pub enum ExtremeFault {
     Inexact {
         /// Relative error.
         error: f64,
-        /// The most.
+        /// The largest error allowed.
         most: f64,
     },
     /// `same_as` names no scene.
     #[error("expect.same_as = \"{other}\" is no scene of this folder")]
     NoOtherScene {
-        /// The name.
+        /// Name of the other scene.
         other: String,
     },
     /// The other scene took other steps.
     #[error("the curve of {other} has {theirs} equilibria, and this one {ours}; they part after {parameter}")]
     OtherSteps {
-        /// The other scene.
+        /// Name of the other scene.
         other: String,
-        /// Its equilibria.
+        /// Number of equilibria of the other scene.
         theirs: usize,
         /// Equilibria of this scene.
         ours: usize,
@@ -132,13 +133,13 @@ pub enum ExtremeFault {
         "at {parameter} the curve is {difference:.1e} of its largest value off that of {other}; {most:e} is the most"
     )]
     OtherCurve {
-        /// The other scene.
+        /// Name of the other scene.
         other: String,
         /// Where the difference is largest.
         parameter: f64,
-        /// The difference.
+        /// Relative difference of the curves.
         difference: f64,
-        /// The most.
+        /// The largest difference allowed.
         most: f64,
     },
 }

@@ -10,28 +10,29 @@ use crate::scene::{ExpectedOutcome, Scene};
 use crate::state::State;
 use crate::study::extremes_fault::ExtremeFault;
 
-/// How a scene ended.
+/// How the run of a scene ended.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ExtremeEnd {
-    /// At its target.
+    /// The run reached its target.
     Finished,
-    /// Before, in a way that a scene can expect.
+    /// The run stopped before its target, in a way that a scene can expect.
     Stopped {
-        /// The way.
+        /// The outcome that a scene can expect.
         outcome: ExpectedOutcome,
-        /// The error.
+        /// The message of the error.
         message: String,
     },
-    /// Before, in a way that no scene can expect.
+    /// The run stopped before its target, in a way that no scene can expect.
     Broken {
-        /// The error.
+        /// The message of the error.
         message: String,
     },
     /// The time for a scene ran out.
     OutOfTime,
-    /// In a panic.
+    /// The run panicked.
     Panicked {
-        /// What it said.
+        /// The message of the error.
         message: String,
     },
 }
@@ -48,7 +49,7 @@ impl ExtremeEnd {
         }
     }
 
-    /// The error, where there is one.
+    /// The message of the error that ended the run, if one did.
     pub fn message(&self) -> Option<&str> {
         match self {
             Self::Finished | Self::OutOfTime => None,
@@ -84,7 +85,7 @@ pub(super) struct Done {
 }
 
 impl Done {
-    /// Runs a scene; after `limit` it is out of time at its next stage.
+    /// Runs a scene; after `limit` the run ends at its next stage.
     pub fn of(scene: &Scene, limit: Duration) -> Self {
         let begin = Instant::now();
         let mut stages = Stages::new(scene.clone());
@@ -106,12 +107,13 @@ impl Done {
         Self { end, start: Some(start), last, stages: sink.stages, wall_s }
     }
 
-    /// Records of the stages that were kept.
+    /// The records of the stages that were kept.
     pub fn records(&self) -> impl Iterator<Item = &Record> {
         self.stages.iter().map(|(_, record)| record)
     }
 
-    /// Whether the stages that were kept are the run: each on the one before it, the last the one that the run stands on.
+    /// Checks that the stages that were kept are the run: each follows on the one before it, and the last one made the
+    /// state at the end of the run.
     pub fn lost(&self) -> Option<ExtremeFault> {
         let mut previous: Option<Commit> = None;
         let mut hash = self.start.as_ref()?.hash();

@@ -1,4 +1,4 @@
-//! What a run says when it is compared with theory: the closed-form laws of tape springs, the summary of a run, and suites
+//! What a run shows when it is compared with theory: the closed-form laws of tape springs, the summary of a run, and suites
 //! of scenes that state how they end.
 //!
 //! | file | what |
@@ -31,5 +31,5 @@ pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;
 pub use path::{Passed, PathPoint, Snap, equilibria, equilibrium_path, snaps};
-pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, Said, StageWork, Summary};
+pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, StageWork, Summary, WarningCount};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

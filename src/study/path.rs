@@ -25,12 +25,12 @@ pub struct PathPoint {
     pub passed: Option<Passed>,
 }
 
-/// A critical point, with the first equilibrium behind it.
+/// A critical point on the path, with the first equilibrium behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passed {
-    /// What it is.
+    /// The critical point.
     pub critical: CriticalPoint,
-    /// Parameter.
+    /// Parameter at the critical point.
     pub parameter: f64,
     /// End moment of the whole section, N·mm.
     pub moment_n_mm: f64,
@@ -38,8 +38,8 @@ pub struct Passed {
     pub probe: Option<f64>,
 }
 
-/// A jump from one equilibrium to another, with all that followed in the same load step: on the finer meshes that the
-/// fold calls for it may fall further.
+/// A jump from one equilibrium to another, with all that followed in the same load step: on finer meshes the shell may
+/// jump further.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snap {
     /// Rotation of the last equilibrium before the jump, degrees.
@@ -54,8 +54,8 @@ pub struct Snap {
     pub energy_released_n_mm: Option<f64>,
 }
 
-/// The moment–rotation curve: of every load step its last equilibrium, and where a step jumped after it had found one
-/// (on a finer mesh), the one before the jump too.
+/// Extracts the moment–rotation curve: the last equilibrium of every load step, and where a step jumped after it had
+/// found one (on a finer mesh), the one before the jump too.
 pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
     let mut path: Vec<PathPoint> = Vec::new();
     for report in equilibria(records).map(|record| &record.report) {
@@ -87,8 +87,8 @@ pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
     path
 }
 
-/// The jumps of a run, in order, at most one a load step. One in the first solve of `records` counts from the unloaded
-/// shell.
+/// Extracts the jumps of a run, in order, at most one for each load step. A jump in the first solve of `records` counts
+/// from the unloaded shell.
 pub fn snaps(records: &[Record]) -> Vec<Snap> {
     let mut before = (0.0, 0.0);
     let mut snaps: Vec<(u64, Snap)> = Vec::new();
@@ -116,7 +116,7 @@ pub fn snaps(records: &[Record]) -> Vec<Snap> {
     snaps.into_iter().map(|(_, snap)| snap).collect()
 }
 
-/// The stages that ended in an equilibrium.
+/// The records of the stages that ended in an equilibrium.
 pub fn equilibria(records: &[Record]) -> impl Iterator<Item = &Record> {
     records.iter().filter(|record| {
         let Record { report, .. } = record;

@@ -1,16 +1,18 @@
-//! The summary of a run: what it found, beside what theory says, and what it cost.
+//! The summary of a run: what it found, compared with theory, and what it cost.
 
 use crate::record::{Outcome, Parameter, Reading, Record, Warning};
 use crate::scene::{Geometry, Scene, Stage};
 use crate::study::{Passed, PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
 use crate::units::rounded;
 
-/// From this rotation on a fold is far from the ends, and its moment is compared as it stands (theory: the plateau is
+/// From this rotation on a fold is far from the ends, and its moment is compared directly (theory: the plateau is
 /// flat to 0.1 N·mm beyond 40°).
 const FAR_FROM_ENDS_DEG: f64 = 40.0;
 
-/// What a run found. Every number comes from the records; `Display` lays them out beside the closed-form laws.
+/// The results and the cost of a run. Every number is computed from the records; `Display` prints them with the
+/// closed-form laws.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Summary {
     /// The tape spring, for the laws that the run is compared with.
     pub spring: Option<TapeSpring>,
@@ -20,7 +22,7 @@ pub struct Summary {
     pub shell: String,
     /// The scene's probes at the last equilibrium.
     pub probes: Vec<Reading>,
-    /// Rotation that the scene asks for, degrees.
+    /// Target of the run: rotation in degrees, or load factor.
     pub target: f64,
     /// Elements of the whole shell for each element of the model: 1, 2 or 4.
     pub symmetric_parts: usize,
@@ -47,8 +49,8 @@ pub struct Summary {
     /// What each stage that ran has cost, in the order of [`Stage::ALL`].
     pub work: Vec<StageWork>,
     /// Where the mesh cannot show what the shell does, a line for each kind of warning.
-    pub warnings: Vec<Said>,
-    /// Whether a warning says that the peak is wrong.
+    pub warnings: Vec<WarningCount>,
+    /// Whether a warning casts doubt on the peak.
     pub peak_in_doubt: bool,
     /// Solves that were rejected.
     pub rejections: usize,
@@ -69,7 +71,7 @@ pub struct MeasuredPeak {
     pub found: PeakFound,
 }
 
-/// How a peak was found.
+/// How the peak of the moment was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PeakFound {
     /// The top of a parabola through the largest moment and its neighbours.
@@ -80,27 +82,27 @@ pub enum PeakFound {
     LoadStep,
 }
 
-/// Mean moment of the fold.
+/// The mean moment of the fold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoldMean {
-    /// Mean, N·mm.
+    /// Mean moment, N·mm.
     pub moment_n_mm: f64,
     /// Rotations from and to which it is taken, degrees.
     pub range_deg: [f64; 2],
-    /// Load steps in it.
+    /// Number of load steps in the mean.
     pub points: usize,
 }
 
-/// A kind of warning, and how often it was said.
+/// A kind of warning, and the number of load steps that reported it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Said {
-    /// The first one.
+pub struct WarningCount {
+    /// The first warning of its kind.
     pub first: Warning,
-    /// Load steps in which it was said.
+    /// Number of load steps that reported it.
     pub steps: usize,
 }
 
-/// A mesh, and where the run came to it.
+/// A mesh of the run, and the rotation at which the run came to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshChange {
     /// Rotation of each end at which it was made, degrees; 0 for the mesh that the run starts with.
@@ -111,7 +113,7 @@ pub struct MeshChange {
     pub unknowns: usize,
 }
 
-/// Work against strain energy, up to the first jump.
+/// Work compared with strain energy, up to the first jump.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
     /// Rotation of the last equilibrium that is counted, degrees.
@@ -131,30 +133,31 @@ pub struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    /// Energy that accounts for the work, N·mm.
+    /// The energy that accounts for the work, N·mm.
     pub fn accounted_n_mm(&self) -> f64 {
         self.strain_energy_n_mm + self.taken_out_by_refinement_n_mm + self.released_in_ripples_n_mm
     }
 
-    /// Work that has gone nowhere, relative to the largest energy that took part: a shell that is unloaded again stores none,
-    /// and one that takes its natural shape neither stores any nor takes work.
-    pub fn off(&self) -> f64 {
-        (self.work_n_mm - self.accounted_n_mm()) / self.measure_n_mm()
+    /// The part of the work for which no energy accounts, relative to the largest energy involved. The strain energy
+    /// itself is no measure: a shell that is unloaded again stores none, and one that takes its natural shape neither
+    /// stores any nor takes work.
+    pub fn relative_error(&self) -> f64 {
+        (self.work_n_mm - self.accounted_n_mm()) / self.largest_n_mm()
     }
 
-    /// The largest energy that took part, N·mm.
-    pub fn measure_n_mm(&self) -> f64 {
+    /// The largest energy involved, N·mm.
+    pub fn largest_n_mm(&self) -> f64 {
         let energies = [self.largest_energy_n_mm, self.put_in_n_mm, self.accounted_n_mm().abs(), self.work_n_mm.abs()];
         energies.into_iter().fold(0.0, f64::max)
     }
 }
 
-/// Number and wall time of the runs of one stage.
+/// Number of runs of one stage, and what they cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageWork {
     /// The stage.
     pub stage: Stage,
-    /// How often it ran.
+    /// Number of times that the stage ran.
     pub runs: usize,
     /// Newton iterations.
     pub iterations: usize,
@@ -165,7 +168,7 @@ pub struct StageWork {
 }
 
 impl Summary {
-    /// Sums up `records`, the stages of a run of `scene` from its first one on. An unfinished run has a summary too.
+    /// Summarizes `records`, the stages of a run of `scene` from its first one on. The run may be unfinished.
     pub fn new(scene: &Scene, records: &[Record]) -> Self {
         let path = equilibrium_path(records);
         let snaps = snaps(records);
@@ -344,8 +347,8 @@ fn fold_mean(path: &[PathPoint], snap: Option<&Snap>) -> Option<FoldMean> {
     })
 }
 
-/// Each kind of warning once, in the order in which they were first said.
-fn warnings(records: &[Record]) -> Vec<Said> {
+/// Each kind of warning once, in the order in which they were first reported.
+fn warnings(records: &[Record]) -> Vec<WarningCount> {
     let mut firsts: Vec<Warning> = Vec::new();
     for warning in records.iter().flat_map(|record| &record.report.warnings) {
         if firsts.iter().all(|first| first.name() != warning.name()) {
@@ -358,10 +361,10 @@ fn warnings(records: &[Record]) -> Vec<Said> {
         steps.dedup();
         steps.len()
     };
-    firsts.into_iter().map(|first| Said { steps: steps_with(&first), first }).collect()
+    firsts.into_iter().map(|first| WarningCount { steps: steps_with(&first), first }).collect()
 }
 
-/// Warnings up to the load step of the first jump: those of the equilibria before it are said there.
+/// Warnings up to the load step of the first jump: those of the equilibria before it are reported there.
 fn before_jump_and_with_it(records: &[Record]) -> impl Iterator<Item = &Warning> {
     let jump = records.iter().find(|record| record.report.jumped).map(|record| record.report.step);
     let in_time = records.iter().take_while(move |record| jump.is_none_or(|jump| record.report.step <= jump));

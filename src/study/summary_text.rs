@@ -4,7 +4,7 @@ use std::fmt::{self, Display, Formatter};
 
 use super::Summary;
 use super::TapeSpring;
-use super::summary::{FoldMean, MeshChange, PeakFound, Said};
+use super::summary::{FoldMean, MeshChange, PeakFound, WarningCount};
 use crate::record::{Parameter, Reading, released_in_words};
 use crate::scene::Sense;
 use crate::spline::Grid;
@@ -58,7 +58,7 @@ impl Summary {
         let Some(last) = self.last else {
             let turned_down = match self.rejections {
                 0 => String::new(),
-                n => format!(": {} turned down", count(n, "solve")),
+                n => format!(": {} rejected", count(n, "solve")),
             };
             return writeln!(f, "no equilibrium yet{turned_down}");
         };
@@ -102,7 +102,7 @@ impl Summary {
         }
         self.write_passed(f)?;
         let Some(balance) = self.balance else { return Ok(()) };
-        let (measure, larger) = (balance.measure_n_mm(), balance.work_n_mm.abs().max(balance.accounted_n_mm().abs()));
+        let (measure, larger) = (balance.largest_n_mm(), balance.work_n_mm.abs().max(balance.accounted_n_mm().abs()));
         let measured_by = match measure > 1.01 * larger {
             true => format!(" of the {} N·mm that took part", reading(measure, 6).trim()),
             false => String::new(),
@@ -117,7 +117,7 @@ impl Summary {
             "work",
             reading(balance.work_n_mm, 6),
             reading(balance.accounted_n_mm(), 6),
-            signed(100.0 * balance.off(), 2)
+            signed(100.0 * balance.relative_error(), 2)
         )
     }
 
@@ -268,7 +268,7 @@ impl Summary {
 
     /// Each kind of warning once.
     fn write_warnings(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        for Said { first, steps } in &self.warnings {
+        for WarningCount { first, steps } in &self.warnings {
             let more = match steps {
                 1 => String::new(),
                 n => format!(" (the first of {n} load steps)"),
@@ -315,13 +315,13 @@ impl Summary {
         let sum = |number: fn(&super::summary::StageWork) -> usize| self.work.iter().map(number).sum();
         row(f, "all", [self.stages(), sum(|work| work.iterations), sum(|work| work.factorizations)], total)?;
         if self.rejections > 0 {
-            writeln!(f, "  {} turned down on the way", count(self.rejections, "solve"))?;
+            writeln!(f, "  {} rejected on the way", count(self.rejections, "solve"))?;
         }
         Ok(())
     }
 }
 
-/// One finding beside the law that it is compared with.
+/// One result, with the law that it is compared with.
 struct Line<'a> {
     name: &'a str,
     measured: String,

@@ -66,7 +66,7 @@ pub struct Plateau {
     pub fold_curvature_per_mm: f64,
 }
 
-/// Moments of a fold with a flat section and the radius of the section along its length (Seffen & Pellegrino 1999).
+/// The moments of a fold with a flat section and the radius of the section along its length (Seffen & Pellegrino 1999).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoldMoments {
     /// Opposite sense: (1+ν) D α, N·mm.
@@ -181,7 +181,7 @@ impl TapeSpring {
         })
     }
 
-    /// Moments of a fold of either sense, (1 ± ν) D α.
+    /// The moments of folds of either sense, (1 ± ν) D α.
     pub fn fold_moments(&self) -> FoldMoments {
         let scale = self.bending_stiffness_n_mm() * self.arc_rad;
         FoldMoments {

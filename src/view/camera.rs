@@ -64,7 +64,7 @@ impl Camera {
         (camera, camera.scale * size[1])
     }
 
-    /// Where `point` (mm) comes to lie.
+    /// The place of `point` (mm) in the picture.
     pub(super) fn project(&self, point: [f64; 3]) -> Projected {
         Projected {
             x: self.offset[0] + self.scale * dot(self.right, point),

@@ -6,7 +6,7 @@ use crate::shell::{cross, dot, norm};
 use crate::spline::{Grid, Mesh, SurfacePoint, mid_surface_point};
 
 /// Points and values on a grid that follows the elements.
-struct Patch {
+struct SampleGrid {
     counts: [usize; 2],
     points: Vec<[f64; 3]>,
     values: Vec<f64>,
@@ -29,22 +29,22 @@ pub fn deformed_surface(
 ) -> Result<SurfaceSamples, SamplesError> {
     assert_eq!(displacement.len(), mesh.control_points.len());
     let parts = cells_per_element.max(1);
-    let [along, across] = [0, 1].map(|way| divided(&mesh.knots[way], parts));
+    let [along, across] = [0, 1].map(|direction| divided(&mesh.knots[direction], parts));
     let at = |parameters| mid_surface_point(mesh, displacement, parameters).position;
     let points = along.iter().flat_map(|u| across.iter().map(|v| at([*u, *v]))).collect();
     let middle = |pair: &[f64]| 0.5 * (pair[0] + pair[1]);
     let strain = |u: &[f64], v: &[f64]| bending_strain(mesh, displacement, [middle(u), middle(v)]);
     let values = along.windows(2).flat_map(|u| across.windows(2).map(|v| strain(u, v)).collect::<Vec<_>>()).collect();
-    let mut patch = Patch { counts: [along.len(), across.len()], points, values };
+    let mut grid = SampleGrid { counts: [along.len(), across.len()], points, values };
     let [cut_at_middle, cut_at_apex] = scene.symmetry.cuts();
     if cut_at_middle {
-        patch = patch.with_reflection_along();
+        grid = grid.with_reflection_along();
     }
     if cut_at_apex {
-        patch = patch.with_reflection_across();
+        grid = grid.with_reflection_across();
     }
-    let lines = patch.knot_lines(parts);
-    let Patch { counts, points, values } = patch;
+    let lines = grid.knot_lines(parts);
+    let SampleGrid { counts, points, values } = grid;
     SurfaceSamples::new(counts, points, values, lines, "bending strain max|κ| (1/mm)")
 }
 
@@ -72,10 +72,10 @@ fn bending_strain(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) 
     physical(0).max(physical(1))
 }
 
-impl Patch {
-    /// A line of points on which direction `way` stands still.
-    fn line(&self, way: usize, along: usize) -> impl DoubleEndedIterator<Item = [f64; 3]> + ExactSizeIterator {
-        Grid::new(self.counts).line(way, along).map(|point| self.points[point])
+impl SampleGrid {
+    /// A line of points along which the parameter in `direction` is constant.
+    fn line(&self, direction: usize, along: usize) -> impl DoubleEndedIterator<Item = [f64; 3]> + ExactSizeIterator {
+        Grid::new(self.counts).line(direction, along).map(|point| self.points[point])
     }
 
     /// A row of values between two lines of points along the arc.
@@ -84,9 +84,9 @@ impl Patch {
     }
 
     /// Points each way with an image that shares one line in a direction.
-    fn counts_doubled(&self, way: usize) -> [usize; 2] {
+    fn counts_doubled(&self, direction: usize) -> [usize; 2] {
         let mut counts = self.counts;
-        counts[way] = 2 * counts[way] - 1;
+        counts[direction] = 2 * counts[direction] - 1;
         counts
     }
 
@@ -115,7 +115,9 @@ impl Patch {
 
     /// Every `parts`-th line of the grid each way.
     fn knot_lines(&self, parts: usize) -> Vec<Vec<[f64; 3]>> {
-        let lines = |way: usize| (0..self.counts[way]).step_by(parts).map(move |along| self.line(way, along).collect());
+        let lines = |direction: usize| {
+            (0..self.counts[direction]).step_by(parts).map(move |along| self.line(direction, along).collect())
+        };
         lines(0).chain(lines(1)).collect()
     }
 }

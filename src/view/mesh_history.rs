@@ -14,14 +14,14 @@ use crate::record::{Outcome, Record};
 use crate::scene::Scene;
 use crate::state::State;
 
-/// Topic of the meshes.
+/// Topic of the messages with deformed meshes.
 pub const MESH_HISTORY_TOPIC: &str = "/foldline/scene";
 /// Cells of a picture for each element, each way.
 const CELLS_PER_ELEMENT: usize = 2;
 /// Bending strain at the bright end of the colours, in units of 1/R: a fold has 1.
 const BRIGHTEST: f64 = 1.1;
 
-/// Makes a message for each stage that ends in an equilibrium.
+/// A source of viewer messages that show the deformed mesh after each stage that ends in an equilibrium.
 #[derive(Debug)]
 pub struct MeshHistory {
     scene: Scene,
@@ -29,7 +29,7 @@ pub struct MeshHistory {
 }
 
 impl MeshHistory {
-    /// Creates the viewer messages of a run of this scene.
+    /// Creates the source of messages for a run of this scene.
     pub fn new(scene: &Scene) -> Self {
         let list = |what: &str| json!({"type": "array", "items": {"type": "object"}, "description": what});
         let schema = json!({

@@ -9,10 +9,10 @@ use super::samples::SurfaceSamples;
 use super::ticks::ticks;
 use crate::printable::one_line;
 
-/// Settings of a picture.
+/// The settings of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Where the eye stands.
+    /// Direction from which the surface is seen.
     pub direction: ViewDirection,
     /// First line of text; may be empty.
     pub title: String,
@@ -48,7 +48,7 @@ const MOST_ASPECT: f64 = 0.8;
 /// below the gap between the layers of a fold and above the facets' distance from the smooth surface.
 const HIDDEN_BY: f64 = 0.004;
 
-/// Draws `samples` as SVG text.
+/// Draws a sampled surface as SVG text.
 pub fn mesh_picture(samples: &SurfaceSamples, picture: &Picture) -> String {
     let width = f64::from(picture.width.max(LEAST_WIDTH));
     let top = if picture.title.is_empty() && picture.subtitle.is_empty() { MARGIN } else { TITLE_HEIGHT };

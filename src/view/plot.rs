@@ -1,4 +1,4 @@
-//! The moment–rotation curve of a run beside Wuest's law, with the size of the mesh below it.
+//! The moment–rotation curve of a run with Wuest's law, with the size of the mesh below it.
 
 use plotters::chart::{ChartBuilder, ChartContext, SeriesLabelPosition};
 use plotters::coord::Shift;
@@ -19,6 +19,7 @@ use crate::study::{PathPoint, TapeSpring, equilibrium_path, snaps};
 
 /// Why a plot could not be drawn.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlotError {
     /// The records hold no equilibrium yet.
     #[error("there is no equilibrium to plot: the run has not finished its first load step")]
@@ -28,7 +29,7 @@ pub enum PlotError {
     NoMoment,
     /// A number that no picture can show: axes would never be done with their marks.
     #[error(
-        "{value} at load step {step} is too large to draw, or no number: `foldline verify` tells whether the log holds it"
+        "{value} at load step {step} is too large to draw, or no number: `foldline verify` reports whether the log holds it"
     )]
     NotDrawable {
         /// Load step of the report.
@@ -65,8 +66,9 @@ const SNAP: RGBColor = RGBColor(0xb7, 0x37, 0x79);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The curve of `records`, a run of `scene`, as SVG text: measured moment, Wuest's law for uniform curvature (dashed),
-/// the equal-energy plateau, the jumps; below, elements of the model on a logarithmic axis. `title` stands on top.
+/// Plots the curve of `records`, a run of `scene`, as SVG text: measured moment, Wuest's law for uniform curvature
+/// (dashed), the equal-energy plateau, the jumps; below, elements of the model on a logarithmic axis. `title` is
+/// printed on top.
 ///
 /// # Errors
 /// Where there is no equilibrium yet.
@@ -168,7 +170,7 @@ fn draw_moment(
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// Axes with a grid; `along` is what stands at the lower one.
+/// Axes with a grid; `along` labels the lower one.
 fn draw_axes(chart: &mut Chart, along: Option<String>, upwards: &str) -> Result<(), PlotError> {
     let mut axes = chart.configure_mesh();
     if let Some(along) = along {
@@ -228,14 +230,14 @@ fn draw_path(chart: &mut Chart, path: &[PathPoint], points: &[(f64, f64)]) -> Re
     Ok(())
 }
 
-/// Load factor over the first probe of `records`, a run of `scene`, as SVG text: unstable equilibria dashed. `None` where
-/// the scene has no probe. `title` stands on top.
+/// Plots the load factor over the first probe of `records`, a run of `scene`, as SVG text: unstable equilibria dashed.
+/// `None` where the scene has no probe. `title` is printed on top.
 ///
 /// # Errors
 /// Where there is no equilibrium yet.
 pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result<Option<String>, PlotError> {
     let Some(probe) = scene.probes.first() else { return Ok(None) };
-    // Others may stand in front of it, in stages that were run with them.
+    // Others may come before it, in stages that were run with them.
     let mut records = records.to_vec();
     records.iter_mut().for_each(|record| record.report.probes.retain(|reading| reading.name == probe.name));
     let records = &records[..];

@@ -14,31 +14,32 @@ pub struct SurfaceSamples {
 
 /// Why samples do not make a surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SamplesError {
     /// Fewer than 2 points one way.
     #[error("a surface needs 2 points each way, not {} × {}", counts[0], counts[1])]
     TooFewPoints {
-        /// Points each way.
+        /// Number of points in each direction.
         counts: [usize; 2],
     },
     /// A buffer does not fit the counts.
     #[error("a surface of {} × {} points has {expected} {what}, not {found}", counts[0], counts[1])]
     Length {
-        /// Which buffer.
+        /// Name of the buffer.
         what: &'static str,
-        /// Points each way.
+        /// Number of points in each direction.
         counts: [usize; 2],
-        /// Length that fits.
+        /// The length that fits the counts.
         expected: usize,
-        /// Length that came.
+        /// The length of the buffer.
         found: usize,
     },
     /// A coordinate that is infinite or not a number.
     #[error("point {index} of the {what} is not finite")]
     NotFinite {
-        /// Of what.
+        /// Name of the quantity.
         what: &'static str,
-        /// Which one.
+        /// Index in its buffer.
         index: usize,
     },
 }
@@ -54,9 +55,9 @@ impl SurfaceSamples {
         cells_of(counts).len()
     }
 
-    /// A surface of `counts` points each way, at least 2. `points` are in mm, the second direction fastest
-    /// (index = i₁ · n₂ + i₂); `cell_values` likewise with n − 1 cells each way, and not-a-number where there is no
-    /// value; `knot_lines` are polylines on the surface, mm. `quantity` names what the values are, with its unit.
+    /// Creates a surface of `counts` points in each direction, at least 2. `points` are in mm, the second direction
+    /// fastest (index = i₁ · n₂ + i₂); `cell_values` likewise with n − 1 cells in each direction, and NaN where there
+    /// is no value; `knot_lines` are polylines on the surface, mm. `quantity` names the values, with their unit.
     ///
     /// # Errors
     /// Where the lengths do not fit each other, or a coordinate is not finite.

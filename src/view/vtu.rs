@@ -12,9 +12,9 @@ use super::samples::SurfaceSamples;
 const VTK_POLY_LINE: u8 = 4;
 const VTK_QUAD: u8 = 9;
 
-/// `samples` as the text of a `.vtu` file: a quadrilateral for each cell, a polyline for each knot line. Cell arrays:
-/// the values under the name of their quantity (not-a-number on knot lines), and `knot_line` (0 on the surface, 1 on
-/// knot lines; a threshold tells them apart).
+/// Formats `samples` as the text of a `.vtu` file: a quadrilateral for each cell, a polyline for each knot line. Cell
+/// arrays: the values under the name of their quantity (NaN on knot lines), and `knot_line` (0 on the surface, 1 on
+/// knot lines; a threshold separates them).
 pub fn vtu(samples: &SurfaceSamples) -> String {
     let lines: Vec<&Vec<[f64; 3]>> = samples.knot_lines.iter().filter(|line| line.len() > 1).collect();
     let points: Vec<f64> = samples.points.iter().chain(lines.iter().copied().flatten()).flatten().copied().collect();

@@ -120,7 +120,7 @@ fn a_full_disk_is() {
 /// What is no text, or no surface that a shell can have, or no tape spring, is refused before anything starts or is printed.
 #[test]
 fn files_that_are_no_scenes() {
-    let place = crate::program::Place::new();
+    let place = crate::program::Sandbox::new();
     let plate = include_str!("../verification/scenes/net-u-fastest.toml");
     place.write("log.toml", b"\x89MCAP0\r\n");
     place.write("latin.toml", b"# L\xe4nge\n");
@@ -149,7 +149,7 @@ fn files_that_are_no_scenes() {
 /// A shell with nothing left free is refused before anything starts.
 #[test]
 fn a_shell_that_is_held_everywhere() {
-    let place = crate::program::Place::new();
+    let place = crate::program::Sandbox::new();
     let (head, _) = include_str!("../restart/column.toml").split_once("[mesh]").unwrap();
     let hinged = ["u-start", "u=0.5", "u-end"].map(|on| format!("[[support]]\non = \"{on}\"\nkind = \"hinged\"\n"));
     let rest = "[mesh]\ndegree = [2, 2]\nelements = [1, 1]\n[load]\nkind = \"steps\"\nincrement = 1.0\n";
@@ -163,7 +163,7 @@ fn a_shell_that_is_held_everywhere() {
 /// A name that would break a line or turn its direction is refused, and itself not shown.
 #[test]
 fn names_are_lines_of_what_can_be_seen() {
-    let place = crate::program::Place::new();
+    let place = crate::program::Sandbox::new();
     for (name, character) in [("tip\\nstage 9", "U+000A"), ("tip\\u202e9", "U+202E"), ("tip\u{2066}", "U+2066")] {
         let probe = format!("\n[[probe]]\nname = \"{name}\"\nkind = \"energy\"\n");
         place.write("named.toml", format!("{}{probe}", crate::program::SMALL));
@@ -175,7 +175,7 @@ fn names_are_lines_of_what_can_be_seen() {
 /// Surfaces and scenes that no log could hold are refused before anything is done.
 #[test]
 fn scenes_that_no_log_can_hold() {
-    let place = crate::program::Place::new();
+    let place = crate::program::Sandbox::new();
     let rest = include_str!("../verification/scenes/net-u-fastest.toml").split_once("[material]").unwrap().1;
     place.write("plate.toml", format!("[geometry]\nkind = \"nurbs\"\nfile = \"plate.json\"\n[material]{rest}"));
     let count = 350;

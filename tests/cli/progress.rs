@@ -2,7 +2,7 @@
 
 use std::io::{self, ErrorKind, Write};
 
-use foldline::cli::Shown;
+use foldline::cli::ProgressSink;
 use foldline::record::{MemorySink, Outcome, Record, Sink, SinkError};
 use foldline::scene::{Scene, Stage};
 use foldline::state::State;
@@ -11,7 +11,7 @@ use crate::synthetic::{self, CURVE, Script};
 
 fn lines(scene: &Scene, records: &[Record]) -> String {
     let mut text = Vec::new();
-    let mut shown = Shown::lines(MemorySink::default(), scene, &mut text);
+    let mut shown = ProgressSink::lines(MemorySink::default(), scene, &mut text);
     for record in records {
         shown.take(&synthetic::state(record), record).unwrap();
     }
@@ -53,7 +53,7 @@ fn a_step_cut_short_is_shown_at_the_end() {
 fn json_lines_of_a_run_are_those_of_its_records() {
     let records = synthetic::records();
     let mut text = Vec::new();
-    let mut shown = Shown::json(MemorySink::default(), &mut text);
+    let mut shown = ProgressSink::json(MemorySink::default(), &mut text);
     records.iter().for_each(|record| shown.take(&synthetic::state(record), record).unwrap());
     shown.finish();
     let expected: String = records.iter().map(|record| foldline::cli::json_line(record) + "\n").collect();
@@ -75,7 +75,7 @@ impl Write for Broken {
 #[test]
 fn a_reader_that_leaves_does_not_stop_the_run() {
     let records = synthetic::records();
-    let mut shown = Shown::json(MemorySink::default(), Broken(ErrorKind::BrokenPipe));
+    let mut shown = ProgressSink::json(MemorySink::default(), Broken(ErrorKind::BrokenPipe));
     records.iter().for_each(|record| shown.take(&synthetic::state(record), record).unwrap());
     assert_eq!(shown.finish().0.stages.len(), records.len());
 }
@@ -83,7 +83,7 @@ fn a_reader_that_leaves_does_not_stop_the_run() {
 #[test]
 fn a_full_disk_behind_json_lines_does() {
     let records = synthetic::records();
-    let mut shown = Shown::json(MemorySink::default(), Broken(ErrorKind::StorageFull));
+    let mut shown = ProgressSink::json(MemorySink::default(), Broken(ErrorKind::StorageFull));
     let error = shown.take(&synthetic::state(&records[0]), &records[0]).unwrap_err();
     insta::assert_snapshot!(error);
     assert_eq!(shown.finish().0.stages.len(), 1);
@@ -99,7 +99,7 @@ fn a_stage_that_was_not_kept_is_not_shown() {
     }
     let records = synthetic::records();
     let mut text = Vec::new();
-    let mut shown = Shown::json(Refuses, &mut text);
+    let mut shown = ProgressSink::json(Refuses, &mut text);
     assert!(shown.take(&synthetic::state(&records[0]), &records[0]).is_err());
     assert!(shown.finish().1.is_empty());
     assert!(text.is_empty());

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use foldline::journal::Log;
 
-use crate::program::{Place, Said, Straight};
+use crate::program::{Said, Sandbox, Straight};
 
 const ROOF: &str = include_str!("../restart/path.toml");
 const COLUMN: &str = include_str!("../restart/column.toml");
@@ -24,8 +24,8 @@ fn column() -> &'static Straight {
     })
 }
 
-fn with(run: &Straight) -> Place {
-    let place = Place::new();
+fn with(run: &Straight) -> Sandbox {
+    let place = Sandbox::new();
     place.write("run.mcap", &run.bytes);
     place
 }
@@ -90,7 +90,7 @@ fn a_bifurcation_is_called_one() {
 fn a_run_on_an_unstable_branch_says_so() {
     let place = with(column());
     place.foldline("inspect run.mcap").ends(0).says(&["the last equilibrium is not stable", "1 negative pivot"]);
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("column.toml", COLUMN.split_once("[continuation]").unwrap().0);
     place.foldline("run column.toml -o run.mcap").ends(0).says(&["not stable (1 negative pivot)"]);
 }
@@ -155,7 +155,7 @@ fn wrong_questions_about_stability() {
 /// A tape spring on two meshes that are as coarse as can be.
 #[test]
 fn meshes_compared() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let coarse = "converge small.toml --degree 3 --elements 8,4 --elements 12,4";
     let said = place.foldline(coarse).ends(0);
     let rows: Vec<Vec<&str>> = said.out.lines().map(|line| line.split_whitespace().collect()).collect();
@@ -177,7 +177,7 @@ fn meshes_compared() {
 
 #[test]
 fn wrong_meshes_to_compare() {
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("roof.toml", ROOF);
     let refused = |arguments: &str, code: i32| -> Said { place.foldline(arguments).ends(code) };
     refused("converge small.toml --degree 1", 2).says(&["1 is not in 2..=5"]);

@@ -1,12 +1,12 @@
 //! `foldline study`: rows, lists of values, what it refuses.
 
-use crate::program::Place;
+use crate::program::Sandbox;
 
 const SMALL: &str = include_str!("../restart/small.toml");
 
 /// `small.toml` to 4°, and the strip of `path.toml` beside it.
-fn place() -> Place {
-    let place = Place::new();
+fn place() -> Sandbox {
+    let place = Sandbox::new();
     place.write("short.toml", SMALL.replace("rotation_deg = 16.0", "rotation_deg = 4.0").as_bytes());
     place.write("along.toml", include_str!("../restart/path.toml").as_bytes());
     place

@@ -13,7 +13,7 @@ use foldline::state::{Course, PathMemory, Refinement, State};
 use serde_json::{Value, json};
 
 use crate::crafted::{self, CHANNEL, METADATA, SCHEMA, Said, channel, record, text};
-use crate::program::Place;
+use crate::program::Sandbox;
 
 /// Memory that a command may take beside the log.
 const BESIDE_THE_LOG: u64 = 64 << 20;
@@ -86,7 +86,7 @@ impl Ordinary {
 }
 
 /// Runs a command to its end: exit code, peak of its memory and what it says.
-pub fn measured(place: &Place, arguments: &str) -> (Option<i32>, u64, String) {
+pub fn measured(place: &Sandbox, arguments: &str) -> (Option<i32>, u64, String) {
     let mut command = place.command(arguments);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let mut stderr = child.stderr.take().unwrap();
@@ -119,7 +119,7 @@ pub fn measured(place: &Place, arguments: &str) -> (Option<i32>, u64, String) {
 #[track_caller]
 fn all_bounded(what: &str, log: &[u8]) {
     for command in COMMANDS {
-        let place = Place::new();
+        let place = Sandbox::new();
         std::fs::create_dir(place.file("in")).unwrap();
         place.write("in/log.mcap", log);
         let arguments = command.replace("LOG", "in/log.mcap").replace("-o ", "-o in/");
@@ -136,7 +136,7 @@ fn all_bounded(what: &str, log: &[u8]) {
 /// What `verify` says, which is an error.
 #[track_caller]
 fn refused(bytes: Vec<u8>, why: &str) {
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("log.mcap", &bytes);
     place.foldline("verify log.mcap").ends(1).says(&[why]);
     for command in ["resume log.mcap", "replay log.mcap --step 1", "plot log.mcap"] {
@@ -149,7 +149,7 @@ fn refused(bytes: Vec<u8>, why: &str) {
 #[test]
 fn an_ordinary_log_is_one() {
     let ordinary = Ordinary::new();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("log.mcap", ordinary.with_state(|_| ()));
     // Its header names no program that writes logs: that is all there is to say.
     let said =
@@ -287,7 +287,7 @@ fn numbers_that_no_axis_has() {
             }
             let log = ordinary.with_report(report);
             all_bounded(&format!("{entry} = {value}"), &log);
-            refused(log, &format!("the report says {}", entry.replace("rotation_deg", "parameter")));
+            refused(log, &format!("the report has {}", entry.replace("rotation_deg", "parameter")));
         }
     }
 }
@@ -305,12 +305,12 @@ fn a_report_that_says_otherwise_than_its_state() {
         let mut report = ordinary.reports[0].clone();
         report[entry] = next(&report[entry]);
         let named = entry.replace("rotation_deg", "parameter");
-        refused(ordinary.with_report(report), &format!("the report says {named}"));
+        refused(ordinary.with_report(report), &format!("the report has {named}"));
     }
     let mut report = ordinary.reports[0].clone();
     report["path_length_mm"] = json!(1.0);
     let log = ordinary.with_report(report);
-    refused(log, "the report says path_length_mm 1");
+    refused(log, "the report has path_length_mm 1");
 }
 
 /// What the scene of a log does not have, no state of it has.
@@ -367,7 +367,7 @@ fn paths_that_lead_nowhere() {
 #[test]
 fn no_file_is_opened_for_a_log() {
     let ordinary = Ordinary::new();
-    let place = Place::new();
+    let place = Sandbox::new();
     std::process::Command::new("mkfifo").arg(place.file("pipe")).status().unwrap();
     for file in ["/dev/zero", "pipe", "../log.mcap"] {
         let (_, rest) = ordinary.scene.split_once("[material]").unwrap();
@@ -410,7 +410,7 @@ fn no_terminal_is_told_anything() {
     let said = Said { report: report.to_string().into_bytes(), ..ordinary.said_of(0, &ordinary.states[0]) };
     crafted.bytes.extend(record(METADATA, &[text(escape), text("")].concat()));
     crafted.commit(ordinary.stages[0], 1, said);
-    let place = Place::new();
+    let place = Sandbox::new();
     let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let obeyed = |c: char| turns(c) || (c.is_control() && !matches!(c, '\n' | '\t'));
     let commands = ["inspect LOG --json", "inspect LOG --step 1", "run scene.toml -o new.mcap"];

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use foldline::journal::Completeness;
 
-use crate::program::{Place, SMALL, Said, Straight, assert_ends_with};
+use crate::program::{SMALL, Said, Sandbox, Straight, assert_ends_with};
 use crate::signals::Under;
 
 fn is_root() -> bool {
@@ -19,7 +19,7 @@ fn is_root() -> bool {
 fn no_room_for_the_log() {
     let whole = Straight::small();
     for kibibytes in [20, 60, 100] {
-        let place = Place::new();
+        let place = Sandbox::new();
         // Blocks of 512 bytes.
         let script = format!("ulimit -f {}; exec \"$0\" \"$@\"", 2 * kibibytes);
         let limited = |arguments: &str| {
@@ -51,7 +51,7 @@ fn no_room_for_the_log() {
 #[test]
 fn no_room_for_other_files() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     let commands = [
         ("recover run.mcap -o copy.mcap", "cannot write copy.mcap"),
@@ -95,7 +95,7 @@ fn mount(arguments: &[&str], folder: &Path) -> bool {
 #[test]
 fn a_full_disk_and_a_read_only_one() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let folder = place.file("disk");
     let Some(_mounted) = is_root().then(|| Mounted::new(&folder, "size=100k")).flatten() else {
         println!("not shown here: mounting is not allowed");
@@ -131,7 +131,7 @@ fn a_full_disk_and_a_read_only_one() {
 fn a_log_that_cannot_be_begun() {
     let mut refused = 0;
     for limit in ["-f 0", "-f 1", "-f 2", "-n 4", "-n 5", "-n 6", "-n 7"] {
-        let place = Place::new();
+        let place = Sandbox::new();
         let mut command = Command::new("sh");
         command.args(["-c", &format!("ulimit {limit}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_foldline")]);
         command.args(["run", "small.toml", "-o", "run.mcap", "--quiet"]).current_dir(place.path());
@@ -148,7 +148,7 @@ fn a_log_that_cannot_be_begun() {
 /// A disk that is full before the run begins: no log is named that is not there, and what is missing is said.
 #[test]
 fn a_disk_that_is_full_at_the_start() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let folder = place.file("disk");
     let Some(_mounted) = is_root().then(|| Mounted::new(&folder, "size=64k")).flatten() else {
         println!("not shown here: mounting is not allowed");
@@ -170,7 +170,7 @@ fn a_disk_that_is_full_at_the_start() {
 #[test]
 fn a_read_only_folder() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let as_nobody = |arguments: &str| {
         let mut command = place.command(arguments);
         if is_root() {
@@ -203,7 +203,7 @@ fn a_read_only_folder() {
 #[test]
 fn a_folder_that_vanishes() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let started = || {
         std::fs::create_dir_all(place.file("logs")).unwrap();
         let run = Under::way(place.command("run small.toml -o logs/run.mcap --json --threads 1"), 8);
@@ -245,16 +245,16 @@ fn a_folder_that_vanishes() {
 
 /// What a power cut may leave of a log that had just begun.
 #[test]
-fn an_empty_log_is_begun_anew() {
+fn an_empty_log_is_started_again() {
     let whole = Straight::small();
     for left in [0, 5] {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", &whole.bytes[..left]);
         place.foldline("resume run.mcap").ends(1).says(&["no stage is in it. Delete it and start the run again"]);
-        place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["run.mcap holds nothing: begun anew"]);
-        assert_ends_with(&place.log("run.mcap"), whole.chain, "begun anew");
+        place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["run.mcap holds nothing: started again"]);
+        assert_ends_with(&place.log("run.mcap"), whole.chain, "started again");
     }
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", "a diary");
     place.foldline("run small.toml -o run.mcap --resume").ends(1).says(&["this is not a log"]);
     assert_eq!(place.read("run.mcap"), b"a diary");

@@ -52,7 +52,7 @@ fn findings_in_words() {
     ");
     insta::assert_snapshot!(flipped(entries[1].end as usize), @r"
     Info log: 5 commits, finished
-    Warning byte #: a schema of 22 bytes stands where none belongs
+    Warning byte #: a schema of 22 bytes is where none belongs
     ");
     insta::assert_snapshot!(flipped(150), @r"
     Info log: 5 commits, finished
@@ -61,11 +61,11 @@ fn findings_in_words() {
     ");
     insta::assert_snapshot!(flipped(entries[2].start as usize + 9), @r"
     Info log: 5 commits, finished
-    Warning byte #: not the byte that would be written here; no state depends on it, but viewers may. `foldline recover` writes the log anew
+    Warning byte #: not the byte that would be written here; no state depends on it, but viewers may. `foldline recover` writes the log again
     ");
     insta::assert_snapshot!(flipped(bytes.len() - 30), @r"
     Info log: 5 commits, finished
-    Warning byte #: not the byte that would be written here; no state depends on it, but viewers may. `foldline recover` writes the log anew
+    Warning byte #: not the byte that would be written here; no state depends on it, but viewers may. `foldline recover` writes the log again
     ");
     insta::assert_snapshot!(said(bytes[..20].to_vec()), @"the log has 20 bytes and no header to read: no stage is in it. Delete it and start the run again");
     insta::assert_snapshot!(said(b"# a scene, not a log".to_vec()), @"this is not a log: it does not begin like an MCAP file, and no commit of a run is in it");

@@ -8,7 +8,7 @@ use foldline::record::Record;
 use foldline::state::State;
 
 use crate::memory::peak;
-use crate::program::Place;
+use crate::program::Sandbox;
 use crate::support::{assert_prefix, assert_prefix_by_its_last_state, finished_log};
 use crate::synthetic;
 
@@ -139,7 +139,7 @@ fn descriptions_of_channels_are_not_missed() {
     for (text, bit) in texts.iter().flat_map(|text| [0, 7].map(|bit| (text, bit))) {
         let mut damaged = bytes.clone();
         damaged[place_of(text.as_bytes()) + 6] ^= 1 << bit;
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("log.mcap", &damaged);
         let log = place.log("log.mcap");
         assert_eq!((log.entries().len(), log.completeness()), (run.len(), Completeness::Finished), "{text}");

@@ -12,7 +12,7 @@ use foldline::record::NUMERICS_REVISION;
 use foldline::scene::{Scene, Stage, SyncPolicy};
 use foldline::state::{Rejection, State};
 
-use crate::program::{Place, scene};
+use crate::program::{Sandbox, scene};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("checkpoints/golden")
@@ -72,7 +72,7 @@ fn every_log_gives_what_the_table_says() {
         let faultless = verify_log(&log).iter().all(|finding| finding.level == Level::Info);
         assert_eq!(faultless, ["finished", "unfinished"].contains(&found), "{name}");
 
-        let place = Place::new();
+        let place = Sandbox::new();
         let new = place.file("new.mcap");
         let recovered = match recover(&path, &new).unwrap() {
             RecoverOutcome::Lossless { .. } => "lossless",
@@ -102,7 +102,7 @@ fn a_log_keeps_the_default_of_its_time() {
         let text = manifest.scene_text.replace("quadrature = \"patch\"\n", "");
         let then = scene(&text.replace("[mesh]\n", &format!("[mesh]\nquadrature = \"{rule}\"\n")));
         assert_ne!(scene(&text).hash(), then.hash());
-        let place = Place::new();
+        let place = Sandbox::new();
         let manifest = Manifest { scene_text: text, ..manifest.clone() };
         let mut writer = JournalWriter::create(&place.file("log.mcap"), &manifest, SyncPolicy::AtEnd).unwrap();
         let mut stages = Stages::new(then.clone());

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use foldline::journal::{Completeness, Log};
 
-use crate::program::{Place, Said, Straight, assert_ends_with};
+use crate::program::{Said, Sandbox, Straight, assert_ends_with};
 use crate::shim::with_faults;
 use crate::signals::Under;
 
@@ -14,7 +14,7 @@ const ENOLCK: &str = "37";
 const EOPNOTSUPP: &str = "95";
 
 /// A run of the small scene that stands still after a few stages.
-fn standing_still(place: &Place) -> Under {
+fn standing_still(place: &Sandbox) -> Under {
     let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), 5);
     run.send("STOP");
     std::thread::sleep(Duration::from_millis(50));
@@ -25,7 +25,7 @@ fn standing_still(place: &Place) -> Under {
 #[test]
 fn a_log_in_other_hands_stops_the_run() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let log = place.file("run.mcap");
 
     let run = standing_still(&place);
@@ -65,7 +65,7 @@ fn a_log_in_other_hands_stops_the_run() {
 /// A rival that writes behind the last commit is not written into, nor cut off.
 #[test]
 fn what_a_rival_appends_stays() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let run = standing_still(&place);
     let mut grown = place.read("run.mcap");
     grown.extend_from_slice(b"what a rival appends");
@@ -87,7 +87,7 @@ fn a_lease_that_cannot_be_read_for_a_while_stops_nobody() {
     let whole = Straight::small();
     // EIO, EMFILE, ESTALE
     for errno in [5, 24, 116] {
-        let place = Place::new();
+        let place = Sandbox::new();
         let faults = format!("{errno} 4 8");
         let command = place.command("run small.toml -o run.mcap --quiet");
         let Some(mut command) = with_faults(command, &[("FAIL_LEASE", &faults)]) else { return };
@@ -102,7 +102,7 @@ fn a_lease_that_cannot_be_read_for_a_while_stops_nobody() {
 fn without_locks_one_of_three_goes_on() {
     let whole = Straight::small();
     for round in 0..50 {
-        let place = Place::new();
+        let place = Sandbox::new();
         let command = "run small.toml -o run.mcap --until 1 --quiet --threads 1";
         if round % 3 == 1 {
             // Left by a process that was killed.
@@ -140,7 +140,7 @@ fn without_locks_one_of_three_goes_on() {
 fn an_empty_log_is_begun_anew_by_one() {
     let whole = Straight::small();
     for round in 0..10 {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", "");
         let command = "run small.toml -o run.mcap --resume --quiet --threads 1";
         let start = || place.command(command).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -158,7 +158,7 @@ fn an_empty_log_is_begun_anew_by_one() {
 fn without_threads_one_does_everything() {
     let whole = Straight::small();
     for made in ["0", "1"] {
-        let place = Place::new();
+        let place = Sandbox::new();
         let run = |arguments: &str| {
             let command = with_faults(place.command(arguments), &[("FAIL_THREADS", made)])?;
             Some(Said::new(arguments, { command }.output().unwrap()))
@@ -177,7 +177,7 @@ fn without_threads_one_does_everything() {
 #[test]
 fn a_limit_on_processes_is_no_panic() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     std::fs::set_permissions(place.path(), std::os::unix::fs::PermissionsExt::from_mode(0o777)).unwrap();
     let mut command = std::process::Command::new("setpriv");
     command.args(["--reuid=54321", "--regid=54321", "--clear-groups", "prlimit", "--nproc=1:1"]);
@@ -200,7 +200,7 @@ fn a_limit_on_processes_is_no_panic() {
 fn the_owner_stays() {
     use std::os::unix::fs::MetadataExt;
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", whole.cut_after(25));
     if std::os::unix::fs::chown(place.file("run.mcap"), Some(54321), Some(54321)).is_err() {
         println!("not shown here: only root may give files away");
@@ -215,7 +215,7 @@ fn the_owner_stays() {
 /// Killed at any instant, `recover` leaves a whole copy or none, and a second try works.
 #[test]
 fn a_recovery_that_is_killed_leaves_all_or_nothing() {
-    let place = Place::new();
+    let place = Sandbox::new();
     // Long enough to be met in the middle.
     let run = crate::synthetic::run(40, 60);
     place.write("run.mcap", crate::support::finished_log(&run));
@@ -249,7 +249,7 @@ fn a_recovery_that_is_killed_leaves_all_or_nothing() {
 #[test]
 fn nothing_is_written_over() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     for name in ["run", "run.mcap"] {
         let said = place.foldline(&format!("replay run.mcap --step 3 --trace {name}")).ends(2);
@@ -266,9 +266,9 @@ fn nothing_is_written_over() {
 
 /// A kill may meet the last write, which ends the log and adds the summary for viewers: the next resume mends it.
 #[test]
-fn a_summary_that_was_cut_is_made_anew() {
+fn a_summary_that_was_cut_is_made_again() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let last = whole.log().entries().last().unwrap().bytes.end as usize;
     for cut in (last..whole.bytes.len()).step_by((whole.bytes.len() - last) / 12) {
         place.write("run.mcap", &whole.bytes[..cut]);

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use foldline::journal::{Completeness, Log, ReadError};
 
 use crate::flips::{Random, seed};
-use crate::program::{Place, Straight, assert_ends_with};
+use crate::program::{Sandbox, Straight, assert_ends_with};
 
 /// What the default test may take.
 const BUDGET: Duration = Duration::from_secs(30);
@@ -17,14 +17,14 @@ const BUDGET: Duration = Duration::from_secs(30);
 fn kill_and_resume(random: &mut Random, trial: usize, took: Duration, hits: &mut Vec<usize>) -> usize {
     let whole = Straight::small();
     let straight = whole.log();
-    let place = Place::new();
+    let place = Sandbox::new();
     let mut kills = 0;
     loop {
         let threads = 1 + random.below(2);
         // The same command from the start and after every kill.
         let command = format!("run small.toml -o run.mcap --resume --quiet --threads {threads}");
         let mut child = place.command(&command).spawn().unwrap();
-        // Every fourth in the first hundredth of a second, where the log comes to be or is copied.
+        // Every fourth in the first hundredth of a second, where the log is created or copied.
         let range = if random.below(4) == 0 { Duration::from_millis(10) } else { took.mul_f64(1.1) };
         let delay = Duration::from_micros(random.below(range.as_micros() as usize) as u64);
         std::thread::sleep(delay);
@@ -67,7 +67,7 @@ fn killed_at_random_instants() {
     let wanted = std::env::var("FOLDLINE_KILLS").ok().map(|text| text.parse::<usize>().unwrap());
     let began = Instant::now();
     Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let start = Instant::now();
     place.foldline("run small.toml -o run.mcap --quiet").ends(0);
     let took = start.elapsed();

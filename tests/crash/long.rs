@@ -19,7 +19,7 @@ use foldline::state::State;
 
 use crate::flips::{Random, seed};
 use crate::memory::peak;
-use crate::program::{Place, Said, scene};
+use crate::program::{Said, Sandbox, scene};
 
 const SCENE: &str = r#"
 [geometry]
@@ -109,7 +109,7 @@ fn write_a_long_log() {
 #[test]
 fn an_index_changes_no_answer() {
     const COMMITS: u64 = 20_000;
-    let place = Place::new();
+    let place = Sandbox::new();
     let path = place.file("long.mcap");
     write_long(&path, COMMITS);
     assert_eq!(place.logs(), ["long.mcap", "long.mcap.index"]);
@@ -185,7 +185,7 @@ fn crafted(index: &[u8]) -> Vec<Vec<u8>> {
 #[test]
 fn what_lies_behind_the_last_block_is_found() {
     const COMMITS: u64 = 5 * 1024 + 1000;
-    let place = Place::new();
+    let place = Sandbox::new();
     let path = place.file("long.mcap");
     write_long_of(&SCENE.replace("elements = [4, 2]", "elements = [24, 12]"), &path, COMMITS);
     let long = LongLog::open(&path).unwrap().unwrap();
@@ -205,7 +205,7 @@ fn what_lies_behind_the_last_block_is_found() {
 #[test]
 fn a_part_of_a_long_log_is_as_good_as_all_of_it() {
     const COMMITS: u64 = 8000;
-    let place = Place::new();
+    let place = Sandbox::new();
     let path = place.file("long.mcap");
     write_long(&path, COMMITS);
     let whole = Log::read(&path).unwrap();
@@ -262,7 +262,7 @@ fn a_part_of_a_long_log_is_as_good_as_all_of_it() {
 #[test]
 fn a_thinned_long_log_has_an_index_too() {
     const COMMITS: u64 = 8000;
-    let place = Place::new();
+    let place = Sandbox::new();
     write_long(&place.file("long.mcap"), COMMITS);
     place.foldline("thin long.mcap --keep 100,every=3000 -o thin.mcap").ends(0);
     let path = place.file("thin.mcap");
@@ -294,7 +294,7 @@ fn a_thinned_long_log_has_an_index_too() {
 #[test]
 fn a_long_log_goes_on() {
     const COMMITS: u64 = 6000;
-    let place = Place::new();
+    let place = Sandbox::new();
     let path = place.file("long.mcap");
     write_long(&path, COMMITS);
     let mut chains = Vec::new();

@@ -1,6 +1,6 @@
 //! Damaged stages in front of whole ones.
 
-use crate::program::{Place, Straight, assert_ends_with};
+use crate::program::{Sandbox, Straight, assert_ends_with};
 
 /// A byte in the first chunk, and one in others as well, cost no stage: what is lost is run again, and the chain tells that it is
 /// the same.
@@ -9,7 +9,7 @@ fn lost_stages_are_made_again() {
     let whole = Straight::small();
     let entries = whole.log().entries().iter().map(|entry| entry.bytes.clone()).collect::<Vec<_>>();
     for (damaged, made) in [(vec![0], 1), (vec![7], 1), (vec![0, 1, 20], 3)] {
-        let place = Place::new();
+        let place = Sandbox::new();
         let mut bytes = whole.bytes.clone();
         for stage in &damaged {
             // In the commit, at the end of the chunk.

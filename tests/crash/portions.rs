@@ -7,13 +7,13 @@ use foldline::journal::{Completeness, Log};
 
 use crate::bounds::measured;
 use crate::long::write_long;
-use crate::program::Place;
+use crate::program::Sandbox;
 
 const COMMITS: u64 = 50_000;
 
 /// Runs a command that takes less memory than the log is long: one that held the log, or its states, would not.
 #[track_caller]
-fn in_less_than(length: u64, place: &Place, arguments: &str) {
+fn in_less_than(length: u64, place: &Sandbox, arguments: &str) {
     let (code, peak, said) = measured(place, arguments);
     println!("{arguments}: {} MiB for a log of {} MiB", peak >> 20, length >> 20);
     assert_eq!(code, Some(0), "{arguments}: {said}");
@@ -22,7 +22,7 @@ fn in_less_than(length: u64, place: &Place, arguments: &str) {
 
 #[test]
 fn no_command_holds_a_long_log() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let path = place.file("long.mcap");
     write_long(&path, COMMITS);
     let length = fs::metadata(&path).unwrap().len();
@@ -50,7 +50,7 @@ fn no_command_holds_a_long_log() {
 /// Damage in the middle, that costs commits and that costs none.
 #[test]
 fn a_long_log_that_is_damaged() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let path = place.file("long.mcap");
     write_long(&path, COMMITS / 2);
     let good = place.read("long.mcap");

@@ -71,7 +71,7 @@ fn a_full_disk_leaves_all_commits_before() {
         }
         let error = writer.take(&run[4].0, &run[4].1).unwrap_err();
         insta::allow_duplicates! {
-            insta::assert_snapshot!(error, @"run.mcap was given up after an earlier error; `foldline resume run.mcap` goes on behind its 4 stages");
+            insta::assert_snapshot!(error, @"run.mcap was given up after an earlier error; `foldline resume run.mcap` continues after its 4 stages");
         }
         assert!(matches!(writer.finish(), Err(WriteError::GivenUp { commits: 4, .. })));
         let log = Log::from_bytes(disk.lock().unwrap().written.clone()).unwrap();
@@ -90,7 +90,7 @@ fn a_failing_disk_stops_the_run() {
         writer.take(state, record).unwrap();
     }
     let error = writer.take(&run[3].0, &run[3].1).unwrap_err();
-    insta::assert_snapshot!(error, @"cannot sync run.mcap; it holds 4 stages. `foldline resume run.mcap` goes on behind the last good one");
+    insta::assert_snapshot!(error, @"cannot sync run.mcap; it holds 4 stages. `foldline resume run.mcap` continues after the last good one");
     assert_eq!(error.source.unwrap().to_string(), "input/output error");
     let log = Log::from_bytes(disk.lock().unwrap().written.clone()).unwrap();
     assert_prefix(&log, &run);

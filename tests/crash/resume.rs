@@ -1,4 +1,4 @@
-//! Going on with logs in files: at any stage, after any end, with damage, and with a rival.
+//! Continuing logs in files: at any stage, after any end, with damage, and with a rival.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -281,15 +281,15 @@ fn an_empty_log_is_not_taken_from_a_rival() {
     let path = folder.file("run.mcap");
     let run = synthetic::run(3, 3);
     fs::write(&path, "").unwrap();
-    let anew = || JournalWriter::create_anew(&path, &synthetic::manifest(), SyncPolicy::AtEnd);
-    let mut first = anew().unwrap();
+    let create = || JournalWriter::create_over_empty(&path, &synthetic::manifest(), SyncPolicy::AtEnd);
+    let mut first = create().unwrap();
     first.commit(&run[0].0, &run[0].1).unwrap();
     let before = fs::read(&path).unwrap();
-    assert!(matches!(anew(), Err(WriteError::Lock(LockError::Busy { .. }))));
+    assert!(matches!(create(), Err(WriteError::Lock(LockError::Busy { .. }))));
     assert_eq!(fs::read(&path).unwrap(), before);
     run[1..].iter().for_each(|(state, record)| first.commit(state, record).unwrap());
     first.finish().unwrap();
-    assert!(matches!(anew(), Err(WriteError::Exists { .. })));
+    assert!(matches!(create(), Err(WriteError::Exists { .. })));
     assert_prefix(&Log::read(&path).unwrap(), &run);
     assert_faultless(&path);
 }
@@ -368,7 +368,7 @@ fn a_power_cut_while_a_log_is_gone_on_with() {
             lost += usize::from(log.last_manifest_is_lost());
         }
         // Only the head of a manifest does not tell yet that its scene is the one before.
-        assert!(lost < 80, "{lost} images do not say which scene they go on with");
+        assert!(lost < 80, "{lost} images do not say which scene they continue with");
         fs::remove_file(&path).unwrap();
     }
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use foldline::journal::Completeness;
 
-use crate::program::{Place, SMALL, Said, Straight, assert_ends_with};
+use crate::program::{SMALL, Said, Sandbox, Straight, assert_ends_with};
 
 /// A run under way, which has reported so many stages as JSON lines.
 pub struct Under {
@@ -59,11 +59,11 @@ impl<R: std::io::Read> Lines for BufReader<R> {
 fn the_first_signal_ends_after_the_stage_in_hand() {
     let whole = Straight::small();
     for (signal, stages) in [("INT", 3), ("TERM", 12), ("INT", 33), ("HUP", 5), ("USR1", 7), ("XCPU", 9)] {
-        let place = Place::new();
+        let place = Sandbox::new();
         let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), stages);
         run.send(signal);
         let (said, reported) = run.end();
-        said.ends(75).says(&["interrupted; go on with: foldline resume run.mcap"]);
+        said.ends(75).says(&["interrupted; continue with: foldline resume run.mcap"]);
         let log = place.log("run.mcap");
         assert_eq!(log.completeness(), Completeness::Unfinished);
         assert_eq!(log.entries().len(), reported);
@@ -85,11 +85,11 @@ fn the_first_signal_ends_after_the_stage_in_hand() {
 /// The signals that come more than once for one cause end a run at a stage however often they come, and `nohup` is heeded.
 #[test]
 fn signals_that_come_again_and_one_that_is_ignored() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), 5);
     (0..5).for_each(|_| run.send("HUP"));
     let (said, reported) = run.end();
-    said.ends(75).says(&["interrupted; go on with: foldline resume run.mcap"]);
+    said.ends(75).says(&["interrupted; continue with: foldline resume run.mcap"]);
     assert_eq!(place.log("run.mcap").entries().len(), reported);
 
     let whole = Straight::small();
@@ -113,7 +113,7 @@ fn on_cpu(process: u32) -> Duration {
 /// A stage that takes minutes: the first signal waits for it, the second does not.
 #[test]
 fn the_second_signal_ends_at_once() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let large =
         SMALL.replace("elements = [4, 4]", "elements = [256, 128]").replace("part = \"quarter\"", "part = \"none\"");
     place.write("large.toml", large);
@@ -149,7 +149,7 @@ fn the_second_signal_ends_at_once() {
 #[test]
 fn a_second_process_is_refused() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), 8);
     run.send("STOP");
     std::thread::sleep(Duration::from_millis(50));
@@ -176,7 +176,7 @@ fn a_second_process_is_refused() {
 #[test]
 fn the_one_that_lost_the_lease_stops() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), 8);
     run.send("STOP");
     std::thread::sleep(Duration::from_millis(50));
@@ -197,7 +197,7 @@ fn the_one_that_lost_the_lease_stops() {
 /// A log that is removed while it is written is missed at the end, not passed over in silence.
 #[test]
 fn a_log_that_is_removed_is_missed() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let run = Under::way(place.command("run small.toml -o run.mcap --json --threads 1"), 3);
     std::fs::remove_file(place.file("run.mcap")).unwrap();
     run.end().0.ends(1).says(&["run.mcap was removed while it was written"]);

@@ -4,7 +4,7 @@ use foldline::journal::{Completeness, Level, Log, RecoverOutcome, Resume, recove
 use foldline::state::Hash;
 
 use crate::flips::{Random, seed};
-use crate::program::{Place, Said};
+use crate::program::{Said, Sandbox};
 
 const SCENE: &str = include_str!("../../checkpoints/golden/scene.toml");
 
@@ -24,7 +24,7 @@ struct Stretches {
 
 impl Stretches {
     fn new() -> Self {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("near.toml", scene_to("1.0"));
         place.write("far.toml", scene_to("3.0"));
         let end = |scene: &str| {
@@ -45,7 +45,7 @@ impl Stretches {
 
     /// Resumes a damaged copy. It comes to the end that it should come to, or says why it does not.
     fn resume(&self, bytes: &[u8], what: &str) -> bool {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("log.mcap", bytes);
         let said: Said = place.foldline("resume log.mcap --quiet");
         if said.code == Some(0) {
@@ -116,7 +116,7 @@ fn five_hundred_damages() {
 #[test]
 fn a_lost_manifest_is_said_and_has_a_way_out() {
     let whole = Stretches::new();
-    let place = Place::new();
+    let place = Sandbox::new();
     let mut bytes = whole.bytes.clone();
     bytes[whole.manifest.start] ^= 1;
     place.write("log.mcap", &bytes);
@@ -137,7 +137,7 @@ fn a_lost_manifest_is_said_and_has_a_way_out() {
 
 /// Nothing is missed of a log to which a lost scene was given again.
 #[track_caller]
-fn has_its_scene_again(place: &Place) {
+fn has_its_scene_again(place: &Sandbox) {
     place.foldline("verify log.mcap").ends(0).says(&["makes the same states", "log.mcap: good"]);
     place.foldline("resume log.mcap").ends(0).says(&["nothing to do"]);
     place.foldline("replay log.mcap --from-scratch").ends(0);
@@ -150,7 +150,7 @@ fn has_its_scene_again(place: &Place) {
 #[test]
 fn a_finished_log_gets_its_scene_again() {
     for recovered in [false, true] {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("far.toml", scene_to("3.0"));
         place.foldline("run far.toml -o log.mcap --quiet").ends(0);
         let mut bytes = place.read("log.mcap");
@@ -171,7 +171,7 @@ fn a_finished_log_gets_its_scene_again() {
 /// way out that it names puts the scene back, whatever became of the log meanwhile.
 #[test]
 fn an_earlier_scene_is_put_back() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let tighter = scene_to("3.0") + "\n[solver]\ntolerance = 1e-9\n";
     for (name, scene) in [("first", scene_to("3.0")), ("last", tighter)] {
         place.write(&format!("{name}.toml"), scene);
@@ -219,14 +219,14 @@ fn an_earlier_scene_is_put_back() {
 #[test]
 fn an_older_scene_is_said_to_be_one() {
     let whole = Stretches::new();
-    let place = Place::new();
+    let place = Sandbox::new();
     let mut bytes = whole.bytes.clone();
     bytes[whole.manifest.start + 40] ^= 1;
     place.write("log.mcap", &bytes);
     place.write("whole.mcap", &whole.bytes);
     for command in ["inspect log.mcap", "bisect log.mcap whole.mcap", "bisect whole.mcap log.mcap"] {
         let said = place.foldline(command);
-        assert!(said.out.contains("what the run was asked for from stage"), "{command}: {}", said.out);
+        assert!(said.out.contains("what the run was to compute from stage"), "{command}: {}", said.out);
     }
 }
 
@@ -245,7 +245,7 @@ fn a_manifest_that_nothing_depends_on() {
     for (what, bytes) in
         [("torn", torn.to_vec()), ("head", flipped(0)), ("length", flipped(32)), ("scene", flipped(900))]
     {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("log.mcap", &bytes);
         let said = ["the log ends in a manifest that cannot be read: no stage was run under it"];
         place.foldline("verify log.mcap").ends(1).says(&said);

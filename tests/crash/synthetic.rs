@@ -111,7 +111,7 @@ pub fn scene_hash() -> Hash {
     blake3::hash(b"a scene")
 }
 
-/// Goes on by `stages` stages behind `previous`, from `state`.
+/// Continues by `stages` stages behind `previous`, from `state`.
 pub fn go_on(state: &State, previous: Option<&Commit>, stages: usize) -> Vec<(State, Record)> {
     let (mut state, mut previous) = (state.clone(), previous.copied());
     (0..stages)

@@ -1,10 +1,10 @@
 //! Questions to logs: where two part, where one jumped, when a condition first holds.
 
-use crate::program::{Place, SMALL, Straight, small_with};
+use crate::program::{SMALL, Sandbox, Straight, small_with};
 
 #[test]
 fn runs_on_one_thread_and_on_two_are_the_same() {
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("two.mcap", &Straight::small().bytes);
     place.foldline("run small.toml -o one.mcap --threads 1 --quiet").ends(0);
     let said = place.foldline("bisect one.mcap two.mcap").ends(0);
@@ -28,7 +28,7 @@ fn scenes_that_differ_part_where_the_difference_first_tells() {
         ("increment_deg = 2.0", "increment_deg = 1.0", "scene: load.increment_deg is 2.0 and 1.0"),
     ];
     for (from, to, scenes) in changes {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("a.mcap", &whole.bytes);
         place.write("small.toml", small_with(&[(from, to)]));
         place.foldline("run small.toml -o b.mcap --quiet").ends(0);
@@ -62,7 +62,7 @@ fn number_after(text: &str, piece: &str) -> f64 {
 #[test]
 fn the_snap_is_located() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     let log = whole.log();
     let jump = log.entries().iter().position(|entry| entry.record.report.jumped).unwrap();
@@ -94,7 +94,7 @@ fn the_snap_is_located() {
     }
     assert_eq!(place.read("run.mcap"), whole.bytes);
     place.foldline("run small.toml -o short.mcap --until 6").ends(0);
-    place.foldline("bisect short.mcap --snap").ends(1).says(&["no stage of this log jumped", "stands at 6°"]);
+    place.foldline("bisect short.mcap --snap").ends(1).says(&["no stage of this log jumped", "is at 6°"]);
     place.foldline("bisect run.mcap --snap --tolerance 0").ends(2);
 }
 
@@ -102,7 +102,7 @@ fn the_snap_is_located() {
 #[test]
 fn conditions() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     let log = whole.log();
     let when = |condition: &str| {
@@ -138,7 +138,7 @@ fn conditions() {
 
 #[test]
 fn one_question_at_a_time() {
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &Straight::small().bytes);
     place.foldline("bisect run.mcap").ends(2);
     place.foldline("bisect run.mcap --snap --when step>3").ends(2);
@@ -152,7 +152,7 @@ fn one_question_at_a_time() {
 #[test]
 fn a_load_factor_is_not_called_a_rotation() {
     let roof = include_str!("path.toml").split("[continuation]").next().unwrap();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("one.toml", roof);
     place.write("other.toml", roof.replace("increment = 0.2", "increment = 0.125"));
     for scene in ["one", "other"] {

@@ -4,7 +4,7 @@ use foldline::journal::{JournalWriter, Log, Manifest};
 use foldline::record::Outcome;
 use foldline::scene::{Stage, SyncPolicy};
 
-use crate::program::{Place, SMALL, Straight, assert_ends_with, scene, small_with};
+use crate::program::{SMALL, Sandbox, Straight, assert_ends_with, scene, small_with};
 
 const TARGET: &str = "rotation_deg = 16.0";
 
@@ -13,15 +13,15 @@ fn end_of_step(log: &Log, step: u64) -> usize {
     log.entries().iter().rposition(|entry| entry.record.report.step == step).unwrap()
 }
 
-/// What is written beside the states may change: every stage stands.
+/// What is written beside the states may change: every stage is kept.
 #[test]
 fn output_alone() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", whole.cut_after(17));
     place.write("small.toml", format!("{SMALL}\n[output]\nsync = \"each-stage\"\n"));
     let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
-    said.says(&["the log holds 17 stages, all good", "output.sync changed", "every stage stands"]);
+    said.says(&["the log holds 17 stages, all good", "output.sync changed", "every stage is kept"]);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "output changed");
 }
 
@@ -29,13 +29,13 @@ fn output_alone() {
 #[test]
 fn new_probes_and_a_mesh_history() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     let probed =
         format!("{SMALL}\n[output]\nmesh_history = true\n\n[[probe]]\nname = \"strain energy\"\nkind = \"energy\"\n");
     place.write("small.toml", &probed);
     let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
-    let stand = format!("every stage stands, and the {} in the log keep what they were written with", whole.stages);
+    let stand = format!("every stage is kept, and the {} in the log keep what they were written with", whole.stages);
     let lines: Vec<&str> = said.err.lines().filter(|line| line.contains(&stand)).collect();
     assert!(
         lines.len() == 2 && lines[0].contains("mesh_history") && lines[1].contains("probe.strain energy changed"),
@@ -78,7 +78,7 @@ fn a_probe_that_is_another_under_the_same_name() {
     const ROOF: &str = include_str!("path.toml");
     let other = ROOF.replace("on = [0.5, 0.5]\ncomponent", "on = [0.5, 0.25]\ncomponent");
     assert_ne!(ROOF, other);
-    let (place, straight) = (Place::new(), Place::new());
+    let (place, straight) = (Sandbox::new(), Sandbox::new());
     straight.write("other.toml", &other);
     straight.foldline("run other.toml -o run.mcap --quiet").ends(0);
     place.write("roof.toml", ROOF);
@@ -90,7 +90,7 @@ fn a_probe_that_is_another_under_the_same_name() {
     said.says(&["probe.w_c.on changed ([0.5,0.5] → [0.5,0.25])"]);
     let names = format!("probe `w_c` of stages 0 to {} is not the one of the last scene", first - 1);
     let table = place.foldline("inspect run.mcap").ends(0).says(&[&names, "foldline inspect run.mcap --probes"]).out;
-    let probes = |place: &Place, command: &str| -> Vec<serde_json::Value> {
+    let probes = |place: &Sandbox, command: &str| -> Vec<serde_json::Value> {
         let out = place.foldline(command).ends(0).out;
         out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap()["probes"].clone()).collect()
     };
@@ -98,8 +98,12 @@ fn a_probe_that_is_another_under_the_same_name() {
     assert_eq!(probes(&place, "inspect run.mcap --json --probes"), right);
     assert_ne!(probes(&place, "inspect run.mcap --json"), right, "the log keeps what it has");
     let cells = |table: &str, stage: usize| table.lines().nth(stage + 1).unwrap().split_whitespace().count();
-    let anew = place.foldline("inspect run.mcap --probes").ends(0).out;
-    assert_eq!((cells(&table, 0) + 1, cells(&table, first)), (cells(&anew, 0), cells(&anew, first)), "{table}{anew}");
+    let again = place.foldline("inspect run.mcap --probes").ends(0).out;
+    assert_eq!(
+        (cells(&table, 0) + 1, cells(&table, first)),
+        (cells(&again, 0), cells(&again, first)),
+        "{table}{again}"
+    );
     for place in [&place, &straight] {
         place.foldline("plot run.mcap -o pictures").ends(0);
     }
@@ -114,7 +118,7 @@ fn many_probes_are_a_line_and_a_column_each() {
     };
     let was = include_str!("path.toml").to_owned() + &probe("left", "[0.5, 0.25]") + &probe("right", "[0.5, 0.75]");
     let is = was.replace("\"w_c\"", "\"crown\"").replace("[0.5, 0.75]", "[0.25, 0.75]").replace("\"z\"", "\"x\"");
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("was.toml", &was);
     place.write("is.toml", is + &probe("end", "[0.0, 0.5]"));
     place.foldline("run was.toml -o run.mcap --until 0.5 --quiet").ends(0);
@@ -128,9 +132,9 @@ fn many_probes_are_a_line_and_a_column_each() {
     ]);
     let steps: Vec<&str> = said.err.lines().filter(|line| line.starts_with("step ")).collect();
     assert!(steps.len() > 3 && steps.iter().all(|line| line.contains("  crown ")), "{}", said.err);
-    let anew = place.foldline("inspect run.mcap --probes").ends(0);
-    assert!(!anew.err.contains("--probes") && !anew.out.contains("--probes"), "{}{}", anew.out, anew.err);
-    let heads = anew.out.lines().find(|line| line.contains("crown mm")).unwrap();
+    let again = place.foldline("inspect run.mcap --probes").ends(0);
+    assert!(!again.err.contains("--probes") && !again.out.contains("--probes"), "{}{}", again.out, again.err);
+    let heads = again.out.lines().find(|line| line.contains("crown mm")).unwrap();
     assert!(["left mm", "right mm", "end mm"].iter().all(|head| heads.contains(head)), "{heads}");
 }
 
@@ -144,11 +148,11 @@ fn names_and_later_loads() {
     let renamed = was.replace("left hinge", "links").replace("[[action]]", "[[action]]\nname = \"pull\"");
     let states = |log: &Log| log.entries().iter().map(|entry| entry.record.commit.state_hash).collect::<Vec<_>>();
     for (what, is, until, kept) in [
-        ("renamed", &renamed, 0.6, "every stage stands"),
-        ("changed beyond", &later, 0.6, "every stage stands"),
+        ("renamed", &renamed, 0.6, "every stage is kept"),
+        ("changed beyond", &later, 0.6, "every stage is kept"),
         ("changed before the last stages", &later, 0.9, "is new"),
     ] {
-        let (place, straight) = (Place::new(), Place::new());
+        let (place, straight) = (Sandbox::new(), Sandbox::new());
         place.write("was.toml", &was);
         place.foldline(&format!("run was.toml -o run.mcap --until {until} --quiet")).ends(0);
         for place in [&place, &straight] {
@@ -161,7 +165,7 @@ fn names_and_later_loads() {
         place.foldline("replay run.mcap --from-scratch").ends(0);
     }
     // Where nothing can be kept, the message says why.
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("was.toml", &was);
     place.write("other.toml", ramp("[0.1, 0], [0.7, 0.7], [1, 1]"));
     place.write("at-start.toml", ramp("[0, 0], [0.3, 0.7], [1, 1]"));
@@ -187,7 +191,7 @@ fn names_and_later_loads() {
 fn a_farther_target() {
     let whole = Straight::small();
     for (near, clipped) in [("12.0", false), ("11.3", true), ("10.46", true), ("9.0", true), ("2.0", false)] {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("near.toml", small_with(&[(TARGET, &format!("rotation_deg = {near}"))]));
         place.foldline("run near.toml -o run.mcap").ends(0);
         let near_stages = place.log("run.mcap").entries().len();
@@ -195,15 +199,15 @@ fn a_farther_target() {
         assert_ends_with(&place.log("run.mcap"), whole.chain, &format!("target {near} and then 16"));
         assert_eq!(place.logs().len(), 1 + usize::from(clipped), "{near}: {:?}", place.logs());
         if clipped {
-            assert!(!said.err.contains("every stage stands"), "{near}: stages go, and yet: {}", said.err);
+            assert!(!said.err.contains("every stage is kept"), "{near}: stages go, and yet: {}", said.err);
             said.says(&[
                 "load.rotation_deg changed",
-                "stand,",
+                "are kept,",
                 &format!("the log holds {near_stages} stages, all good; the first"),
             ]);
             assert_eq!(place.logs(), ["run.mcap", "run.mcap.replaced-1"]);
         } else {
-            said.says(&["load.rotation_deg changed", "every stage stands"]);
+            said.says(&["load.rotation_deg changed", "every stage is kept"]);
         }
     }
 }
@@ -216,7 +220,7 @@ fn a_nearer_target() {
         let near_scene = small_with(&[(TARGET, &format!("rotation_deg = {near}"))]);
         let straight = Straight::run(&near_scene, 2);
         for stages in [whole.stages, 30, 5] {
-            let place = Place::new();
+            let place = Sandbox::new();
             place.write("run.mcap", whole.cut_after(stages));
             place.write("small.toml", &near_scene);
             place.foldline("run small.toml -o run.mcap --resume").ends(0);
@@ -235,15 +239,15 @@ fn solver_tolerance() {
     let third = end_of_step(&log, 3) + 1;
     for (stages, keep, last_step) in [(third, third, 3), (third + 1, third + 2, 3), (third - 2, 0, 2), (1, 0, 0)] {
         let keep = if keep <= stages && keep > 0 { keep } else { end_of_step_at_most(&log, stages) };
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", whole.cut_after(stages));
         place.write("small.toml", &tighter);
         let said = place.foldline("run small.toml -o run.mcap --resume").ends(0);
         if last_step == 0 {
-            said.says(&["solver.tolerance changed", "no complete step stands"]);
+            said.says(&["solver.tolerance changed", "no complete step is kept"]);
         } else {
             let stand =
-                format!("steps 1 to {last_step} stand, {} on is new: the log is mixed from there on", last_step + 1);
+                format!("steps 1 to {last_step} are kept, {} on is new: the log is mixed from there on", last_step + 1);
             said.says(&["solver.tolerance changed (1e-7 → 1e-9)", &stand]);
         }
         let mixed = place.log("run.mcap");
@@ -273,7 +277,7 @@ fn end_of_step_at_most(log: &Log, stages: usize) -> usize {
 /// A new target and new steps at once: the earlier of the two boundaries holds, and it is the end of a step.
 #[test]
 fn target_and_tolerance_at_once() {
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("near.toml", small_with(&[(TARGET, "rotation_deg = 10.46")]));
     place.foldline("run near.toml -o run.mcap").ends(0);
     let near = place.log("run.mcap");
@@ -291,7 +295,7 @@ fn target_and_tolerance_at_once() {
 #[test]
 fn geometry_and_the_like() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", whole.cut_after(17));
     let changes = [
         ("length_mm = 300.0", "length_mm = 310.0", "geometry.length_mm changed (300.0 in the log, 310.0 now)"),
@@ -315,7 +319,7 @@ fn geometry_and_the_like() {
 #[test]
 fn another_machine() {
     let whole = Straight::small();
-    let (place, log) = (Place::new(), whole.log());
+    let (place, log) = (Sandbox::new(), whole.log());
     let elsewhere = Manifest { host: "elsewhere".into(), cpu: "abacus".into(), ..log.manifests()[0].clone() };
     let mut writer = JournalWriter::create(&place.file("run.mcap"), &elsewhere, SyncPolicy::AtEnd).unwrap();
     for (index, entry) in log.entries()[..25].iter().enumerate() {
@@ -323,7 +327,7 @@ fn another_machine() {
     }
     drop(writer);
     let said = place.foldline("resume run.mcap").ends(0);
-    said.says(&["another machine: written on elsewhere (abacus", "goes on on", "the log records it"]);
+    said.says(&["another machine: written on elsewhere (abacus", "continues on", "the log records it"]);
     let resumed = place.log("run.mcap");
     let machines: Vec<_> =
         resumed.manifests().iter().map(|manifest| (&*manifest.cpu, manifest.first_ordinal)).collect();
@@ -339,7 +343,7 @@ fn another_machine() {
 #[test]
 fn a_host_that_commands_a_terminal() {
     let whole = Straight::small();
-    let (place, log) = (Place::new(), whole.log());
+    let (place, log) = (Sandbox::new(), whole.log());
     let elsewhere = Manifest { host: "\u{1b}[2Jelsewhere\u{9b}".into(), ..log.manifests()[0].clone() };
     let mut writer = JournalWriter::create(&place.file("run.mcap"), &elsewhere, SyncPolicy::AtEnd).unwrap();
     for (index, entry) in log.entries()[..25].iter().enumerate() {
@@ -358,7 +362,7 @@ fn a_host_that_commands_a_terminal() {
 #[test]
 fn a_lost_scene_is_not_replaced_by_an_older_one() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", whole.cut_after(17));
     let tighter = small_with(&[("[solver]", "[solver]\ntolerance = 1e-9")]);
     place.write("small.toml", &tighter);

@@ -1,6 +1,6 @@
 //! A run cut anywhere and resumed ends with the same chain of hashes as one that was never cut.
 
-use crate::program::{Place, SMALL, Straight, assert_ends_with, assert_resumes_from_every_cut, small_syncing};
+use crate::program::{SMALL, Sandbox, Straight, assert_ends_with, assert_resumes_from_every_cut, small_syncing};
 
 /// The small run with a policy of syncing, cut after every stage in turn.
 fn every_cut(policy: &str, threads_before: usize, threads_after: usize) {
@@ -29,7 +29,7 @@ fn every_cut_from_one_thread_to_one_syncing_at_the_end() {
 fn every_cut_of_a_run_whose_increments_grow() {
     let growing = SMALL.replace("increment_deg = 2.0", "increment_deg = 0.5\nlongest_increment_deg = 4.0");
     let whole = Straight::run(&growing, 1);
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("whole.mcap", &whole.bytes);
     let log = place.log("whole.mcap");
     let rotations: Vec<f64> = log.entries().iter().map(|entry| entry.record.report.parameter).collect();
@@ -42,15 +42,15 @@ fn every_cut_of_a_run_whose_increments_grow() {
 #[test]
 fn a_resume_says_what_it_found() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("cut.mcap", whole.cut_after(9));
-    place.foldline("resume cut.mcap").ends(0).says(&["the log holds 9 stages, all good", "goes on from 6° with"]);
+    place.foldline("resume cut.mcap").ends(0).says(&["the log holds 9 stages, all good", "continues from 6° with"]);
 
     let mut torn = whole.cut_after(9).to_vec();
     torn.extend_from_slice(&whole.bytes[torn.len()..torn.len() + 700]);
     place.write("torn.mcap", &torn);
     let said = place.foldline("resume torn.mcap").ends(0);
-    said.says(&["the log holds 9 stages, all good", "cut off: good up to byte", "goes on from 6° with"]);
+    said.says(&["the log holds 9 stages, all good", "cut off: good up to byte", "continues from 6° with"]);
     assert_ends_with(&place.log("torn.mcap"), whole.chain, "torn");
 
     let mut flipped = whole.bytes.clone();
@@ -66,7 +66,7 @@ fn a_resume_says_what_it_found() {
 #[test]
 fn resuming_a_finished_log_changes_nothing() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     place.foldline("resume run.mcap").ends(0).says(&["nothing to do: the log has reached 16°"]);
     place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["nothing to do: the log has reached 16°"]);
@@ -78,7 +78,7 @@ fn resuming_a_finished_log_changes_nothing() {
 #[test]
 fn until_here_and_until_there_is_the_straight_run() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.foldline("run small.toml -o run.mcap --until 5 --threads 2").ends(0);
     assert_eq!(place.log("run.mcap").entries().last().unwrap().record.report.parameter, 6.0);
     place.foldline("resume run.mcap --until 10.3 --threads 1").ends(0);
@@ -94,7 +94,7 @@ fn until_here_and_until_there_is_the_straight_run() {
 #[test]
 fn json_of_a_resume_is_the_stages_that_it_made() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("cut.mcap", whole.cut_after(30));
     let said = place.foldline("resume cut.mcap --json").ends(0);
     assert_eq!(said.err, "");
@@ -107,11 +107,11 @@ fn json_of_a_resume_is_the_stages_that_it_made() {
 #[test]
 fn the_same_scene_again_goes_on_with_its_log() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.foldline("run small.toml -o run.mcap --resume --until 9").ends(0);
     place.foldline("run small.toml -o run.mcap").ends(2).says(&["run.mcap exists and is not overwritten", "resume"]);
     place.write("small.toml", format!("# another comment\n{SMALL}"));
-    place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["goes on from 10° with solve"]);
+    place.foldline("run small.toml -o run.mcap --resume").ends(0).says(&["continues from 10° with solve"]);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "run --resume");
 }
 
@@ -119,7 +119,7 @@ fn the_same_scene_again_goes_on_with_its_log() {
 #[test]
 fn mesh_history_changes_no_hash() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("small.toml", format!("{SMALL}\n[output]\nmesh_history = true\n"));
     place.foldline("run small.toml -o run.mcap").ends(0);
     assert_ends_with(&place.log("run.mcap"), whole.chain, "with viewers' topics");

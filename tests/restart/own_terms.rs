@@ -17,7 +17,7 @@ use foldline::spline::Mesh;
 use foldline::state::Hash;
 
 use crate::elastic_foundation::Foundation;
-use crate::program::{Place, SMALL};
+use crate::program::{SMALL, Sandbox};
 
 /// A force along z on the first control point, whatever the shell does.
 #[derive(Debug)]
@@ -52,7 +52,7 @@ fn pull(force: f64) -> Vec<Arc<dyn TermSource>> {
 }
 
 /// A log of the first stages of a run.
-fn begun(place: &Place, scene: &Scene, own: &[Arc<dyn TermSource>], count: usize) -> PathBuf {
+fn begun(place: &Sandbox, scene: &Scene, own: &[Arc<dyn TermSource>], count: usize) -> PathBuf {
     let path = place.file("own.mcap");
     let mut stages = Stages::with_terms(scene.clone(), own.to_vec());
     let manifest = Manifest::here("small.toml".as_ref(), &scene.to_toml(), 1).with_terms(stages.own_terms());
@@ -63,7 +63,7 @@ fn begun(place: &Place, scene: &Scene, own: &[Arc<dyn TermSource>], count: usize
     path
 }
 
-/// Goes on with a log to the end of its run, as a program that has the terms does.
+/// Continues a log to the end of its run, as a program that has the terms does.
 fn gone_on_with(path: &Path, own: &[Arc<dyn TermSource>]) -> Log {
     let claim = Resume::open(path).unwrap();
     let log = claim.log();
@@ -95,7 +95,7 @@ fn chain(log: &Log) -> Vec<Hash> {
 
 #[test]
 fn a_log_with_a_term_that_is_not_there_is_not_gone_on_with() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let scene = parse(SMALL, "small.toml").unwrap();
     let path = begun(&place, &scene, &pull(1e-3), 4);
     let log = Log::read(&path).unwrap();
@@ -122,7 +122,7 @@ fn a_log_with_a_term_that_is_not_there_is_not_gone_on_with() {
 /// Who has the term continues, runs stages again and locates the snap.
 #[test]
 fn a_log_is_gone_on_with_by_who_has_its_terms() {
-    let place = Place::new();
+    let place = Sandbox::new();
     let scene = parse(SMALL, "small.toml").unwrap();
     let own = pull(1e-3);
     let log = gone_on_with(&begun(&place, &scene, &own, 9), &own);
@@ -149,7 +149,7 @@ fn a_path_on_a_foundation_is_gone_on_with() {
     let whole = straight(&scene, &own);
     assert!(whole.len() > 4, "{} stages", whole.len());
     for count in [1, whole.len() / 2, whole.len() - 1] {
-        let place = Place::new();
+        let place = Sandbox::new();
         let log = gone_on_with(&begun(&place, &scene, &own, count), &own);
         assert_eq!(chain(&log), whole, "cut after {count}");
         let report = &log.entries().last().unwrap().record.report;

@@ -9,7 +9,7 @@ use foldline::record::Outcome;
 use foldline::scene::Stage;
 use foldline::state::Course;
 
-use crate::program::{Place, Straight, assert_resumes_from_every_cut, scene};
+use crate::program::{Sandbox, Straight, assert_resumes_from_every_cut, scene};
 
 /// A roof through its limit points, refined on the way.
 const ROOF: &str = include_str!("path.toml");
@@ -97,7 +97,7 @@ fn every_stage_comes_out_again() {
             let reports = [&replayed.report, &log.entries()[index].record.report];
             assert_eq!(format!("{:?}", reports[0]), format!("{:?}", reports[1]), "stage {index}");
         }
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", &whole.bytes);
         let said = place.foldline("replay run.mcap --from-scratch --threads 1").ends(0);
         assert_eq!(said.out.lines().filter(|line| line.ends_with("bit-identical")).count(), whole.stages);
@@ -148,16 +148,16 @@ fn another_longest_step() {
     let bisecting =
         stages_that(&log, |index| log.entries()[index].record.report.outcome == Outcome::RejectedCriticalPoint);
     for stages in [2, 3, bisecting[1] + 1] {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", whole.cut_after(stages));
         place.write("path.toml", &shorter);
         let said = place.foldline("run path.toml -o run.mcap --resume").ends(0);
-        said.says(&["continuation.longest_step changed (8.0 → 2.0)", "stand,", "on is new"]);
+        said.says(&["continuation.longest_step changed (8.0 → 2.0)", "are kept,", "on is new"]);
         let mixed = place.log("run.mcap");
         let keep = mixed.manifests()[1].first_ordinal as usize;
-        assert!(keep <= stages && keep > 0, "{keep} of {stages} stages stand");
+        assert!(keep <= stages && keep > 0, "{keep} of {stages} stages are kept");
         let last = mixed.state(keep - 1).unwrap();
-        assert!(last.drive.control.rejection.is_none(), "what stands ends with a complete step");
+        assert!(last.drive.control.rejection.is_none(), "what is kept ends with a complete step");
         let steps = |index: usize| log.entries()[index].record.report.step;
         assert!(steps(keep) > steps(keep - 1) && steps(keep) + 1 >= steps(stages), "no complete step is dropped");
         for (index, entry) in mixed.entries().iter().enumerate() {
@@ -175,14 +175,14 @@ fn another_longest_step() {
 fn from_load_control_to_arc_length() {
     let by_load = with(ROOF, &[("[continuation]\ncontrol = \"arc-length\"\nlongest_step = 8.0\n", "")]);
     for until in [0.4, 0.9] {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("path.toml", &by_load);
         place.foldline(&format!("run path.toml -o run.mcap --until {until}")).ends(0);
         let before = place.log("run.mcap");
         let last = before.state(before.entries().len() - 1).unwrap();
         place.write("path.toml", ROOF);
         let said = place.foldline("run path.toml -o run.mcap --resume").ends(0);
-        said.says(&["continuation", &format!("steps 1 to {} stand, {} on is new", last.step, last.step + 1)]);
+        said.says(&["continuation", &format!("steps 1 to {} are kept, {} on is new", last.step, last.step + 1)]);
         let after = place.log("run.mcap");
         for (old, new) in before.entries().iter().zip(after.entries()) {
             assert_eq!(old.record, new.record);
@@ -201,7 +201,7 @@ fn from_load_control_to_arc_length() {
 #[test]
 fn most_steps() {
     let whole = roof();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("path.toml", with(ROOF, &[("longest_step = 8.0", "longest_step = 8.0\nmost_steps = 9")]));
     let said = place.foldline("run path.toml -o run.mcap --quiet").ends(1);
     said.says(&["load factor 1.6", "continuation.most_steps = 9", "raise most_steps", "--resume", "keeps every stage"]);

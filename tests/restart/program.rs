@@ -12,9 +12,9 @@ use foldline::state::Hash;
 pub const SMALL: &str = include_str!("small.toml");
 
 /// A folder of its own for a test, with the small scene in it.
-pub struct Place(tempfile::TempDir);
+pub struct Sandbox(tempfile::TempDir);
 
-impl Place {
+impl Sandbox {
     pub fn new() -> Self {
         let place = Self(tempfile::tempdir().unwrap());
         place.write("small.toml", SMALL);
@@ -129,7 +129,7 @@ pub struct Straight {
 impl Straight {
     /// Runs a scene in one go.
     pub fn run(scene: &str, threads: usize) -> Self {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("straight.toml", scene);
         place.foldline(&format!("run straight.toml -o straight.mcap --quiet --threads {threads}")).ends(0);
         let log = place.log("straight.mcap");
@@ -188,7 +188,7 @@ pub fn assert_ends_with(log: &Log, chain: Hash, what: &str) {
 
 /// Cuts a straight run after every stage in turn and resumes each.
 pub fn assert_resumes_from_every_cut(whole: &Straight, run: &str, threads_before: usize, threads_after: usize) {
-    let place = Place::new();
+    let place = Sandbox::new();
     for stages in 0..=whole.stages {
         place.write("cut.mcap", whole.cut_after(stages));
         place.foldline(&format!("resume cut.mcap --quiet --threads {threads_after}")).ends(0);

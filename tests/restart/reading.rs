@@ -2,7 +2,7 @@
 
 use foldline::journal::{Completeness, Log};
 
-use crate::program::{Place, Straight, assert_ends_with};
+use crate::program::{Sandbox, Straight, assert_ends_with};
 
 /// What each kind of log gives.
 struct Case {
@@ -29,9 +29,9 @@ fn cases() -> Vec<Case> {
         bytes[in_commit(&whole.log(), behind)] ^= 1;
         bytes
     };
-    let unfinished = &["unfinished; go on with: foldline resume"][..];
-    let cut = &["cut off: good up to byte", "unfinished; go on with: foldline resume"][..];
-    let damaged = &["damaged at byte", "behind what is lost", "unfinished; go on with"][..];
+    let unfinished = &["unfinished; continue with: foldline resume"][..];
+    let cut = &["cut off: good up to byte", "unfinished; continue with: foldline resume"][..];
+    let damaged = &["damaged at byte", "behind what is lost", "unfinished; continue with"][..];
     vec![
         Case { name: "whole", bytes: bytes.clone(), stages: all, inspect: &["16°"], verify: 0, recover: 0 },
         Case {
@@ -52,7 +52,7 @@ fn cases() -> Vec<Case> {
 fn what_each_log_gives() {
     let whole = Straight::small();
     for Case { name, bytes, stages, inspect, verify, recover } in cases() {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", &bytes);
         let said = place.foldline("inspect run.mcap").ends(0);
         said.says(inspect);
@@ -88,11 +88,11 @@ fn what_each_log_gives() {
     }
 }
 
-/// Garbage behind a log, and a manifest that is lost, are wrong, even where every stage stands.
+/// Garbage behind a log, and a manifest that is lost, are wrong, even where every stage is kept.
 #[test]
 fn whatever_is_wrong_is_an_exit_code() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     place.foldline("verify run.mcap").ends(0).says(&["run.mcap: good"]);
     place.write("run.mcap", [&whole.bytes[..], b"garbage"].concat());
@@ -108,7 +108,7 @@ fn whatever_is_wrong_is_an_exit_code() {
 #[test]
 fn all_findings_are_listed() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let mut bytes = whole.bytes.clone();
     for behind in [12, 30] {
         bytes[in_commit(&whole.log(), behind)] ^= 1;
@@ -123,7 +123,7 @@ fn all_findings_are_listed() {
 
 #[test]
 fn what_is_no_log() {
-    let place = Place::new();
+    let place = Sandbox::new();
     for command in ["verify none.mcap", "inspect none.mcap", "resume none.mcap", "replay none.mcap --step 1"] {
         place.foldline(command).ends(2).says(&["cannot read none.mcap", "No such file"]);
     }

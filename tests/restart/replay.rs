@@ -5,10 +5,10 @@ use foldline::journal::ITERATE_TOPIC;
 use foldline::pipeline::Stages;
 use foldline::scene::Stage;
 
-use crate::program::{Place, SMALL, Straight, scene};
+use crate::program::{SMALL, Sandbox, Straight, scene};
 
-fn with_whole_run() -> (Place, &'static Straight) {
-    let (place, whole) = (Place::new(), Straight::small());
+fn with_whole_run() -> (Sandbox, &'static Straight) {
+    let (place, whole) = (Sandbox::new(), Straight::small());
     place.write("run.mcap", &whole.bytes);
     (place, whole)
 }

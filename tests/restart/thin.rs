@@ -2,12 +2,12 @@
 
 use foldline::journal::{Completeness, StateError};
 
-use crate::program::{Place, Straight, assert_ends_with};
+use crate::program::{Sandbox, Straight, assert_ends_with};
 
 #[test]
 fn every_stage_stays_and_some_states() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     place.foldline("thin run.mcap -o thin.mcap --keep every=3,5").ends(0).says(&["all", "stages"]);
     assert_eq!(place.read("run.mcap"), whole.bytes);
@@ -46,8 +46,8 @@ fn every_stage_stays_and_some_states() {
     // What it has no state of any more can be made again, and is not said to be nothing.
     let said = place.foldline("thin thin.mcap -o again.mcap --keep 2,5,every=2,400").ends(0);
     let again = said.says(&[
-        "--keep 2: the log was thinned before, and has no state any more of 1 load step, the first of them 2",
-        "--keep every=2: the log was thinned before, and has no state any more of 4 load steps",
+        "--keep 2: the log was thinned before, and no longer has the state of 1 load step, the first of them 2",
+        "--keep every=2: the log was thinned before, and no longer has the state of 4 load steps",
         "`foldline stability thin.mcap --step 2`",
         "--keep 400 keeps nothing",
     ]);
@@ -60,7 +60,7 @@ fn every_stage_stays_and_some_states() {
 fn a_thinned_log_goes_on() {
     let whole = Straight::small();
     for stages in [1, 14, 33] {
-        let place = Place::new();
+        let place = Sandbox::new();
         place.write("run.mcap", whole.cut_after(stages));
         place.foldline("thin run.mcap -o thin.mcap --keep every=1000").ends(0).says(&["1 of them with their states"]);
         assert_eq!(place.log("thin.mcap").completeness(), Completeness::Unfinished);
@@ -73,7 +73,7 @@ fn a_thinned_log_goes_on() {
 #[test]
 fn damage_is_not_thinned_away() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     let mut bytes = whole.bytes.clone();
     bytes[whole.cut_after(20).len() + 300] ^= 1;
     place.write("run.mcap", bytes);
@@ -85,7 +85,7 @@ fn damage_is_not_thinned_away() {
 #[test]
 fn what_was_dropped_is_made_again_when_it_is_asked_for() {
     let whole = Straight::small();
-    let place = Place::new();
+    let place = Sandbox::new();
     place.write("run.mcap", &whole.bytes);
     let said = place.foldline("thin run.mcap -o thin.mcap --keep 2,400,500..600").ends(0);
     said.says(&["--keep 400 keeps nothing", "--keep 500..600 keeps nothing", "of the log go from 1 to"]);

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use foldline::pipeline::{Run, Stages};
 use foldline::record::{MemorySink, Report};
 use foldline::scene::{
-    Edge, Geometry, Hold, Load, LoadSteps, Motion, NurbsPatch, Place, Probe, ProbeKind, Reaction, Scene, parse,
+    Edge, Geometry, Hold, Load, LoadSteps, Motion, NurbsPatch, Probe, ProbeKind, Reaction, Region, Scene, parse,
 };
 use foldline::state::State;
 
@@ -170,7 +170,7 @@ fn six_motions_six_reactions() {
     });
     let mut end = scene.supports[0].clone();
     end.name = "end".into();
-    end.on = Place::Edge(Edge::UEnd);
+    end.on = Region::Edge(Edge::UEnd);
     let pole = Some([0.0, 0.0, 0.0]);
     let motions = [0.05, -0.1, 0.2, 1.0, -0.5, 0.8].map(Motion::Given);
     end.hold = Hold::Rigid { motions, reference_mm: pole, normals_turn: true };
@@ -212,7 +212,7 @@ fn free_motions_of_a_section_carry_nothing() {
     scene.actions.clear();
     let mut end = scene.supports[0].clone();
     end.name = "end".into();
-    end.on = Place::Edge(Edge::UEnd);
+    end.on = Region::Edge(Edge::UEnd);
     let motions = [Motion::FREE, Motion::FREE, Motion::FREE, Motion::FREE, Motion::Given(-90.0), Motion::FREE];
     end.hold = Hold::Rigid { motions, reference_mm: None, normals_turn: true };
     scene.supports.push(end);
@@ -244,9 +244,9 @@ fn observed_orders() {
         }
         scene.mesh.degree = [2, degree];
         scene.mesh.elements = [1, elements];
-        scene.supports[0].on = Place::Edge(Edge::VStart);
+        scene.supports[0].on = Region::Edge(Edge::VStart);
         scene.actions[0].kind = foldline::scene::ActionKind::LineForce {
-            on: Place::Edge(Edge::VEnd),
+            on: Region::Edge(Edge::VEnd),
             force_n_per_mm: [0.0, 0.0, 1e-3].into(),
         };
         scene.probes.clear();
@@ -277,10 +277,10 @@ fn free_rigid_motions_are_named() {
     let hinged =
         |components: [bool; 3]| Hold::Displacement { displacement_mm: components.map(|held| held.then_some(0.0)) };
     let cases = [
-        (Place::Edge(Edge::UStart), [true, true, true], "it can turn about an axis along y through"),
-        (Place::Edge(Edge::UStart), [true, false, true], "it can move along y"),
-        (Place::Point([0.0, 0.0]), [true, true, true], "it can turn about an axis along"),
-        (Place::Line(foldline::scene::ParametricDirection::U, 0.5), [false, true, true], "it can move along x"),
+        (Region::Edge(Edge::UStart), [true, true, true], "it can turn about an axis along y through"),
+        (Region::Edge(Edge::UStart), [true, false, true], "it can move along y"),
+        (Region::Point([0.0, 0.0]), [true, true, true], "it can turn about an axis along"),
+        (Region::Line(foldline::scene::ParametricDirection::U, 0.5), [false, true, true], "it can move along x"),
     ];
     for (on, components, words) in cases {
         scene.supports[0].on = on;
@@ -288,7 +288,7 @@ fn free_rigid_motions_are_named() {
         let error = Stages::new(scene.clone()).start().unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
     }
-    scene.supports[0].on = Place::Edge(Edge::UStart);
+    scene.supports[0].on = Region::Edge(Edge::UStart);
     scene.supports[0].hold = Hold::Symmetric;
     let error = Stages::new(scene.clone()).start().unwrap_err().to_string();
     assert!(error.contains("it can move along"), "{error}");
@@ -326,7 +326,7 @@ fn a_tape_spring_in_other_words() {
     let zero = Motion::Given(0.0);
     let end = |name: &str, edge: Edge, slide: Motion, turn: f64| foldline::scene::Support {
         name: name.into(),
-        on: Place::Edge(edge),
+        on: Region::Edge(edge),
         hold: Hold::Rigid {
             motions: [slide, zero, zero, zero, Motion::Given(turn), zero],
             reference_mm: None,

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use foldline::model::ModelError;
 use foldline::pipeline::{Run, Stages};
 use foldline::record::MemorySink;
-use foldline::scene::{Edge, History, Hold, Place, Scene, Support, parse};
+use foldline::scene::{Edge, History, Hold, Region, Scene, Support, parse};
 
 const COMPONENTS: [&str; 6] = ["force-x", "force-y", "force-z", "moment-x", "moment-y", "moment-z"];
 
@@ -66,7 +66,7 @@ fn with_planes(mut scene: Scene, edges: &[Edge], first: bool) -> Scene {
     for (index, edge) in edges.iter().enumerate() {
         let plane = Support {
             name: format!("plane {index}"),
-            on: Place::Edge(*edge),
+            on: Region::Edge(*edge),
             hold: Hold::Symmetric,
             history: History::default(),
         };

@@ -1,6 +1,6 @@
 //! Hinged roofs through snap-through and snap-back (Sze, Liu & Lo 2004, section 3.8), and what holds of any path.
 
-use foldline::scene::{Action, ActionKind, Component, Hold, Load, Place, Probe, ProbeKind, Reaction, Scene, Support};
+use foldline::scene::{Action, ActionKind, Component, Hold, Load, Probe, ProbeKind, Reaction, Region, Scene, Support};
 
 use crate::path::{ARC_LENGTH, Path};
 use crate::support::{run, scene};
@@ -186,7 +186,7 @@ fn a_given_motion_goes_back() {
     by_motion.actions.clear();
     by_motion.supports.push(Support {
         name: "crown".into(),
-        on: Place::Point([0.5, 0.5]),
+        on: Region::Point([0.5, 0.5]),
         hold: Hold::Displacement { displacement_mm: [None, None, Some(-30.0)] },
         history: by_force.actions[0].history.clone(),
     });

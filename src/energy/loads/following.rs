@@ -203,7 +203,7 @@ mod tests {
     use super::*;
     use crate::energy::Discretization;
     use crate::model::{Blocks, starting_mesh};
-    use crate::scene::{Action, ActionKind, Edge, Place, parse};
+    use crate::scene::{Action, ActionKind, Edge, Region, parse};
 
     /// A panel with a follower pressure and an edge moment, displaced at random.
     fn loaded(clamped: bool) -> (Discretization, Vec<[f64; 3]>) {
@@ -224,7 +224,7 @@ mod tests {
             scene.actions.clear();
             let hinged = |edge: Edge| crate::scene::Support {
                 name: format!("{edge:?}"),
-                on: Place::Edge(edge),
+                on: Region::Edge(edge),
                 hold: crate::scene::Hold::Displacement { displacement_mm: [Some(0.0); 3] },
                 history: History::default(),
             };

@@ -17,7 +17,7 @@ use self::following::{FollowerKind, Following, FollowingLoads};
 use self::points::{LoadPoint, area_points, edge_points, line_points};
 use crate::energy::Terms;
 use crate::model::{ModelError, direction_at, parameters_of};
-use crate::scene::{Action, ActionKind, ForceVector, History, LoadedArea, Place, Scene};
+use crate::scene::{Action, ActionKind, ForceVector, History, LoadedArea, Region, Scene};
 use crate::shell::{cross, scaled};
 use crate::spline::Mesh;
 
@@ -72,12 +72,12 @@ impl Loads {
             }
             ActionKind::LineForce { on, force_n_per_mm } => {
                 let points = match on {
-                    Place::Edge(edge) => edge_points(mesh, *edge, limits),
-                    Place::Line(direction, fraction) => {
+                    Region::Edge(edge) => edge_points(mesh, *edge, limits),
+                    Region::Line(direction, fraction) => {
                         let direction = direction.index();
                         line_points(mesh, direction, parameters_of(&scene.geometry, [*fraction; 2])[direction], limits)
                     }
-                    Place::Point(_) | Place::Whole => {
+                    Region::Point(_) | Region::Whole => {
                         return Err(ModelError::NotALine { action: action.name.clone() });
                     }
                 };

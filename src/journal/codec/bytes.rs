@@ -9,8 +9,9 @@ use crate::state::Hash;
 /// The version in which states are written, in front of each of them.
 pub const CODEC_VERSION: u8 = 8;
 
-/// Why bytes are not a state or a mesh that can be used.
+/// Why bytes do not decode to a usable state or mesh.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CodecError {
     /// No bytes at all.
     #[error("the message is empty")]
@@ -26,10 +27,10 @@ pub enum CodecError {
     OtherVersion {
         /// Version in the message.
         found: u8,
-        /// Version of its kind.
+        /// Version of the encoding of this kind of message.
         expected: u8,
     },
-    /// Not what the encoding says.
+    /// Bytes that the encoding does not allow.
     #[error("the message does not decode")]
     Decode(#[from] bincode::error::DecodeError),
     /// Too large, or a failure of the encoder.
@@ -44,7 +45,7 @@ pub enum CodecError {
         total: usize,
     },
     /// The state names another mesh than the commit.
-    #[error("the state stands on mesh {found}, and its commit says {expected}")]
+    #[error("the state is on mesh {found}, and its commit has {expected}")]
     OtherMesh {
         /// Mesh that the commit names.
         expected: Hash,
@@ -60,11 +61,11 @@ pub enum CodecError {
     /// The state names more or fewer fields than it has.
     #[error("the state names {found} fields, and it has its displacements and at most one of its course")]
     FieldCount {
-        /// Those that it names.
+        /// Number of fields that the state names.
         found: usize,
     },
     /// Decoded, but not the content that was committed.
-    #[error("the {what} hashes to {found}, and its commit says {expected}")]
+    #[error("the {what} hashes to {found}, and its commit has {expected}")]
     ContentHash {
         /// "state" or "mesh".
         what: &'static str,

@@ -38,7 +38,7 @@ pub(super) struct StateV2 {
     pub turns: Vec<[f64; 3]>,
 }
 
-/// Continuation by arc length, and what came with it.
+/// Fields added with continuation by arc length.
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(Serialize))]
 pub(super) struct StateV3 {

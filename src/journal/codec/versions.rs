@@ -14,14 +14,16 @@ pub(super) struct MeshV1<'a> {
 }
 
 impl<'a> MeshV1<'a> {
+    /// Borrows a mesh in the form in which it is encoded.
     pub fn of(mesh: &'a Mesh) -> Self {
         Self {
             degree: mesh.degree.map(|degree| degree as u64),
-            knots: [0, 1].map(|way| Cow::from(&mesh.knots[way])),
+            knots: [0, 1].map(|direction| Cow::from(&mesh.knots[direction])),
             control_points: Cow::from(&mesh.control_points),
         }
     }
 
+    /// Converts the decoded form to a mesh.
     pub fn into_mesh(self) -> Mesh {
         Mesh {
             degree: self.degree.map(|degree| usize::try_from(degree).unwrap_or(usize::MAX)),
@@ -111,7 +113,7 @@ pub(super) struct PathV7 {
 }
 
 impl CourseV7 {
-    /// The course as it is written, and its field.
+    /// Converts a course to the form in which it is encoded, and returns its field apart.
     pub fn of(course: &Course) -> (Self, Option<&[[f64; 3]]>) {
         match course {
             Course::Unknown => (Self::Unknown, None),
@@ -141,7 +143,7 @@ impl CourseV7 {
         }
     }
 
-    /// The course with its field; `None` where it should have one and has not, or the other way round.
+    /// Converts the decoded form to a course with its field; `None` where a field is missing or is one too many.
     pub fn with(self, field: Option<Vec<[f64; 3]>>) -> Option<Course> {
         match (self, field) {
             (Self::Unknown, None) => Some(Course::Unknown),
@@ -174,10 +176,12 @@ pub(super) struct RefinementV6 {
 }
 
 impl RefinementV6 {
+    /// Converts to the form in which a refinement is encoded.
     pub fn of(Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }: Refinement) -> Self {
         Self { changed_n_mm, growth, expected_n_mm, ripple_n_mm }
     }
 
+    /// Converts the decoded form to a refinement.
     pub fn into_memory(self) -> Refinement {
         let Self { changed_n_mm, growth, expected_n_mm, ripple_n_mm } = self;
         Refinement { changed_n_mm, growth, expected_n_mm, ripple_n_mm }

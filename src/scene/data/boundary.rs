@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ParametricDirection {
-    /// The first.
+    /// The first direction, u.
     U,
-    /// The second.
+    /// The second direction, v.
     V,
 }
 
 impl ParametricDirection {
-    /// Its place in pairs of numbers each way: 0 for u, 1 for v.
+    /// Index of the direction: 0 for u, 1 for v.
     pub fn index(self) -> usize {
         match self {
             ParametricDirection::U => 0,
@@ -37,7 +37,7 @@ pub enum Edge {
 }
 
 impl Edge {
-    /// The direction that is constant along the edge, and whether it is at its end.
+    /// The direction that is constant along the edge, and whether the edge is at its end.
     pub fn side(self) -> (ParametricDirection, bool) {
         match self {
             Edge::UStart => (ParametricDirection::U, false),
@@ -52,7 +52,7 @@ impl Edge {
 /// [`super::Geometry::Nurbs`]).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Place {
+pub enum Region {
     /// A whole edge.
     Edge(Edge),
     /// A point (u, v), a corner for instance; fractions in [0, 1].
@@ -63,14 +63,14 @@ pub enum Place {
     Whole,
 }
 
-/// A part of the shell that is held or moved.
+/// A support: a region of the shell that is held or moved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Support {
     /// What reports and errors call it; no two supports have the same name.
     pub name: String,
-    /// Where.
-    pub on: Place,
-    /// How.
+    /// The region that is supported.
+    pub on: Region,
+    /// How the region is held.
     #[serde(flatten)]
     pub hold: Hold,
     /// Factor of the given motions over the load factor.
@@ -81,6 +81,7 @@ pub struct Support {
 /// How a support holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Hold {
     /// Components of the displacement are given (0: held), others are free; slopes are free. Anywhere. The words
     /// `hinged` (all three 0), `fixed` (those that `hold` lists are 0) and `displacement` of a scene all come to this.
@@ -92,7 +93,7 @@ pub enum Hold {
     /// or line are zero. It must be plane, and the surface must cross the plane at right angles. Edges and lines only.
     Symmetric,
     /// The rigid motions that the other supports leave free are held, and nothing else: the shell takes no part in them
-    /// on the mean of points spread over it. Loads in balance leave no reaction. [`Place::Whole`] only.
+    /// on the mean of points spread over it. Loads in balance leave no reaction. [`Region::Whole`] only.
     RigidMotions,
     /// The edge is a rigid section with a pose of its own. `clamped` in a scene is one with all six motions held. The
     /// membrane strain at the edge stays free. Edges only.
@@ -109,7 +110,7 @@ pub enum Hold {
     },
 }
 
-/// One motion of a rigid section.
+/// The motion of a rigid section along or about one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Motion {
@@ -119,7 +120,7 @@ pub enum Motion {
     Free(FreeWord),
 }
 
-/// The word `free`.
+/// The word `free`, as the value of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FreeWord {
@@ -128,14 +129,14 @@ pub enum FreeWord {
 }
 
 impl Motion {
-    /// A free motion.
+    /// A motion that is left free.
     pub const FREE: Self = Motion::Free(FreeWord::Free);
 }
 
-/// Forces, moments and pressures.
+/// A load: forces, moments, pressures or a change of temperature, and their history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Action {
-    /// What errors call it.
+    /// Name of the action in errors.
     pub name: String,
     /// What acts, at factor 1.
     #[serde(flatten)]
@@ -145,27 +146,28 @@ pub struct Action {
     pub history: History,
 }
 
-/// What acts, at factor 1.
+/// What acts, at a factor of 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum ActionKind {
     /// A dead force on a point.
     Force {
-        /// Fractions (u, v).
+        /// The loaded point, fractions (u, v).
         on: [f64; 2],
-        /// N.
+        /// The force, N.
         force_n: ForceVector,
     },
     /// A dead force per undeformed length of an edge or a line.
     LineForce {
-        /// Edge or line.
-        on: Place,
-        /// N/mm.
+        /// The loaded edge or line.
+        on: Region,
+        /// The force per length, N/mm.
         force_n_per_mm: ForceVector,
     },
     /// A dead force per area of the whole surface.
     AreaForce {
-        /// N/mm².
+        /// The force per area, N/mm².
         force_n_per_mm2: ForceVector,
         /// The area that is meant.
         #[serde(default, skip_serializing_if = "LoadedArea::is_undeformed")]
@@ -179,22 +181,22 @@ pub enum ActionKind {
     /// A moment per undeformed length of an edge, about the tangent of the deformed edge in the direction of
     /// growing u or v (right-hand rule); it turns with the shell.
     EdgeMoment {
-        /// The edge.
+        /// The loaded edge.
         on: Edge,
-        /// N·mm per mm.
+        /// The moment per length, N·mm per mm.
         moment_n: f64,
     },
     /// A pressure on the whole surface; positive along the normal.
     Pressure {
-        /// N/mm².
+        /// The pressure, N/mm².
         pressure_mpa: f64,
         /// Whether it acts along the deformed normal on the deformed area, or keeps the direction and the area of the
         /// undeformed shell (dead).
         follower: bool,
     },
-    /// A change of temperature, the same in the whole shell. The material says how much it expands.
+    /// A change of temperature, the same in the whole shell. The material states how much it expands.
     Temperature {
-        /// Kelvin.
+        /// The change of temperature, K.
         change_k: f64,
     },
     /// A change of the curvature that the shell has where it is free of stress, the same in the whole shell.
@@ -205,7 +207,7 @@ pub enum ActionKind {
     },
 }
 
-/// A dead force, or force per length or area.
+/// A dead force, or a dead force per length or area.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ForceVector {
@@ -221,7 +223,7 @@ impl From<[f64; 3]> for ForceVector {
     }
 }
 
-/// A direction that a point of the undeformed surface has.
+/// A direction that is defined at every point of the undeformed surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SurfaceDirection {
@@ -233,7 +235,7 @@ pub enum SurfaceDirection {
     Outward,
 }
 
-/// The area that a force per area is meant by.
+/// The area to which a force per area refers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LoadedArea {
@@ -245,21 +247,21 @@ pub enum LoadedArea {
 }
 
 impl LoadedArea {
-    /// Whether it is the default.
+    /// Whether the area is the undeformed one, which is the default.
     pub fn is_undeformed(&self) -> bool {
         *self == LoadedArea::Undeformed
     }
 }
 
 impl ActionKind {
-    /// Whether it turns with the shell, so that it need not have a potential.
+    /// Whether the load turns with the shell, so that it need not have a potential.
     pub fn follows(&self) -> bool {
         matches!(self, Self::EdgeMoment { .. } | Self::Pressure { follower: true, .. })
     }
 }
 
-/// Factor over the load factor: straight between (load factor, factor) pairs, constant beyond the last. Empty: the
-/// load factor itself.
+/// The factor of a load or motion as a function of the load factor: piecewise linear through (load factor, factor)
+/// pairs, constant beyond the last. Without pairs it is the load factor itself.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct History(pub Vec<[f64; 2]>);
@@ -270,7 +272,7 @@ impl History {
         self.0.is_empty()
     }
 
-    /// Factor at a load factor.
+    /// Returns the factor at a load factor.
     pub fn at(&self, load_factor: f64) -> f64 {
         let points = &self.0;
         let Some(first) = points.first() else { return load_factor };
@@ -282,7 +284,7 @@ impl History {
         }
     }
 
-    /// Derivative of the factor at a load factor; at a kink, that beyond it.
+    /// Returns the derivative of the factor at a load factor; at a kink, the derivative beyond it.
     pub fn rate(&self, load_factor: f64) -> f64 {
         let points = &self.0;
         if points.is_empty() {
@@ -295,9 +297,9 @@ impl History {
         }
     }
 
-    /// The load factor up to which two histories are one by the points that they begin with; beyond it, or at it where its rate
-    /// counts, they may differ.
-    pub fn parts_at(&self, other: &Self) -> f64 {
+    /// The load factor up to which two histories are the same because they begin with the same points. They may differ
+    /// beyond it, or at it where the rate counts.
+    pub fn same_up_to(&self, other: &Self) -> f64 {
         let in_common = self.0.iter().zip(&other.0).take_while(|(one, other)| one == other).count();
         match in_common.checked_sub(1) {
             _ if self == other => f64::INFINITY,
@@ -306,7 +308,7 @@ impl History {
         }
     }
 
-    /// Load factors at which the factor has a kink.
+    /// The load factors at which the factor has a kink.
     pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
         self.0.iter().map(|point| point[0])
     }

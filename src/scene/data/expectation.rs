@@ -1,11 +1,11 @@
-//! What a scene says of its own end, for suites that run scenes to see whether they still end so.
+//! The end that a scene expects of its run, for suites that run scenes to see whether they still end so.
 
 use serde::{Deserialize, Serialize};
 
-/// What is to come of a run.
+/// How a run of the scene is expected to end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expectation {
-    /// How it ends.
+    /// How the run is expected to end.
     pub outcome: ExpectedOutcome,
     /// File, in the folder of the scene, of one with the same curve but for units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -37,17 +37,19 @@ impl Default for Expectation {
 }
 
 impl Expectation {
-    /// Bits of a result below which it is noise, unless the scene says why it may have fewer: three digits.
+    /// Number of correct bits of a result (three digits) below which it counts as noise, unless the scene gives a
+    /// reason.
     pub const LEAST_BITS: usize = 10;
-    /// Error, relative to what a closed form or a finer mesh gives, beyond which a scene says why.
+    /// Largest error, relative to a closed form or a finer mesh, for which a scene need not give a reason.
     pub const MOST_ERROR: f64 = 0.02;
 }
 
-/// How a run can end that somebody would expect to.
+/// The ways for a run to end that a scene can expect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum ExpectedOutcome {
-    /// At its target.
+    /// The run reaches its target.
     #[default]
     Finished,
     /// Before its first step: mesh, supports and loads do not go together.
@@ -67,7 +69,7 @@ pub enum ExpectedOutcome {
 }
 
 impl ExpectedOutcome {
-    /// The word in scenes and tables.
+    /// The word for the outcome in scenes and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Finished => "finished",

@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Undeformed mid-surface.
+/// The undeformed mid-surface of the shell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Geometry {
     /// Open circular cylinder: axis along x, apex of the arc up (+z), edges down. u runs along the axis, v along the
     /// arc towards +y; the normal points outwards.
@@ -45,7 +46,7 @@ pub enum Geometry {
         inner_radius_mm: f64,
         /// Outer radius.
         outer_radius_mm: f64,
-        /// Angle, up to 360.
+        /// Angle, up to 360°.
         arc_deg: f64,
         /// Angle from the +x axis at which it starts; `None`: 0.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -75,8 +76,8 @@ pub enum Geometry {
 }
 
 impl Geometry {
-    /// Vector to a point from the axis of a cylinder or an annulus, or from the centre of a sphere, mm; `None` for shapes
-    /// that have neither.
+    /// Vector to a point from the axis of a cylinder or an annulus, or from the centre of a sphere, mm; `None` for
+    /// shapes that have neither.
     pub fn away_from_centre(&self, [x, y, z]: [f64; 3]) -> Option<[f64; 3]> {
         match self {
             Geometry::TapeSpring { .. } | Geometry::CylinderPanel { .. } => Some([0.0, y, z]),
@@ -87,17 +88,17 @@ impl Geometry {
     }
 }
 
-/// What a full turn does where it meets itself.
+/// What happens where a full turn meets itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Seam {
-    /// Closed: displacement and slope go on across it.
+    /// Closed: displacement and slope continue across it.
     Smooth,
     /// Slit: both lips are free edges.
     Free,
 }
 
-/// A NURBS surface as the user gives it.
+/// A NURBS surface given by knots, control points and weights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NurbsPatch {
     /// Polynomial degree of the geometry in u and v, 1 to 5; the mesh may be of a higher one.

@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Constitutive law and thickness.
+/// The constitutive law of the shell and its thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Material {
     /// St. Venant–Kirchhoff, isotropic.
     Isotropic {
@@ -42,7 +43,7 @@ pub enum Material {
     },
     /// Plies through the thickness, from the side that the normal points away from (bottom) to the other (top).
     Laminate {
-        /// From bottom to top.
+        /// The plies from bottom to top.
         plies: Vec<Ply>,
         /// Where the surface of the geometry lies; see [`Material::offset_mm`].
         #[serde(default, skip_serializing_if = "is_zero")]
@@ -51,7 +52,7 @@ pub enum Material {
 }
 
 impl Material {
-    /// Total thickness, mm.
+    /// Total thickness of the shell, mm.
     pub fn thickness_mm(&self) -> f64 {
         match self {
             Material::Isotropic { thickness_mm, .. } | Material::Orthotropic { thickness_mm, .. } => *thickness_mm,
@@ -81,7 +82,7 @@ impl Material {
         }
     }
 
-    /// Whether it is said how much the material expands when it is heated.
+    /// Whether the scene gives the thermal expansion of the material.
     pub fn expands(&self) -> bool {
         match self {
             Material::Isotropic { thermal_expansion_per_k, .. } => thermal_expansion_per_k.is_some(),
@@ -98,7 +99,7 @@ fn is_zero(number: &f64) -> bool {
 /// A cubic millimetre in cubic metres.
 const CUBIC_METRES: f64 = 1e-9;
 
-/// Moduli of an orthotropic layer in plane stress.
+/// The moduli of an orthotropic layer in plane stress.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OrthotropicLaw {
     /// Young's modulus E₁ along material axis 1 (the fibres).
@@ -112,7 +113,7 @@ pub struct OrthotropicLaw {
     /// Strain of a free layer along material axis 1 per kelvin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal_expansion_1_per_k: Option<f64>,
-    /// The same across.
+    /// Thermal expansion across material axis 1, 1/K.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal_expansion_2_per_k: Option<f64>,
 }
@@ -124,7 +125,7 @@ impl OrthotropicLaw {
     }
 }
 
-/// A ply of a laminate.
+/// One ply of a laminate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ply {
     /// Thickness of the ply.

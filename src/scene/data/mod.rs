@@ -15,7 +15,7 @@ mod material;
 mod probe;
 
 pub use boundary::{
-    Action, ActionKind, Edge, ForceVector, FreeWord, History, Hold, LoadedArea, Motion, ParametricDirection, Place,
+    Action, ActionKind, Edge, ForceVector, FreeWord, History, Hold, LoadedArea, Motion, ParametricDirection, Region,
     Support, SurfaceDirection,
 };
 pub use expectation::{Expectation, ExpectedOutcome};
@@ -25,7 +25,7 @@ pub use probe::{Axis, Component, Probe, ProbeKind, Reaction};
 
 use serde::{Deserialize, Serialize};
 
-/// Everything a run is a function of.
+/// A checked scene with all defaults filled in; a run is a function of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// Undeformed mid-surface.
@@ -56,14 +56,14 @@ pub struct Scene {
     pub continuation: Option<ArcLength>,
     /// The stages of one load step, in order.
     pub pipeline: Vec<Stage>,
-    /// What is written beside the states; never changes a state.
+    /// Which outputs are written besides the states; they never change a state.
     pub output: Output,
     /// How the run is to end; nothing but a test of the scene looks at it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expect: Option<Expectation>,
 }
 
-/// Spline space and quadrature that the run starts with. Pairs are (along the length, along the arc).
+/// The spline space and quadrature that the run starts with. Pairs are (along the length, along the arc).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeshSpec {
     /// Polynomial degree each way, 2 to 5.
@@ -75,9 +75,10 @@ pub struct MeshSpec {
     pub quadrature: Quadrature,
 }
 
-/// Integration rule on an element.
+/// The integration rule on an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Quadrature {
     /// Gauss–Legendre with degree + 1 points each way.
     Full,
@@ -95,7 +96,7 @@ pub enum Quadrature {
 }
 
 impl Quadrature {
-    /// The name in scenes and logs.
+    /// The word for the rule in scenes and logs.
     pub fn name(self) -> &'static str {
         match self {
             Quadrature::Full => "full",
@@ -108,7 +109,7 @@ impl Quadrature {
     }
 }
 
-/// Which part of the shell is modelled.
+/// The part of the shell that is modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Symmetry {
@@ -123,7 +124,7 @@ pub enum Symmetry {
 }
 
 impl Symmetry {
-    /// Whether the model is cut (across the length, along the arc).
+    /// Whether the model is cut across the length and along the arc.
     pub fn cuts(self) -> [bool; 2] {
         match self {
             Symmetry::None => [false, false],
@@ -133,13 +134,14 @@ impl Symmetry {
         }
     }
 
-    /// Models that make up the whole shell: 1, 2 or 4. Energies of the model times this are those of the shell.
+    /// Number of models that make up the whole shell: 1, 2 or 4. Energies of the model times this are those of the
+    /// shell.
     pub fn copies(self) -> usize {
         self.cuts().iter().map(|cut| 1 + usize::from(*cut)).product()
     }
 }
 
-/// Sense of the bending relative to the curvature of the cross-section.
+/// The sense of the bending relative to the curvature of the cross-section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sense {
@@ -161,7 +163,7 @@ pub enum Load {
 }
 
 impl Load {
-    /// Parameter at which the run stops.
+    /// The value of the parameter at which the run stops.
     pub fn target(&self) -> f64 {
         match self {
             Load::EndRotation(load) => load.rotation_deg,
@@ -169,7 +171,7 @@ impl Load {
         }
     }
 
-    /// Increment of the parameter in one load step.
+    /// The increment of the parameter in one load step.
     pub fn increment(&self) -> f64 {
         match self {
             Load::EndRotation(load) => load.increment_deg,
@@ -177,7 +179,8 @@ impl Load {
         }
     }
 
-    /// Increments grow to this where solves are easy; the increment itself where they do not grow.
+    /// The largest increment of the parameter, to which increments grow where solves are easy; the increment itself
+    /// where they do not grow.
     pub fn longest_increment(&self) -> f64 {
         let longest = match self {
             Load::EndRotation(load) => load.longest_increment_deg,
@@ -187,7 +190,7 @@ impl Load {
     }
 }
 
-/// Steps of the load factor.
+/// A load that is applied in steps of the load factor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoadSteps {
     /// Load factor at which the run stops, > 0.
@@ -198,11 +201,11 @@ pub struct LoadSteps {
     pub longest_increment: Option<f64>,
     /// Increments are not cut below this; then the run stops with all good steps kept.
     pub least_increment: f64,
-    /// A jump is located to this load factor before the run goes on beyond it.
+    /// A jump is located to this load factor before the run continues beyond it.
     pub snap_tolerance: f64,
 }
 
-/// The end sections turn by +θ and −θ about the transverse axis through their centroids.
+/// A load that turns the end sections by +θ and −θ about the transverse axis through their centroids.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EndRotation {
     /// Sense of the bending.
@@ -256,7 +259,7 @@ impl Splitting {
     }
 }
 
-/// Least element length.
+/// The least length of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LengthLimit {
@@ -282,7 +285,7 @@ pub struct Solver {
     pub max_iterations: usize,
     /// [`Load::EndRotation`]: increments are not cut below this; then the run stops with all good steps kept (degrees).
     pub least_increment_deg: Option<f64>,
-    /// [`Load::EndRotation`]: a jump is located to this rotation before the run goes on beyond it (degrees).
+    /// [`Load::EndRotation`]: a jump is located to this rotation before the run continues beyond it (degrees).
     pub snap_tolerance_deg: Option<f64>,
 }
 
@@ -296,11 +299,11 @@ pub struct ArcLength {
     pub longest_step: f64,
     /// No step is cut below this; then the run stops with all good steps kept.
     pub shortest_step: f64,
-    /// Load steps after which the run stops, wherever it stands: a path may close in itself.
+    /// Load steps after which the run stops, wherever it is: a path may close in itself.
     pub most_steps: usize,
 }
 
-/// The word `arc-length`.
+/// The word `arc-length`, as the value of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ArcLengthWord {
@@ -319,14 +322,14 @@ impl Load {
 }
 
 impl Scene {
-    /// The next load factor at which a history has a point.
+    /// The next load factor at which the history of an action or support has a point.
     pub fn next_history_point(&self, load_factor: f64) -> Option<f64> {
         self.histories().flat_map(History::kinks).filter(|at| *at > load_factor).reduce(f64::min)
     }
 
-    /// The load factor up to which two scenes with the same actions and supports ask for the same.
-    pub fn histories_part_at(&self, other: &Scene) -> f64 {
-        self.histories().zip(other.histories()).map(|(one, other)| one.parts_at(other)).fold(f64::INFINITY, f64::min)
+    /// The load factor up to which two scenes with the same actions and supports have the same histories.
+    pub fn same_histories_up_to(&self, other: &Scene) -> f64 {
+        self.histories().zip(other.histories()).map(|(one, other)| one.same_up_to(other)).fold(f64::INFINITY, f64::min)
     }
 
     /// Of actions, then of supports.
@@ -335,12 +338,12 @@ impl Scene {
         self.actions.iter().map(|action| &action.history).chain(supports)
     }
 
-    /// Whether a load turns with the shell, so that its work may depend on the way.
+    /// Whether a load turns with the shell, so that its work may depend on the path of deformation.
     pub fn loads_follow(&self) -> bool {
         self.actions.iter().any(|action| action.kind.follows())
     }
 
-    /// The turn of the ends, where that drives the run.
+    /// The end rotation, where it drives the run.
     pub fn end_rotation(&self) -> Option<&EndRotation> {
         match &self.load {
             Load::EndRotation(load) => Some(load),
@@ -348,7 +351,7 @@ impl Scene {
         }
     }
 
-    /// Increments of the parameter are not cut below this.
+    /// The least increment of the parameter, below which load steps are not cut.
     pub fn least_increment(&self) -> f64 {
         match &self.load {
             Load::EndRotation(_) => self.solver.least_increment_deg.unwrap_or(0.0),
@@ -356,7 +359,7 @@ impl Scene {
         }
     }
 
-    /// A jump is located to this interval of the parameter.
+    /// The interval of the parameter to which a jump is located.
     pub fn snap_tolerance(&self) -> f64 {
         match &self.load {
             Load::EndRotation(_) => self.solver.snap_tolerance_deg.unwrap_or(0.0),
@@ -376,10 +379,12 @@ mod one_or_pair {
         Pair([f64; 2]),
     }
 
+    /// Writes one number where both are equal, and else the pair.
     pub fn serialize<S: Serializer>(pair: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
         if pair[0] == pair[1] { pair[0].serialize(serializer) } else { pair.serialize(serializer) }
     }
 
+    /// Reads one number, which means two equal ones, or a pair.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {
         Ok(match OneOrPair::deserialize(deserializer)? {
             OneOrPair::One(both) => [both; 2],
@@ -409,7 +414,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// All stages, in the order in which a load step runs them. The order in the enum is that in which they came to be: it
+    /// All stages, in the order in which a load step runs them. The order in the enum is historical and must stay: it
     /// decides hashes.
     pub const ALL: [Stage; 7] = [
         Stage::Solve,
@@ -435,7 +440,7 @@ impl Stage {
         matches!(self, Stage::Solve | Stage::ReEquilibrate | Stage::SwitchBranch)
     }
 
-    /// The name in scenes, logs and on the terminal.
+    /// The name of the stage in scenes, logs and on the terminal.
     pub fn name(self) -> &'static str {
         match self {
             Stage::Solve => "solve",
@@ -455,7 +460,7 @@ impl std::fmt::Display for Stage {
     }
 }
 
-/// What is written beside the states; never changes a state.
+/// What is written besides the states; it never changes a state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
     /// When the log is forced to disk.

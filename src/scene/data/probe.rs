@@ -2,27 +2,28 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Place;
+use super::Region;
 
-/// A quantity that every equilibrium reports.
+/// A quantity of the scene that every equilibrium reports by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Probe {
     /// Its name in reports; no two probes have the same.
     pub name: String,
-    /// What it is.
+    /// The quantity that is measured.
     #[serde(flatten)]
     pub kind: ProbeKind,
 }
 
-/// What a probe measures.
+/// The quantity that a probe measures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum ProbeKind {
     /// Displacement of a point, mm.
     Displacement {
-        /// Fractions (u, v).
+        /// The point, fractions (u, v).
         on: [f64; 2],
-        /// Which component.
+        /// The component of the displacement.
         component: Component,
     },
     /// What a support exerts on the shell: force (N), or moment (N·mm) about the displaced reference point of a rigid
@@ -32,15 +33,15 @@ pub enum ProbeKind {
     Reaction {
         /// Name of the support.
         support: String,
-        /// Which component.
+        /// The component of the reaction.
         component: Reaction,
     },
     /// Moment that the side of larger u or v exerts on the other across a line, about the line's displaced middle,
     /// N·mm.
     SectionMoment {
-        /// A line.
-        on: Place,
-        /// Which component.
+        /// The line of the section.
+        on: Region,
+        /// The component of the moment.
         component: Axis,
     },
     /// Energy that the whole shell stores, N·mm: strain energy, and what terms of the caller's own store.
@@ -49,7 +50,7 @@ pub enum ProbeKind {
     BendingStrain,
 }
 
-/// A component of a vector, or its length.
+/// A component of a vector, or its magnitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Component {
@@ -67,7 +68,7 @@ pub enum Component {
     Radial,
 }
 
-/// A component of a vector.
+/// An axis of the global frame, as a component of a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Axis {
@@ -79,7 +80,7 @@ pub enum Axis {
     Z,
 }
 
-/// A component of force and moment.
+/// A component of a reaction: of its force or its moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reaction {

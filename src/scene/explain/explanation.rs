@@ -4,7 +4,7 @@ use crate::printable::printable;
 use crate::scene::keys::{Key, join_or};
 use crate::scene::problem::ValueType;
 
-/// The words around an annotated snippet.
+/// The texts around an annotated snippet: title, label, notes and help.
 #[derive(Debug, Default)]
 pub struct Explanation {
     /// The problem in one line.
@@ -26,11 +26,12 @@ pub struct Explanation {
 }
 
 impl Explanation {
+    /// Creates an explanation with a title, and a label for the marked text.
     pub fn new(title: impl Into<String>, label: impl Into<String>) -> Self {
         Self { title: title.into(), label: label.into(), ..Self::default() }
     }
 
-    /// The same without what a terminal obeys: words of a scene stand in it.
+    /// Makes all texts printable, since words of the scene are quoted in them.
     pub fn printable(self) -> Self {
         let Self { title, label, also, alone, notes, help, example, fix } = self;
         let plain = |text: String| printable(&text).into_owned();
@@ -47,51 +48,57 @@ impl Explanation {
         }
     }
 
+    /// Adds a label for the second marked text.
     pub fn also(mut self, text: impl Into<String>) -> Self {
         self.also = text.into();
         self
     }
 
+    /// Sets a note that is shown where there is no second marked text.
     pub fn alone(mut self, text: impl Into<String>) -> Self {
         self.alone = text.into();
         self
     }
 
+    /// Adds a note: why it is a problem.
     pub fn note(mut self, text: impl Into<String>) -> Self {
         self.notes.push(text.into());
         self
     }
 
+    /// Adds a line of help: what to do.
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help.push(text.into());
         self
     }
 
+    /// Sets an example of what to write.
     pub fn example(mut self, text: impl Into<String>) -> Self {
         self.example = text.into();
         self
     }
 
+    /// Sets the heading of the suggested edits.
     pub fn fix(mut self, text: impl Into<String>) -> Self {
         self.fix = text.into();
         self
     }
 }
 
-/// A table in a sentence: its name in brackets, or `item` where there may be several.
+/// Names a table in a sentence: by its name in brackets, or as `item` where there may be several.
 pub fn table(section: &str, item: Option<&str>) -> String {
     item.map_or_else(|| format!("[{section}]"), str::to_owned)
 }
 
-/// A key at the beginning of a sentence: `mesh.degree`, or with the table `item` that it stands in.
+/// Names a key at the beginning of a sentence: `mesh.degree`, or with the table `item` that holds it.
 pub fn subject(key: &Key, item: Option<&str>) -> String {
     item.map_or_else(|| format!("`{}`", key.path()), |item| format!("{item}: `{}`", key.name))
 }
 
-/// Where to look when nothing is near.
+/// The hint for names to which no known one is near.
 pub const ALL_KEYS: &str = "`foldline help scene` lists every key";
 
-/// The type in words.
+/// Names the type of a value.
 pub fn type_words(found: ValueType) -> &'static str {
     match found {
         ValueType::Text => "text",
@@ -104,7 +111,7 @@ pub fn type_words(found: ValueType) -> &'static str {
     }
 }
 
-/// Items in a sentence: `a, b and c`.
+/// Joins items in a sentence: `a, b and c`.
 pub fn join_and(names: &[String]) -> String {
     match names {
         [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
@@ -112,7 +119,7 @@ pub fn join_and(names: &[String]) -> String {
     }
 }
 
-/// A meaning from the table of keys as a part of a sentence.
+/// Turns a meaning from the table of keys into a part of a sentence.
 pub fn lower(meaning: &str) -> String {
     let meaning = meaning.trim_end_matches('.');
     let mut letters = meaning.chars();
@@ -121,7 +128,7 @@ pub fn lower(meaning: &str) -> String {
     first.map_or_else(|| meaning.to_owned(), |first| first.to_lowercase().chain(letters).collect())
 }
 
-/// What stands in the scene, cut to what fits into a line.
+/// Shortens a text of the scene to what fits into a line.
 pub fn shorten(text: &str) -> String {
     const LONGEST: usize = 40;
     let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();

@@ -43,7 +43,7 @@ pub(super) fn explain(fault: &Fault) -> Explanation {
         Problem::WrongLength { key, found } => values::wrong_length(key, item, *found),
         Problem::UnknownWord { key, found, meant } => values::unknown_word(key, item, found, *meant),
         Problem::Unprintable { key, character } => values::unprintable(key, item, *character),
-        Problem::UnknownPlace { key, found, meant } => values::unknown_place(key, item, found, *meant),
+        Problem::UnknownRegion { key, found, meant } => values::unknown_region(key, item, found, *meant),
         Problem::NoSuchLine { key, found } => values::no_such_line(key, item, found),
         Problem::NoSuchPoint { key, found } => values::no_such_point(key, item, *found),
         Problem::WrongForm { key, found } => values::wrong_form(key, item, *found),

@@ -33,7 +33,7 @@ pub(super) fn not_a_table(section: &Section, found: ValueType) -> Explanation {
 }
 
 pub(super) fn key_outside_tables(found: &str, meant: Option<&Key>) -> Explanation {
-    let explanation = Explanation::new(format!("`{}` stands outside of every table", shorten(found)), "");
+    let explanation = Explanation::new(format!("`{}` is outside of every table", shorten(found)), "");
     match meant {
         Some(key) if key.name == found => explanation.help(format!("it belongs below [{}]", key.section)),
         Some(key) => explanation.help(format!("did you mean `{}`, below [{}]?", key.name, key.section)),
@@ -85,7 +85,7 @@ pub(super) fn of_other_kind(
     }
 }
 
-/// The unit of a key, where the name that stands in its place does not say it.
+/// The unit of a key, where the name in its place does not give it.
 fn unit_of(key: &Key, found: &str) -> String {
     if found.ends_with(key.unit.suffix()) { String::new() } else { format!(" (the value is in {})", key.unit.words()) }
 }
@@ -109,7 +109,7 @@ pub(super) fn other_unit(
     Explanation::new(title, "").fix(format!("did you mean `{}`?{conversion}", key.name)).example(given(key))
 }
 
-/// Said of a key that is meant, but stands in the table already.
+/// Notes that a key that is meant is in the table already.
 fn given(key: &Key) -> String {
     format!("`{}` is given already: take one of the two out", key.name)
 }

@@ -17,7 +17,7 @@ pub(super) fn wrong_order(problem: &StageOrderProblem) -> Explanation {
         StageOrderProblem::NotAName { found } => {
             Explanation::new("a stage is given by its name in quotes", format!("this is {}", type_words(*found)))
         }
-        StageOrderProblem::Twice { stage } => Explanation::new(format!("the stage {stage} stands twice"), "again")
+        StageOrderProblem::Twice { stage } => Explanation::new(format!("the stage {stage} is listed twice"), "again")
             .also("first here")
             .note("the list names each stage once; a load step refines as often as it needs to"),
         StageOrderProblem::TooEarly { stage, needs } => {

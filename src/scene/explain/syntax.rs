@@ -13,17 +13,17 @@ pub(super) fn not_toml(message: &str, slip: Option<SyntaxSlip>) -> Explanation {
             Explanation::new("a key or table is given twice", "again").also("first here").help("keep one of the two")
         }
         Some(SyntaxSlip::TwiceInSingleBrackets) => {
-            Explanation::new("there may be several tables of this name, and each stands in two brackets", "again")
+            Explanation::new("there may be several tables of this name, and each is written in two brackets", "again")
                 .also("first here")
                 .help(format!("write {}, each time", join_or(&in_two_brackets())))
         }
-        Some(SyntaxSlip::BareWord) => Explanation::new("a word stands without quotes", "")
-            .example("words stand in double quotes")
+        Some(SyntaxSlip::BareWord) => Explanation::new("a word is written without quotes", "")
+            .example("words are written in double quotes")
             .fix("with quotes"),
         Some(SyntaxSlip::MoreThanANumber) => Explanation::new(TITLE, "more than a number")
-            .help("a number stands alone: its unit is in the name of the key"),
+            .help("a number is written alone: its unit is in the name of the key"),
         Some(SyntaxSlip::DecimalComma) => {
-            Explanation::new(TITLE, "a decimal comma").help("decimals stand behind a point, as in 0.5")
+            Explanation::new(TITLE, "a decimal comma").help("decimals are written after a point, as in 0.5")
         }
         Some(SyntaxSlip::OpenText) => {
             Explanation::new(TITLE, message).help("close the text with the quotes that open it")

@@ -84,7 +84,7 @@ pub(super) fn unprintable(key: &Key, item: Option<&str>, character: char) -> Exp
     Explanation::new(title, "").help("names are one line of ordinary characters")
 }
 
-pub(super) fn unknown_place(key: &Key, item: Option<&str>, found: &str, meant: Option<&str>) -> Explanation {
+pub(super) fn unknown_region(key: &Key, item: Option<&str>, found: &str, meant: Option<&str>) -> Explanation {
     let explanation = cannot_be(key, item, found).note(format!("it is {}", key.allowed()));
     match meant {
         Some(meant) => explanation.fix(format!("did you mean \"{meant}\"?")),

@@ -66,7 +66,7 @@ pub(super) static GEOMETRY: &[Key] = &[
         .also_called(&["r_outer", "ro"]),
     geometry("arc_deg", Kind::Number(Limits {
         low: Limit::excluded(0.0, "without an arc there is no cross-section"),
-        high: Limit::excluded(360.0, "at 360 degrees the cross-section closes, and the shell is open no more"),
+        high: Limit::excluded(360.0, "at 360 degrees the cross-section closes, and the shell is no longer open"),
     }), "110.0")
         .of(&["tape-spring"])
         .means("Angle that the whole cross-section subtends.")
@@ -103,7 +103,7 @@ pub(super) static GEOMETRY: &[Key] = &[
         .also_called(&["degree", "order"]),
     geometry("knots_u", Kind::Numbers(Length::Any, Limits::ANY), "[0.0, 0.0, 1.0, 1.0]")
         .of(NURBS)
-        .means("Knots in u, clamped and ascending: the first and the last stand degree + 1 times.")
+        .means("Knots in u, clamped and ascending: the first and the last occur degree + 1 times.")
         .or(Unless("file")),
     geometry("knots_v", Kind::Numbers(Length::Any, Limits::ANY), "[0.0, 0.0, 0.0, 1.0, 1.0, 1.0]")
         .of(NURBS)
@@ -127,7 +127,7 @@ pub(super) static GEOMETRY: &[Key] = &[
             "A JSON object with degrees, knots_u, knots_v, control_points_mm and perhaps weights; its path is relative to the \
              scene file.",
         )
-        .or(Follows("the surface stands in the scene"))
+        .or(Follows("the surface is in the scene"))
         .also_called(&["path", "json"]),
     geometry("seam", Kind::Word(&[
         choice("smooth", "a closed turn; of a nurbs surface in both directions where both close"),

@@ -109,7 +109,7 @@ const OF_MATERIAL: Presence = Follows("that of [material]");
 const OF_EACH_PLY: Presence = Follows("each [[ply]] has its own");
 const NO_EXPANSION: Presence = Follows("none; actions of kind \"temperature\" need both");
 
-// Keys of an orthotropic layer, whichever table says them.
+// Keys of an orthotropic layer, whichever table gives them.
 const YOUNGS_MODULUS_1: Key = ply("youngs_modulus_1_mpa", Kind::Number(MODULUS), "140000.0")
     .means("Young's modulus E1 along the fibres (material axis 1).")
     .also_called(&["e1", "e_1", "e11"]);

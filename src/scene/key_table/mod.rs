@@ -1,4 +1,4 @@
-//! Every key of a scene file: its type, unit, limits, default, meaning and reach stand here alone.
+//! Every key of a scene file: its type, unit, limits, default, meaning and reach are given here alone.
 //!
 //! | file | tables |
 //! |---|---|
@@ -16,7 +16,7 @@ mod structure;
 
 use super::keys::{Key, Section};
 
-/// The tables of a scene file, in the order in which one would write them.
+/// The tables of a scene file, in the order in which they are usually written.
 pub static SECTIONS: &[Section] = &[
     one("geometry", true, "The undeformed mid-surface.", geometry::GEOMETRY),
     one("material", true, "Constitutive law and thickness.", material::MATERIAL),
@@ -39,11 +39,12 @@ pub static SECTIONS: &[Section] = &[
     one("solver", false, "Tolerances and limits of the equilibrium solver.", run::SOLVER),
     one("continuation", false, "How the path of equilibria is followed.", run::CONTINUATION),
     one("pipeline", false, "The stages of one load step.", run::PIPELINE),
-    one("output", false, "What is written beside the states; never changes a state.", output::OUTPUT),
+    one("output", false, "Which outputs are written besides the states; they never change a state.", output::OUTPUT),
     one("expect", false, "How the run is to end; `foldline extremes` alone looks at it.", output::EXPECT),
 ];
 
-/// The keys of a scene file, table by table; those of one name stand once for each kind of table that has its own.
+/// The keys of a scene file, table by table. A name occurs once for each kind of table that has its own key of that
+/// name.
 pub fn all_keys() -> impl Iterator<Item = &'static Key> + Clone {
     SECTIONS.iter().flat_map(|section| section.keys)
 }

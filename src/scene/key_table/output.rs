@@ -66,12 +66,12 @@ pub(super) static EXPECT: &[Key] = &[
     expect("peak", Kind::Number(Limits::ANY), "292.0")
         .means("The largest moment before the first jump (N mm; of other scenes the first probe, or else the strain energy), \
               from a closed form or a finer mesh.")
-        .or(Follows("nothing to be held against"))
+        .or(Follows("nothing to be compared with"))
         .reaches(Free)
         .also_called(&["largest", "maximum"]),
     expect("last", Kind::Number(Limits::ANY), "28.3")
         .means("The same at the last equilibrium.")
-        .or(Follows("nothing to be held against"))
+        .or(Follows("nothing to be compared with"))
         .reaches(Free)
         .also_called(&["value", "reference"]),
     expect("inexact", Kind::Text, "\"elements of 75 mm hold no fold\"")

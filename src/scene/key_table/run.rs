@@ -139,7 +139,7 @@ pub(super) static SOLVER: &[Key] = &[
         low: Limit::included(1e-9, "rotations of jumps are not resolved more finely"),
         high: Limit::NONE,
     }), "0.01")
-        .means("A jump is located to this rotation before the run goes on beyond it.")
+        .means("A jump is located to this rotation before the run continues beyond it.")
         .or(Default("0.01"))
         .reaches(Steps)
         .also_called(&["jump_tolerance_deg"]),

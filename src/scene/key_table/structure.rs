@@ -45,15 +45,15 @@ pub(super) static SUPPORT: &[Key] = &[
     ]), "\"clamped\"")
         .means("How it holds.")
         .also_called(TYPES),
-    support("on", Kind::Place(&[Form::Edge, Form::Point, Form::Line]), "[1.0, 0.5]")
+    support("on", Kind::Region(&[Form::Edge, Form::Point, Form::Line]), "[1.0, 0.5]")
         .of(&["hinged", "fixed", "displacement"])
         .means("Where it holds.")
         .also_called(PLACES),
-    support("on", Kind::Place(&[Form::Edge, Form::Line]), "\"v-start\"")
+    support("on", Kind::Region(&[Form::Edge, Form::Line]), "\"v-start\"")
         .of(&["symmetric"])
         .means("Edge or line in the plane of symmetry.")
         .also_called(PLACES),
-    support("on", Kind::Place(&[Form::Edge]), "\"u-start\"")
+    support("on", Kind::Region(&[Form::Edge]), "\"u-start\"")
         .of(&["clamped", "rigid"])
         .means("Edge that it holds.")
         .also_called(PLACES),
@@ -124,7 +124,7 @@ pub(super) static ACTION: &[Key] = &[
         choice("pressure", "on the whole surface, positive along n: on a cylinder or a sphere it acts from within"),
         choice(
             "temperature",
-            "a change of temperature of the whole shell, which expands as its material says; layers that differ curve it. \
+            "a change of temperature of the whole shell, which expands as its material states; layers that differ curve it. \
              Sections keep their angles: expansion through the thickness is taken to be that along the surface",
         ),
         choice(
@@ -133,17 +133,17 @@ pub(super) static ACTION: &[Key] = &[
              With no other action it comes to rest there without stress",
         ),
     ]), "\"line-force\"")
-        .means("What acts. Forces act on the model as it is: on half a shell put half the force that stands on its cut.")
+        .means("What acts. Forces act on the model as it is: on half a shell put half the force that acts on its cut.")
         .also_called(TYPES),
-    action("on", Kind::Place(&[Form::Point]), "[1.0, 0.5]")
+    action("on", Kind::Region(&[Form::Point]), "[1.0, 0.5]")
         .of(&["force"])
         .means("Point that it acts on.")
         .also_called(PLACES),
-    action("on", Kind::Place(&[Form::Edge, Form::Line]), "\"u-end\"")
+    action("on", Kind::Region(&[Form::Edge, Form::Line]), "\"u-end\"")
         .of(&["line-force"])
         .means("Edge or line that it acts on.")
         .also_called(PLACES),
-    action("on", Kind::Place(&[Form::Edge]), "\"u-end\"")
+    action("on", Kind::Region(&[Form::Edge]), "\"u-end\"")
         .of(&["edge-moment"])
         .means("Edge that it acts on.")
         .also_called(PLACES),
@@ -239,11 +239,11 @@ pub(super) static PROBE: &[Key] = &[
     ]), "\"displacement\"")
         .means("What it measures.")
         .also_called(TYPES),
-    probe("on", Kind::Place(&[Form::Point]), "[1.0, 0.5]")
+    probe("on", Kind::Region(&[Form::Point]), "[1.0, 0.5]")
         .of(&["displacement"])
         .means("Point whose displacement it is.")
         .also_called(PLACES),
-    probe("on", Kind::Place(&[Form::Line]), "\"u=0.5\"")
+    probe("on", Kind::Region(&[Form::Line]), "\"u=0.5\"")
         .of(&["section-moment"])
         .means("Line across which it acts.")
         .also_called(PLACES),
@@ -295,7 +295,7 @@ const FREE: &str = "this component is free";
 const COMPONENTS: &str = "the force has components";
 const FORCE: &str = "Force in x, y and z; or one number and `along`, a direction that the undeformed surface has.";
 const HISTORY: &str = "Rows of [load factor, factor], straight in between, constant beyond the last. By arc length a history that \
-                       ends, or stands still, ends the path there; below its first point it stands still too.";
+                       ends, or is constant, ends the path there; below its first point it is constant too.";
 
 const LABELS: &[&str] = &["id", "label", "title"];
 const TYPES: &[&str] = &["type"];

@@ -3,7 +3,7 @@
 use super::unit::Unit;
 use super::wording::{join_or, number};
 
-/// Type and limits of a key's value.
+/// The type and limits of a key's value.
 #[derive(Debug, PartialEq)]
 pub enum Kind {
     /// One of some words, in quotes.
@@ -27,7 +27,7 @@ pub enum Kind {
     /// Two whole numbers (along the length, along the arc), or one for both.
     Pair(Limits),
     /// A part of the surface of one of these forms.
-    Place(&'static [Form]),
+    Region(&'static [Form]),
     /// true or false.
     Switch,
     /// The list of stages.
@@ -57,10 +57,12 @@ impl Kind {
             Kind::Numbers(Length::Exactly(length), limits) => format!("a list of {length} numbers{}", each(limits)),
             Kind::Numbers(Length::Any, limits) => format!("a list of numbers{}", each(limits)),
             Kind::Rows(length) => format!("a list of lists of {length} numbers{}", within(&Limits::ANY)),
-            Kind::Vector => format!("a list of 3 numbers{0}, or one number{0} beside `along`", within(&Limits::ANY)),
+            Kind::Vector => {
+                format!("a list of 3 numbers{0}, or one number{0} together with `along`", within(&Limits::ANY))
+            }
             Kind::Count(limits) => format!("a whole number {limits}"),
             Kind::Pair(limits) => format!("a whole number {limits}, or a pair of them"),
-            Kind::Place(forms) => join_or(&forms.iter().map(|form| form.words().to_owned()).collect::<Vec<_>>()),
+            Kind::Region(forms) => join_or(&forms.iter().map(|form| form.words().to_owned()).collect::<Vec<_>>()),
             Kind::Switch => "true or false".into(),
             Kind::Stages => "a list of stages".into(),
             Kind::Text => "text in quotes".into(),
@@ -72,16 +74,16 @@ fn quoted(choices: &[Choice]) -> Vec<String> {
     choices.iter().map(|choice| format!("\"{}\"", choice.word)).collect()
 }
 
-/// How many items a list has.
+/// The number of items of a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
-    /// No fewer and no more.
+    /// Exactly this number of items.
     Exactly(usize),
-    /// As many as one likes.
+    /// Any number of items.
     Any,
 }
 
-/// A form of a part of the surface.
+/// The ways to describe a region of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// A whole edge.
@@ -93,7 +95,7 @@ pub enum Form {
 }
 
 impl Form {
-    /// How it is written.
+    /// How a region of this form is written.
     pub fn words(self) -> &'static str {
         match self {
             Form::Edge => "an edge (\"u-start\", \"u-end\", \"v-start\" or \"v-end\")",
@@ -103,23 +105,23 @@ impl Form {
     }
 }
 
-/// One of the words that a key takes.
+/// One of the words that a key accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// As it stands in the scene, without the quotes.
+    /// The word as written in the scene, without the quotes.
     pub word: &'static str,
-    /// What it chooses; empty where the word says it.
+    /// The meaning of the choice; empty where the word is enough.
     pub meaning: &'static str,
 }
 
 impl Choice {
-    /// The first clause of its meaning.
+    /// The first clause of the choice's meaning.
     pub fn in_short(&self) -> &'static str {
         self.meaning.split([':', ';']).next().unwrap_or_default()
     }
 }
 
-/// Between which numbers a value must lie.
+/// The range of numbers to which a value is limited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// The lower end.
@@ -128,7 +130,7 @@ pub struct Limits {
     pub high: Limit,
 }
 
-/// One end of the allowed numbers.
+/// One end of a range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// The limit; infinite where there is none.
@@ -140,25 +142,25 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// The value itself is not allowed.
+    /// A limit at which the value itself is not allowed.
     pub const fn excluded(value: f64, reason: &'static str) -> Self {
         Self { value, included: false, reason }
     }
 
-    /// The value itself is allowed.
+    /// A limit at which the value itself is allowed.
     pub const fn included(value: f64, reason: &'static str) -> Self {
         Self { value, included: true, reason }
     }
 
-    /// No upper limit.
+    /// The absence of an upper limit.
     pub const NONE: Self = Self::excluded(f64::INFINITY, "");
 }
 
 impl Limits {
-    /// Any finite number.
+    /// The range of all finite numbers.
     pub const ANY: Self = Self { low: Limit::excluded(f64::NEG_INFINITY, ""), high: Limit::NONE };
 
-    /// The limit that `value` is past, if any. A value that is not a number is past both; the caller has asked before.
+    /// The limit that `value` exceeds, if any. NaN exceeds both limits; callers reject it before.
     pub fn broken_by(&self, value: f64) -> Option<&Limit> {
         let above = value > self.low.value || (self.low.included && value == self.low.value);
         let below = value < self.high.value || (self.high.included && value == self.high.value);

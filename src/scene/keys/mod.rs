@@ -1,4 +1,4 @@
-//! What can be said about a key of a scene file. The keys themselves stand in `key_table`; reading, checking,
+//! The description of a key of a scene file. The keys themselves are in `key_table`; reading, checking,
 //! suggesting, explaining, comparing, writing, the help text and the schema all draw on that one table.
 //!
 //! | file | what |
@@ -25,40 +25,40 @@ pub struct Section {
     pub many: bool,
     /// Whether a scene must have it.
     pub required: bool,
-    /// What it is about.
+    /// What the table describes, in a sentence.
     pub meaning: &'static str,
     /// Its keys, of all its kinds, in the order in which one would write them.
     pub keys: &'static [Key],
 }
 
 impl Section {
-    /// Its name in brackets.
+    /// The name of the table in brackets.
     pub fn title(&self) -> String {
         if self.many { format!("[[{}]]", self.name) } else { format!("[{}]", self.name) }
     }
 
-    /// The key that says of which kind the table is, where other keys depend on it.
+    /// The key that gives the kind of the table, where other keys depend on it.
     pub fn kind_key(&self) -> Option<&'static Key> {
         let has_kinds = self.keys.iter().any(|key| !key.kinds.is_empty());
         self.keys.iter().find(|key| key.name == "kind").filter(|_| has_kinds)
     }
 
-    /// The kind that examples are of.
+    /// The kind of table that examples show.
     pub fn example_kind(&self) -> Option<&'static str> {
         self.kind_key().map(|key| key.example.trim_matches('"'))
     }
 
-    /// The keys of a table of this kind; those of every kind where it is `None`.
+    /// The keys of a table of this kind, or those of every kind where it is `None`.
     pub fn keys_of<'k>(&self, kind: Option<&'k str>) -> impl Iterator<Item = &'static Key> + Clone + use<'k> {
         self.keys.iter().filter(move |key| kind.is_none_or(|kind| key.belongs_to(kind)))
     }
 
-    /// The key of this name in a table of this kind.
+    /// Finds the key of this name in a table of this kind.
     pub fn key(&self, kind: Option<&str>, name: &str) -> Option<&'static Key> {
         self.keys_of(kind).find(|key| key.name == name)
     }
 
-    /// How far the widest-reaching of its keys reaches.
+    /// The widest reach of any of the table's keys.
     pub fn reach(&self) -> Reach {
         self.keys.iter().map(|key| key.reach).max().unwrap_or(Reach::Everything)
     }
@@ -67,7 +67,7 @@ impl Section {
 /// A key of a scene file, and all that is known about it.
 #[derive(Debug, PartialEq)]
 pub struct Key {
-    /// The table in which it stands.
+    /// The table of the key.
     pub section: &'static str,
     /// The kinds of that table that have it; all where it is empty.
     pub kinds: &'static [&'static str],
@@ -81,15 +81,15 @@ pub struct Key {
     pub presence: Presence,
     /// How far a change of it reaches into a run.
     pub reach: Reach,
-    /// What it means.
+    /// What the key means, in a sentence.
     pub meaning: &'static str,
-    /// A value as it would stand in a scene file.
+    /// A value as written in a scene file.
     pub example: &'static str,
     /// What else people call it: symbols, and names in other programs; in lower case.
     pub aliases: &'static [&'static str],
 }
 
-/// Keys as the key table writes them down: required, reaching everything and of every kind of table, unless it says
+/// Keys as the key table writes them down: required, reaching everything and of every kind of table, unless it states
 /// otherwise.
 impl Key {
     /// A key whose unit is the ending of its name.
@@ -136,7 +136,7 @@ impl Key {
 }
 
 impl Key {
-    /// Section and name, as in `solver.tolerance`.
+    /// The path of the key: section and name, as in `solver.tolerance`.
     pub fn path(&self) -> String {
         format!("{}.{}", self.section, self.name)
     }
@@ -147,12 +147,12 @@ impl Key {
         choices.iter().map(|choice| choice.word)
     }
 
-    /// Whether tables of this kind have it.
+    /// Whether tables of this kind have the key.
     pub fn belongs_to(&self, kind: &str) -> bool {
         self.kinds.is_empty() || self.kinds.contains(&kind)
     }
 
-    /// The name without the unit.
+    /// The name of the key without its unit.
     pub fn stem(&self) -> &'static str {
         match self.name.strip_suffix(self.unit.suffix()) {
             Some(stem) if !self.unit.suffix().is_empty() => stem.trim_end_matches('_'),
@@ -160,16 +160,16 @@ impl Key {
         }
     }
 
-    /// What is allowed, in words, with the unit.
+    /// Describes the values that are allowed, with their unit.
     pub fn allowed(&self) -> String {
         self.kind.words(self.unit)
     }
 }
 
-/// How far a change of a key reaches into a run.
+/// How much of a run a change of the key affects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reach {
-    /// No state changes: what is written beside the states, and where the run stops.
+    /// No state changes: what is written besides the states, and where the run stops.
     Free,
     /// The steps taken change, not the problem solved: a state of one run can start the other.
     Steps,
@@ -181,23 +181,23 @@ pub enum Reach {
     Everything,
 }
 
-/// What holds where a key is missing.
+/// What applies where the key is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
-    /// It must be there.
+    /// The key is required.
     Required,
-    /// A default, as it would stand in a scene.
+    /// A default, as written in a scene.
     Default(&'static str),
     /// A default that follows from other keys, in words.
     Follows(&'static str),
-    /// It stands in for another key of the same table; at most one of the two is given.
+    /// It replaces another key of the same table; at most one of the two is given.
     InsteadOf(&'static str),
     /// It must be there unless another key of the same table is.
     Unless(&'static str),
 }
 
 impl Presence {
-    /// A sentence about it.
+    /// Describes what applies where the key is missing, in a sentence.
     pub fn words(self) -> String {
         match self {
             Presence::Required => "Required.".into(),

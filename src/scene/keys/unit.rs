@@ -1,6 +1,6 @@
 //! Units of keys.
 
-/// Unit of a key's value; the ending of its name.
+/// The unit of a key's value, which is the ending of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// A word, a count or a plain number.
@@ -57,7 +57,7 @@ impl Unit {
         Unit::None
     }
 
-    /// How names of keys with this unit end.
+    /// The ending of names of keys with this unit.
     pub const fn suffix(self) -> &'static str {
         match self {
             Unit::None => "",

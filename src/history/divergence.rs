@@ -6,14 +6,14 @@ use crate::history::states::{RemakeError, States};
 use crate::journal::{AskedLog, LongLogError};
 use crate::record::Commit;
 
-/// The first stage at which two runs differ.
+/// The first stage at which two runs differ, and how its states compare.
 #[derive(Clone, Debug)]
-pub struct Parting {
+pub struct Divergence {
     /// Ordinal of the stage.
     pub index: usize,
-    /// Stages looked at.
+    /// Number of stages that were compared to find it.
     pub looks: usize,
-    /// The two states.
+    /// How the two states differ.
     pub comparison: Comparison,
 }
 
@@ -25,8 +25,8 @@ pub struct Parting {
 /// parted do not meet again.
 ///
 /// # Errors
-/// Where a state cannot be had.
-pub fn find_parting(a: &AskedLog, b: &AskedLog) -> Result<Option<Parting>, RemakeError> {
+/// Where a state is not available.
+pub fn find_divergence(a: &AskedLog, b: &AskedLog) -> Result<Option<Divergence>, RemakeError> {
     let len = a.commits().min(b.commits());
     if len == 0 {
         return Ok(None);
@@ -41,7 +41,7 @@ pub fn find_parting(a: &AskedLog, b: &AskedLog) -> Result<Option<Parting>, Remak
         let [x, y] = both(index)?;
         let parted =
             if same_scene { x.chain_hash != y.chain_hash } else { (x.stage, x.state_hash) != (y.stage, y.state_hash) };
-        search = search.told(index, parted);
+        search = search.narrowed(index, parted);
         looks += 1;
     }
     let index = search.answer();
@@ -50,5 +50,5 @@ pub fn find_parting(a: &AskedLog, b: &AskedLog) -> Result<Option<Parting>, Remak
     }
     let [x, y] = [a.part(index..index + 1)?, b.part(index..index + 1)?];
     let comparison = compare(&States::of(&x).at(index)?, &States::of(&y).at(index)?);
-    Ok(Some(Parting { index, looks, comparison }))
+    Ok(Some(Divergence { index, looks, comparison }))
 }

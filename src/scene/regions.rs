@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use toml::de::DeValue;
 
-use super::data::{Edge, ParametricDirection, Place};
+use super::data::{Edge, ParametricDirection, Region};
 use super::entry::Entry;
 use super::fault::{Checked, Fault};
 use super::keys::{Form, Key};
@@ -28,15 +28,15 @@ pub(super) fn read(key: &'static Key, forms: &[Form], entry: &Entry<'_>) -> Chec
             if point.iter().any(|fraction| !(0.0..=1.0).contains(fraction)) {
                 return Err(Fault::new(Problem::NoSuchPoint { key, found: point }, &at));
             }
-            Place::Point(point.map(|fraction| fraction + 0.0))
+            Region::Point(point.map(|fraction| fraction + 0.0))
         }
         DeValue::Array(items) => return Err(Fault::new(Problem::WrongLength { key, found: items.len() }, &at)),
         other => return Err(Fault::new(Problem::WrongType { key, found: value_type(other) }, &at)),
     };
     let (form, bare) = match place {
-        Place::Edge(edge) => (Form::Edge, json!(edge)),
-        Place::Point(point) => (Form::Point, json!(point)),
-        Place::Line(..) | Place::Whole => (Form::Line, json!(place)),
+        Region::Edge(edge) => (Form::Edge, json!(edge)),
+        Region::Point(point) => (Form::Point, json!(point)),
+        Region::Line(..) | Region::Whole => (Form::Line, json!(place)),
     };
     match forms {
         _ if !forms.contains(&form) => Err(Fault::new(Problem::WrongForm { key, found: form }, &at)),
@@ -45,10 +45,10 @@ pub(super) fn read(key: &'static Key, forms: &[Form], entry: &Entry<'_>) -> Chec
     }
 }
 
-fn edge_or_line(key: &'static Key, text: &str, entry: &Entry<'_>) -> Checked<Place> {
+fn edge_or_line(key: &'static Key, text: &str, entry: &Entry<'_>) -> Checked<Region> {
     let at = entry.value_place();
     if let Some((edge, _)) = EDGES.iter().find(|(_, name)| *name == text) {
-        return Ok(Place::Edge(*edge));
+        return Ok(Region::Edge(*edge));
     }
     if let Some((direction, fraction)) = text.split_once('=') {
         let direction = match direction.trim() {
@@ -58,14 +58,14 @@ fn edge_or_line(key: &'static Key, text: &str, entry: &Entry<'_>) -> Checked<Pla
         };
         match (direction, fraction.trim().parse::<f64>()) {
             (Some(direction), Ok(fraction)) if 0.0 < fraction && fraction < 1.0 => {
-                return Ok(Place::Line(direction, fraction));
+                return Ok(Region::Line(direction, fraction));
             }
             (Some(_), Ok(_)) => return Err(Fault::new(Problem::NoSuchLine { key, found: text.into() }, &at)),
             _ => {}
         }
     }
     let meant = nearest(&text.replace("start", "-start").replace("end", "-end"), EDGES.iter().map(|(_, name)| *name));
-    let fault = Fault::new(Problem::UnknownPlace { key, found: text.into(), meant }, &at);
+    let fault = Fault::new(Problem::UnknownRegion { key, found: text.into(), meant }, &at);
     Err(match meant {
         Some(meant) => fault.edit(&at, entry.written(meant)),
         None => fault,
