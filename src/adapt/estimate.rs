@@ -11,6 +11,8 @@ use crate::state::{Estimate, State};
 const REFINED_FROM: f64 = 0.3;
 /// Share of the tolerance that refining aims at.
 const REFINED_TO: f64 = 0.15;
+/// Share of the tolerance that coarsening stays below.
+const COARSENED_TO: f64 = 0.1;
 
 /// Load steps for which an estimate holds at most.
 const LONGEST: u64 = 8;
@@ -53,9 +55,9 @@ impl JudgedMesh<'_> {
         ToSplit { mesh, errors, relative, lengths, limit }.knots(REFINED_TO * self.tolerance)
     }
 
-    /// Knots that are not in the mesh that the run `start`s with and may leave, so that the error stays below what refining
-    /// aims at.
+    /// Knots that are not in the mesh that the run `start`s with and may leave, so that the error stays well below that at
+    /// which a mesh is refined.
     pub fn superfluous(&self, start: &Mesh) -> [Vec<f64>; 2] {
-        superfluous(self, start, REFINED_TO * self.tolerance)
+        superfluous(self, start, COARSENED_TO * self.tolerance)
     }
 }

@@ -287,6 +287,7 @@ mod tests {
 
     use super::*;
     use crate::scene::Stage;
+    use crate::state::Estimate;
 
     fn state() -> State {
         let knots = vec![0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0];
@@ -322,6 +323,8 @@ mod tests {
                 expected_n_mm: Some(0.25),
                 ripple_n_mm: 0.125,
             }),
+            superfluous: [vec![], vec![0.5]],
+            estimate: Some(Estimate { step: 2, relative_error: 0.25, largest_indicator: [0.5, 0.125] }),
             mesh,
         }
     }
@@ -347,7 +350,7 @@ mod tests {
     #[test]
     fn the_last_bit_of_every_number_is_told() {
         type Change = fn(&mut State, fn(&mut f64));
-        let changes: [(&str, Change); 22] = [
+        let changes: [(&str, Change); 25] = [
             ("knots", |s, f| f(&mut Arc::make_mut(&mut s.mesh).knots[1][3])),
             ("control points", |s, f| f(&mut Arc::make_mut(&mut s.mesh).control_points[7][2])),
             ("knots of the finer mesh", |s, f| f(&mut Arc::make_mut(s.refined.as_mut().unwrap()).knots[0][3])),
@@ -355,7 +358,10 @@ mod tests {
                 f(&mut Arc::make_mut(s.refined.as_mut().unwrap()).control_points[3][1])
             }),
             ("displacement", |s, f| f(&mut s.displacement[5][2])),
-            ("marked knots", |s, f| f(&mut s.marked[0][0])),
+            ("knot spans marked", |s, f| f(&mut s.marked[0][0])),
+            ("knots superfluous", |s, f| f(&mut s.superfluous[1][0])),
+            ("estimated error", |s, f| f(&mut s.estimate.as_mut().unwrap().relative_error)),
+            ("largest indicator", |s, f| f(&mut s.estimate.as_mut().unwrap().largest_indicator[1])),
             ("rotation or load factor", |s, f| f(&mut s.parameter)),
             ("turns", |s, f| f(&mut s.turns[0][2])),
             ("moment_n_mm", |s, f| f(&mut s.moment_n_mm)),
@@ -393,8 +399,10 @@ mod tests {
     #[test]
     fn what_is_of_another_kind_is_told_in_words() {
         type Change = fn(&mut State);
-        let changes: [(&str, Change); 12] = [
+        let changes: [(&str, Change); 14] = [
             ("[1, 0] knot spans marked against [1, 1]", |s| s.marked[1].push(0.75)),
+            ("[0, 1] knots superfluous against [0, 0]", |s| s.superfluous[1].clear()),
+            ("estimate of the error in the first only", |s| s.estimate = None),
             ("a finer mesh waiting in the first only", |s| s.refined = None),
             ("step 3 solve against step 4 solve", |s| s.step = 4),
             ("0 negative pivots against 1", |s| s.negative_pivots = 1),

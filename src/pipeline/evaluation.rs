@@ -49,6 +49,7 @@ impl Evaluation<'_> {
     fn by_error(&mut self, tolerance: f64, next: State, report: Report) -> Result<(State, Report), WorkspaceError> {
         let largest_indicator = report.largest_indicator;
         let known = self.state.estimate.as_ref();
+        let known_step = known.map(|known| known.step);
         if known.is_some_and(|known| still_holds(known, self.state, largest_indicator, tolerance)) {
             return Ok((next, report));
         }
@@ -64,7 +65,9 @@ impl Evaluation<'_> {
             tolerance,
         };
         let marked = judged.marked();
-        let may_coarsen = scene.pipeline.contains(&Stage::CoarsenKnots) && marked.iter().all(Vec::is_empty);
+        // A mesh that was changed at this step stays as it is for now: refining and coarsening would take turns.
+        let is_older = known_step.is_some_and(|step| step < state.step);
+        let may_coarsen = is_older && scene.pipeline.contains(&Stage::CoarsenKnots) && marked.iter().all(Vec::is_empty);
         let superfluous = if may_coarsen { judged.superfluous(&starting_mesh(scene)?) } else { Default::default() };
         let relative_error = relative.iter().sum();
         let estimate = Some(Estimate { step: state.step, relative_error, largest_indicator });

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use foldline::record::{Commit, Outcome, Parameter, Record, Report, Warning};
 use foldline::scene::{
-    Adapt, EndRotation, Geometry, LengthLimit, Load, Material, MeshSpec, Output, Quadrature, Scene, Sense, Solver,
-    Stage, Symmetry, SyncPolicy,
+    Adapt, EndRotation, Geometry, Indicator, LengthLimit, Load, Material, MeshSpec, Output, Quadrature, Scene, Sense,
+    Solver, Splitting, Stage, Symmetry, SyncPolicy,
 };
 use foldline::state::{DriveMemory, Hash, Mesh, State};
 
@@ -51,7 +51,11 @@ pub fn scene() -> Scene {
         supports: vec![],
         actions: vec![],
         probes: vec![],
-        adapt: Some(Adapt { threshold: [0.019; 2], length_limit: LengthLimit::SqrtRadiusThickness }),
+        adapt: Some(Adapt {
+            indicator: Indicator::BendingStrain([0.019; 2]),
+            length_limit: LengthLimit::SqrtRadiusThickness,
+            splitting: Splitting::Halves,
+        }),
         solver: Solver {
             tolerance: 1e-7,
             max_iterations: 60,
@@ -100,6 +104,7 @@ impl Script {
             rippled: false,
             marked: [0, 0],
             largest_indicator: [0.0, 0.0],
+            estimated_error: None,
         };
         Self { records: Vec::new(), last }
     }
@@ -124,6 +129,7 @@ impl Script {
             rippled: false,
             marked: [0, 0],
             largest_indicator: [0.0, 0.0],
+            estimated_error: None,
             outcome: Outcome::Done,
             warnings: vec![],
             ..report.clone()
@@ -258,6 +264,8 @@ pub fn state(record: &Record) -> State {
         drive: DriveMemory::default(),
         largest_force_n: 0.0,
         refinement: None,
+        superfluous: Default::default(),
+        estimate: None,
     }
 }
 

@@ -46,7 +46,7 @@ pub fn next(state: &State) -> (State, Report) {
         }
         Some(Stage::EvaluateIndicators | Stage::SwitchBranch) => (Stage::RefineKnots, state.step),
         Some(Stage::RefineKnots) => (Stage::ProjectDisplacements, state.step),
-        Some(Stage::ProjectDisplacements) => (Stage::ReEquilibrate, state.step),
+        Some(Stage::ProjectDisplacements | Stage::CoarsenKnots) => (Stage::ReEquilibrate, state.step),
     };
     let mut new = State { stage: Some(stage), step, ..state.clone() };
     match stage {
@@ -75,7 +75,7 @@ pub fn next(state: &State) -> (State, Report) {
             new.mesh = new.refined.take().unwrap_or_else(|| state.mesh.clone());
             new.displacement = vec![[0.125 * state.parameter; 3]; new.mesh.control_points.len()];
         }
-        Stage::ReEquilibrate | Stage::SwitchBranch => new.displacement = moved(state, 1.0e-3),
+        Stage::ReEquilibrate | Stage::SwitchBranch | Stage::CoarsenKnots => new.displacement = moved(state, 1.0e-3),
     }
     let report = Report {
         step,
@@ -103,6 +103,7 @@ pub fn next(state: &State) -> (State, Report) {
         rippled: false,
         marked: [new.marked[0].len(), new.marked[1].len()],
         largest_indicator: [0.1, 0.2],
+        estimated_error: None,
     };
     (new, report)
 }

@@ -60,13 +60,14 @@ pub fn log_of(script: &[u8]) -> Vec<u8> {
     crafted.map(|crafted| crafted.bytes).unwrap_or_default()
 }
 
-const STAGES: [Stage; 6] = [
+const STAGES: [Stage; 7] = [
     Stage::Solve,
     Stage::EvaluateIndicators,
     Stage::RefineKnots,
     Stage::ProjectDisplacements,
     Stage::ReEquilibrate,
     Stage::SwitchBranch,
+    Stage::CoarsenKnots,
 ];
 
 /// The script that makes a log again, of its first commits.

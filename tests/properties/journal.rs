@@ -9,7 +9,8 @@ use foldline::journal::{
 };
 use foldline::scene::{Stage, SyncPolicy};
 use foldline::state::{
-    Course, CriticalAhead, DriveMemory, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State, StepControl,
+    Course, CriticalAhead, DriveMemory, Estimate, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State,
+    StepControl,
 };
 use proptest::prelude::*;
 
@@ -75,6 +76,12 @@ fn state() -> impl Strategy<Value = State> {
                     mesh: mesh.clone(),
                     displacement,
                     marked: [marks.clone(), Vec::new()],
+                    superfluous: [Vec::new(), if step % 7 == 0 { mesh.knots[1][..1].to_vec() } else { Vec::new() }],
+                    estimate: (step % 4 == 0).then_some(Estimate {
+                        step: pivots,
+                        relative_error: rotation,
+                        largest_indicator: [energy, moment],
+                    }),
                     refined: refined.then(|| mesh.clone()),
                     step,
                     stage,

@@ -2,7 +2,7 @@
 //! against an independent isogeometric solver (quartic, 256 × 32 elements over the whole shell).
 
 use foldline::record::Record;
-use foldline::scene::{Scene, Stage};
+use foldline::scene::{Indicator, Scene, Stage};
 use foldline::state::State;
 
 use crate::support::{of, run, scene, steps};
@@ -149,7 +149,7 @@ fn elements_at(stages: &[(State, Record)], parameter: f64, parts: usize) -> usiz
 
 /// The paper refines from 0.019 on, and says how many elements it has.
 fn at_the_threshold_of_the_paper(mut scene: Scene) -> Scene {
-    scene.adapt.as_mut().unwrap().threshold = [0.019; 2];
+    scene.adapt.as_mut().unwrap().indicator = Indicator::BendingStrain([0.019; 2]);
     scene
 }
 

@@ -300,8 +300,9 @@ fn refinement_in_any_scene() {
     let mut scene = read("cantilever-end-shear");
     scene.mesh.elements = [2, 1];
     scene.adapt = Some(foldline::scene::Adapt {
-        threshold: [0.1, 0.1],
+        indicator: foldline::scene::Indicator::BendingStrain([0.1, 0.1]),
         length_limit: foldline::scene::LengthLimit::Millimetres([0.4, 0.4]),
+        splitting: foldline::scene::Splitting::Halves,
     });
     scene.pipeline = foldline::scene::Stage::REFINING.to_vec();
     let (state, report) = run_to(&scene, None, 1.0);
