@@ -1,7 +1,6 @@
 //! When an estimate of the error is made, what it says of a mesh, and what is to be done about it.
 
 use crate::adapt::DirectionalError;
-use crate::adapt::coarsening::superfluous;
 use crate::adapt::splitting::ToSplit;
 use crate::spline::Mesh;
 use crate::state::{Estimate, State};
@@ -16,14 +15,13 @@ const COARSENED_TO: f64 = 0.1;
 
 /// Load steps for which an estimate holds at most.
 const LONGEST: u64 = 8;
-/// Factors by which the largest indicator of a direction may change while an estimate holds: between these, and the fourth root of
-/// what the error may still grow by (the error of the baseline's moment before its snap grows with the square of the
-/// rotation, that of a fold with its curvature).
-const FACTORS: [f64; 2] = [1.05, 2.0];
+/// Factors by which the largest indicator of a direction may change while an estimate holds: between these, and the square root
+/// of what the error may still grow by.
+const FACTORS: [f64; 2] = [1.1, 2.0];
 
 /// Whether an estimate made on the same mesh still holds for a state whose largest indicators are these.
 pub fn still_holds(estimate: &Estimate, state: &State, indicators: [f64; 2], tolerance: f64) -> bool {
-    let room = (REFINED_FROM * tolerance / estimate.relative_error).powf(0.25).clamp(FACTORS[0], FACTORS[1]);
+    let room = (REFINED_FROM * tolerance / estimate.relative_error).sqrt().clamp(FACTORS[0], FACTORS[1]);
     let is_near = |(now, then): (f64, f64)| now <= room * then && then <= room * now;
     state.step < estimate.step + LONGEST && indicators.into_iter().zip(estimate.largest_indicator).all(is_near)
 }
@@ -55,9 +53,8 @@ impl JudgedMesh<'_> {
         ToSplit { mesh, errors, relative, lengths, limit }.knots(REFINED_TO * self.tolerance)
     }
 
-    /// Knots that are not in the mesh that the run `start`s with and may leave, so that the error stays well below that at
-    /// which a mesh is refined.
-    pub fn superfluous(&self, start: &Mesh) -> [Vec<f64>; 2] {
-        superfluous(self, start, COARSENED_TO * self.tolerance)
+    /// Relative error that taking knots out may add; 0 where there is no room for that.
+    pub fn room(&self) -> f64 {
+        (COARSENED_TO * self.tolerance - self.relative.iter().sum::<f64>()).max(0.0)
     }
 }

@@ -16,7 +16,7 @@ mod indicators;
 mod refinement;
 mod splitting;
 
-pub use coarsening::Coarsened;
+pub use coarsening::{Coarsened, superfluous};
 pub use error_estimate::{DirectionalError, Enriched, Measure};
 pub use estimate::{JudgedMesh, still_holds};
 pub use halving::{Halved, Halving};

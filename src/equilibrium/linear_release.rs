@@ -64,4 +64,19 @@ impl Workspace {
             Coordinates::at(&self.discretization.unknowns, at.free(&self.discretization.unknowns), at.parameter);
         (there.displacement, there.placement.turns())
     }
+
+    /// Energy ½ dᵀKd of a small motion d of the control points from a configuration, on the whole model, N·mm. Points that supports
+    /// or joints hold do not take part.
+    ///
+    /// # Errors
+    /// Where the stiffness has no factor.
+    pub fn energy_of_motion(&mut self, at: Configuration, motion: &[[f64; 3]]) -> Result<f64, SolveError> {
+        self.factorize_at(at)?;
+        let unknowns = &self.discretization.unknowns;
+        let held = |point: usize| !unknowns.is_regular(point);
+        let free: Vec<[f64; 3]> =
+            motion.iter().enumerate().map(|(point, moved)| if held(point) { [0.0; 3] } else { *moved }).collect();
+        let forces = self.assembled.multiply(&self.discretization, &free);
+        Ok(0.5 * product(forces.as_flattened(), free.as_flattened()))
+    }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::energy::{Discretization, TermSource, Want};
-use crate::equilibrium::assembly::Assembled;
+use crate::equilibrium::assembly::{Assembled, subtract};
 use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::solve_error::{SolveError, WorkspaceError};
 use crate::equilibrium::sparse::FactorError;
@@ -75,13 +75,13 @@ impl Workspace {
     }
 
     /// Internal forces less loads on the control points, N: at equilibrium, the reactions of the supports.
-    pub fn forces(&mut self, at: Configuration) -> Vec<[f64; 3]> {
-        let known = self.factored_at.as_ref().is_some_and(|known| known.is_at(&at));
-        if !known {
-            self.factored_at = None;
-            self.assembled.assemble(&self.discretization, at.displacement, at.parameter, Want::Residual);
+    pub fn forces(&self, at: Configuration) -> Vec<[f64; 3]> {
+        if self.factored_at.as_ref().is_some_and(|known| known.is_at(&at)) {
+            return self.assembled.forces();
         }
-        self.assembled.forces()
+        let Discretization { shell, .. } = &self.discretization;
+        let internal = shell.residual(at.displacement, shell.free_strains.at(at.parameter));
+        subtract(&internal, &self.discretization.external_forces(at.displacement, at.parameter))
     }
 
     /// Forms and factors the stiffness at a configuration, unless the last solve left it there; returns the number of

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::adapt::{DirectionalError, JudgedMesh, evaluate_indicators, length_limit, span_lengths, still_holds};
+use crate::adapt::{
+    DirectionalError, JudgedMesh, evaluate_indicators, length_limit, span_lengths, still_holds, superfluous,
+};
 use crate::energy::TermSource;
 use crate::equilibrium::{Configuration, WorkspaceError};
 use crate::model::{ModelError, starting_mesh};
@@ -68,7 +70,14 @@ impl Evaluation<'_> {
         // A mesh that was changed at this step stays as it is for now: refining and coarsening would take turns.
         let is_older = known_step.is_some_and(|step| step < state.step);
         let may_coarsen = is_older && scene.pipeline.contains(&Stage::CoarsenKnots) && marked.iter().all(Vec::is_empty);
-        let superfluous = if may_coarsen { judged.superfluous(&starting_mesh(scene)?) } else { Default::default() };
+        let room = if may_coarsen { judged.room() } else { 0.0 };
+        let superfluous = match room > 0.0 {
+            true => {
+                let work = self.current.workspace(scene, self.own, &state.mesh)?;
+                superfluous(scene, work, state, &starting_mesh(scene)?, room).unwrap_or_default()
+            }
+            false => Default::default(),
+        };
         let relative_error = relative.iter().sum();
         let estimate = Some(Estimate { step: state.step, relative_error, largest_indicator });
         Ok((State { marked, superfluous, estimate, ..next }, Report { estimated_error: Some(relative), ..report }))
