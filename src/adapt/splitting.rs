@@ -80,7 +80,8 @@ impl ToSplit<'_> {
     /// What one part more takes away per control point of the row that it adds.
     fn gain(&self, split: &Split) -> f64 {
         let more = Split { parts: split.parts + 1, ..*split };
-        (self.left(split) - self.left(&more)) / self.mesh.control_counts()[1 - split.direction] as f64
+        let row = self.mesh.control_counts()[1 - split.direction] as f64;
+        (self.left(split) - self.left(&more)) / row
     }
 }
 

@@ -248,6 +248,13 @@ fn adapt(tables: &Tables, pipeline: &[Stage]) -> Checked<Option<Adapt>> {
             "leave it out",
         ));
     }
+    if pipeline.contains(&Stage::CoarsenKnots) && !matches!(indicator, Indicator::Error(_)) {
+        return Err(table.wrong(
+            tables.one("pipeline").place_of("stages").as_ref(),
+            "coarsen-knots goes by the error that the mesh causes, and a threshold says nothing about it",
+            "write `tolerance` in [adapt] in place of `threshold`, or leave coarsen-knots out",
+        ));
+    }
     Ok(Some(Adapt { indicator, length_limit, splitting }))
 }
 

@@ -144,7 +144,7 @@ fn paragraph(text: &str, indent: usize) -> String {
 mod tests {
     use super::*;
     use crate::scene::key_table::all_keys;
-    use crate::scene::{LengthLimit, Stage, Symmetry, parse};
+    use crate::scene::{Indicator, LengthLimit, Stage, Symmetry, parse};
 
     #[test]
     fn the_second_example_is_a_scene() {
@@ -161,10 +161,11 @@ mod tests {
 
     #[test]
     fn the_alternatives_of_the_example_are_a_scene_too() {
-        let text: Vec<_> =
-            example_scene().lines().filter(|line| !line.starts_with("length_limit =")).map(String::from).collect();
+        let is_replaced = |line: &str| line.starts_with("length_limit =") || line.starts_with("threshold =");
+        let text: Vec<_> = example_scene().lines().filter(|line| !is_replaced(line)).map(String::from).collect();
         let scene = parse(&text.join("\n").replace("# or: ", ""), "example.toml").unwrap();
-        assert_eq!(scene.adapt.unwrap().length_limit, LengthLimit::Millimetres([1.0; 2]));
+        let adapt = scene.adapt.unwrap();
+        assert_eq!((adapt.indicator, adapt.length_limit), (Indicator::Error(0.01), LengthLimit::Millimetres([1.0; 2])));
     }
 
     #[test]

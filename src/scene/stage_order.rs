@@ -20,16 +20,18 @@ pub(super) fn needs(stage: Stage) -> Option<Stage> {
         Stage::RefineKnots => Some(Stage::EvaluateIndicators),
         Stage::ProjectDisplacements => Some(Stage::RefineKnots),
         Stage::ReEquilibrate => Some(Stage::ProjectDisplacements),
-        Stage::CoarsenKnots => Some(Stage::RefineKnots),
+        Stage::CoarsenKnots => Some(Stage::ReEquilibrate),
     }
 }
 
 /// The stage that must carry on from where a stage leaves the state.
 fn sequel(stage: Stage) -> Option<Stage> {
     match stage {
-        Stage::Solve | Stage::SwitchBranch | Stage::EvaluateIndicators | Stage::ReEquilibrate => None,
+        Stage::Solve | Stage::SwitchBranch | Stage::EvaluateIndicators | Stage::ReEquilibrate | Stage::CoarsenKnots => {
+            None
+        }
         Stage::RefineKnots => Some(Stage::ProjectDisplacements),
-        Stage::ProjectDisplacements | Stage::CoarsenKnots => Some(Stage::ReEquilibrate),
+        Stage::ProjectDisplacements => Some(Stage::ReEquilibrate),
     }
 }
 
@@ -123,9 +125,9 @@ fn check(named: &[(Stage, TextSpan)], whole: &TextSpan) -> Checked<()> {
 mod tests {
     use super::*;
 
-    /// Every list without repetition: exactly six can run.
+    /// Every list without repetition: exactly eight can run.
     #[test]
-    fn six_lists_can_run() {
+    fn eight_lists_can_run() {
         let mut lists: Vec<Vec<Stage>> = vec![vec![]];
         let mut from = 0;
         while from < lists.len() {
@@ -137,7 +139,7 @@ mod tests {
             }
             from += 1;
         }
-        assert_eq!(lists.len(), 1957);
+        assert_eq!(lists.len(), 13_700);
         let whole = TextSpan { source: 0, span: 0..0 };
         let place = |index| TextSpan { source: 0, span: index..index + 1 };
         let can_run = |list: &Vec<Stage>| {
@@ -148,7 +150,16 @@ mod tests {
         let refining = &Stage::REFINING;
         assert_eq!(
             lists,
-            [&refining[..1], &Stage::ALL[..2], &refining[..2], &Stage::ALL[..3], &refining[..], &Stage::ALL[..]]
+            [
+                &refining[..1],
+                &Stage::ALL[..2],
+                &refining[..2],
+                &Stage::ALL[..3],
+                &refining[..],
+                &[&refining[..], &[Stage::CoarsenKnots]].concat()[..],
+                &Stage::ALL[..6],
+                &Stage::ALL[..],
+            ]
         );
     }
 }

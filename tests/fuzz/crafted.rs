@@ -8,7 +8,7 @@ use foldline::journal::format::{
     COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, REPORT_TOPIC, STATE_TOPIC,
 };
 use foldline::journal::message::{CommitMessage, FinishedMessage, MessageHash, seal};
-use foldline::journal::{CODEC_VERSION, CodecError, decode_mesh, decode_state};
+use foldline::journal::{CodecError, decode_mesh, decode_state};
 use foldline::record::Commit;
 use foldline::scene::Stage;
 use foldline::state::{Hash, Mesh};
@@ -194,7 +194,8 @@ impl Crafted {
             return;
         }
         state[1..33].copy_from_slice(self.mesh.0.as_bytes());
-        if state[0] < CODEC_VERSION {
+        // Up to version 6 a state names one field.
+        if state[0] < 7 {
             self.fields.truncate(1);
             state[33..65].copy_from_slice(self.fields.first().map_or(NONE, |(hash, _)| *hash).as_bytes());
             return;

@@ -179,6 +179,8 @@ fn another_value(key: &Key) -> Option<&'static str> {
         "load.increment_deg" => "0.5",
         "load.longest_increment_deg" => "1.6",
         "adapt.threshold" => "0.02",
+        "adapt.tolerance" => "0.02",
+        "adapt.splitting" => "parts",
         "adapt.length_limit" => "half-decay-length",
         "adapt.length_limit_mm" => "2",
         "solver.tolerance" => "1e-8",

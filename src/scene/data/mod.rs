@@ -422,8 +422,8 @@ impl Stage {
         Stage::EvaluateIndicators,
         Stage::RefineKnots,
         Stage::ProjectDisplacements,
-        Stage::CoarsenKnots,
         Stage::ReEquilibrate,
+        Stage::CoarsenKnots,
     ];
 
     /// The stages of a load step that refines the mesh.

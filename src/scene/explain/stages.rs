@@ -35,7 +35,7 @@ pub(super) fn wrong_order(problem: &StageOrderProblem) -> Explanation {
         .help(format!("to solve on the mesh as it is: {}", list(&Stage::REFINING[..1])))
         .help(format!("to watch where it is too coarse: {}", list(&Stage::REFINING[..2])))
         .help(format!("to refine it: {}", list(&Stage::REFINING)))
-        .help(format!("to coarsen it again as well: \"{}\" before \"{}\"", Stage::CoarsenKnots, Stage::ReEquilibrate))
+        .help("to coarsen it as well where a tolerance allows: \"coarsen-knots\" at the end".to_string())
         .help("to leave unstable equilibria as well: \"switch-branch\" after \"solve\"".to_string())
 }
 
@@ -54,7 +54,7 @@ fn takes(stage: Stage) -> &'static str {
         Stage::EvaluateIndicators => "measures the bending of an equilibrium that solve has found",
         Stage::RefineKnots => "inserts the knots that evaluate-indicators has marked",
         Stage::ProjectDisplacements => "carries displacements to the mesh that refine-knots has made",
-        Stage::CoarsenKnots => "takes out knots that refine-knots has inserted",
+        Stage::CoarsenKnots => "takes out knots that refine-knots has inserted, and leaves it to re-equilibrate",
         Stage::ReEquilibrate => "starts from the displacements that project-displacements has carried over",
     }
 }
