@@ -81,7 +81,7 @@ fn candidates_of(
         }
         let mut taken: [Vec<f64>; 2] = Default::default();
         taken[direction].push(*knot);
-        let coarsened = Coarsened::new(mesh, &taken, start);
+        let Some(coarsened) = Coarsened::new(mesh, &taken, start) else { continue };
         let shown = coarsened.shown(displacement);
         let hidden: Vec<[f64; 3]> = displacement.iter().zip(shown).map(|(u, v)| sub(*u, v)).collect();
         let energy = work.energy_of_motion(Configuration::of(state), &hidden)?;
@@ -101,14 +101,20 @@ pub struct Coarsened {
 }
 
 impl Coarsened {
-    /// Takes knots out of a mesh; `start` is one that has none of them and the same geometry.
-    pub fn new(finer: &Arc<Mesh>, superfluous: &[Vec<f64>; 2], start: &Mesh) -> Self {
+    /// Takes knots out of a mesh; `start` is one that has none of them and the same geometry. `None` where it has.
+    pub fn new(finer: &Arc<Mesh>, superfluous: &[Vec<f64>; 2], start: &Mesh) -> Option<Self> {
         let kept = [0, 1].map(|k| without(&finer.knots[k], &superfluous[k]));
+        let count = |knots: &[f64], knot: &f64| knots.iter().filter(|other| *other == knot).count();
+        let has_start =
+            |k: usize| start.knots[k].iter().all(|knot| count(&kept[k], knot) >= count(&start.knots[k], knot));
+        if finer.degree != start.degree || !(has_start(0) && has_start(1)) {
+            return None;
+        }
         let inserted = [0, 1].map(|k| without(&kept[k], &start.knots[k]));
         // Geometry is inserted again rather than approximated.
         let mesh = Arc::new(start.with_knots(&inserted));
         let maps = [0, 1].map(|k| Coarsening::new(&finer.knots[k], &mesh.knots[k], finer.degree[k]));
-        Self { mesh, finer: finer.clone(), maps }
+        Some(Self { mesh, finer: finer.clone(), maps })
     }
 
     /// The best approximation of vectors at the control points, in the coarser space.

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use crate::adapt::splitting::cuts;
+use crate::adapt::splitting::{MOST_PARTS, cuts};
 use crate::energy::Discretization;
 use crate::model::Tables;
 use crate::scene::{Adapt, Geometry, Indicator, LengthLimit, Scene, Splitting};
@@ -125,7 +125,7 @@ impl Judged<'_> {
     /// Parts in which its indicator falls to the threshold, as far as the limit allows, up to four at once.
     fn parts(&self, element: usize, axis: usize) -> usize {
         let asked = (self.values[element][axis] / self.threshold[axis]).ceil();
-        asked.min(self.lengths[element][axis] / self.limit[axis]).min(4.0) as usize
+        asked.min(self.lengths[element][axis] / self.limit[axis]).min(MOST_PARTS as f64) as usize
     }
 
     /// What the limit keeps far too long.

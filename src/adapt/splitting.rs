@@ -4,7 +4,7 @@ use crate::adapt::DirectionalError;
 use crate::spline::{Mesh, Spans};
 
 /// Parts at most that a span is split in at once: the estimate is of the present mesh.
-const MOST_PARTS: usize = 4;
+pub(super) const MOST_PARTS: usize = 4;
 
 /// Share of an error that one round of refinement aims to leave, at least. Next to a jump the present shape is far from that on a
 /// finer mesh (a fold on a coarse mesh is wider than it will be), and a round that trusted it would refine where nothing

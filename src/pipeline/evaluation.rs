@@ -43,7 +43,7 @@ impl Evaluation<'_> {
         };
         report.marked = next.marked.each_ref().map(Vec::len);
         let blocked = indicators.blocked.filter(|_| report.marked == [0, 0]);
-        report.warnings = blocked.map(|blocked| Warning::of_blocked(state, blocked)).into_iter().collect();
+        report.warnings.extend(blocked.map(|blocked| Warning::of_blocked(state, blocked)));
         Ok((next, report))
     }
 
@@ -69,7 +69,10 @@ impl Evaluation<'_> {
         let marked = judged.marked();
         // A mesh that was changed at this step stays as it is for now: refining and coarsening would take turns.
         let is_older = known_step.is_some_and(|step| step < state.step);
-        let may_coarsen = is_older && scene.pipeline.contains(&Stage::CoarsenKnots) && marked.iter().all(Vec::is_empty);
+        let may_coarsen = is_older
+            && state.negative_pivots == 0
+            && scene.pipeline.contains(&Stage::CoarsenKnots)
+            && marked.iter().all(Vec::is_empty);
         let room = if may_coarsen { judged.room() } else { 0.0 };
         let superfluous = match room > 0.0 {
             true => {
@@ -80,13 +83,21 @@ impl Evaluation<'_> {
         };
         let relative_error = relative.iter().sum();
         let estimate = Some(Estimate { step: state.step, relative_error, largest_indicator });
-        Ok((State { marked, superfluous, estimate, ..next }, Report { estimated_error: Some(relative), ..report }))
+        let is_out_of_reach = marked.iter().all(Vec::is_empty) && relative_error > tolerance;
+        let warning = Warning::ToleranceNotMet { parameter: state.parameter, estimated: relative_error, tolerance };
+        let warnings = is_out_of_reach.then_some(warning).into_iter().collect();
+        let report = Report { estimated_error: Some(relative), warnings, ..report };
+        Ok((State { marked, superfluous, estimate, ..next }, report))
     }
 
     /// What halving the spans of either direction would change, and the relative errors that are in it; `None` where the
     /// stiffness on a halved mesh has no factor, as exactly at a limit point.
     fn errors(&mut self) -> Result<Option<([DirectionalError; 2], [f64; 2])>, WorkspaceError> {
         let Self { scene, own, state, .. } = *self;
+        // Nothing is stored before the first load: there is no error yet.
+        if state.strain_energy_n_mm == 0.0 {
+            return Ok(None);
+        }
         let measured = Measured::of(scene);
         let work = self.current.workspace(scene, own, &state.mesh)?;
         let here = measured.read(scene, work, Configuration::of(state))?;

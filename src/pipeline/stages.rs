@@ -146,7 +146,13 @@ impl Stages {
         }
         let failed = |cause| StageError::Model { step: state.step, stage: Stage::CoarsenKnots, cause };
         let start = starting_mesh(&self.scene).map_err(failed)?;
-        let coarsened = Coarsened::new(&state.mesh, &state.superfluous, &start);
+        let Some(coarsened) = Coarsened::new(&state.mesh, &state.superfluous, &start) else {
+            return Err(out_of_order(
+                state,
+                Stage::CoarsenKnots,
+                "a superfluous knot is one that the scene starts with",
+            ));
+        };
         let displacement = coarsened.approximated(&state.displacement);
         let (scene, work) = self.workspace(&coarsened.mesh, state.step, Stage::CoarsenKnots)?;
         let at = Configuration { displacement: &displacement, ..Configuration::of(state) };
@@ -161,6 +167,7 @@ impl Stages {
                 control: state.drive.control,
                 course: state.drive.course.projected(|vectors| coarsened.approximated(vectors)),
             },
+            refinement: None,
             estimate: None,
             ..state.clone()
         };

@@ -79,6 +79,15 @@ pub enum Warning {
         /// Largest indicator among them, over its threshold.
         over_threshold: f64,
     },
+    /// The estimated error is above the tolerance, and no span may be split further.
+    ToleranceNotMet {
+        /// The scene's parameter.
+        parameter: f64,
+        /// Estimated relative error of the measured quantity.
+        estimated: f64,
+        /// Relative error that the scene allows.
+        tolerance: f64,
+    },
     /// A finer mesh stores another strain energy at the same load.
     EnergyChangedByRefining {
         /// The scene's parameter.
@@ -114,6 +123,7 @@ impl Warning {
             Self::LateBuckling { .. } => "late buckling",
             Self::LargeStrains { .. } => "large strains",
             Self::RefinementBlocked { .. } => "refinement blocked",
+            Self::ToleranceNotMet { .. } => "tolerance not met",
             Self::EnergyChangedByRefining { .. } => "energy changed",
         }
     }
@@ -126,6 +136,7 @@ impl Warning {
             | Self::LateBuckling { parameter, .. }
             | Self::LargeStrains { parameter, .. }
             | Self::RefinementBlocked { parameter, .. }
+            | Self::ToleranceNotMet { parameter, .. }
             | Self::EnergyChangedByRefining { parameter, .. } => parameter,
         }
     }
@@ -174,6 +185,12 @@ impl Warning {
                 significant(u, 2),
                 significant(v, 2),
                 significant(100.0 * 1.5 * strain, 2)
+            ),
+            &Self::ToleranceNotMet { estimated, tolerance, .. } => format!(
+                "the mesh causes an estimated error of {:.2} %, where adapt.tolerance allows {:.2} %, and the length limit keeps it \
+                 from being refined; write a lower adapt.length_limit_mm, or a higher degree in [mesh]",
+                100.0 * estimated,
+                100.0 * tolerance
             ),
             &Self::RefinementBlocked { spans, decay_lengths, over_threshold, .. } => {
                 let each_way = spans.iter().zip(["u", "v"]).filter(|(number, _)| **number > 0);

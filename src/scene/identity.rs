@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::data::Scene;
+use super::data::{Indicator, Probe, Scene};
 use super::difference::{Difference, of_tables};
 use super::key_table::SECTIONS;
 use super::keys::{Reach, Section};
@@ -18,6 +18,9 @@ const RENAMED: [(&str, &str); 3] = [
     ("pipeline", "pipeline.stages"),
     ("adapt.length_limit.millimetres", "adapt.length_limit_mm"),
 ];
+
+/// Path of the first probe where its error decides how the mesh is refined.
+const REFINED_BY: &str = "adapt: the first probe";
 
 /// What the hash of a scene begins with; changes when the meaning of a scene does.
 const DOMAIN: &str = "foldline scene 1";
@@ -62,11 +65,20 @@ impl Scene {
         paths.into_iter().flat_map(of_path).collect()
     }
 
+    /// The probe by whose error the mesh is refined, and so decides states, though its name does not.
+    fn probe_that_refines(&self) -> Option<&Probe> {
+        let by_error = self.adapt.as_ref().is_some_and(|adapt| matches!(adapt.indicator, Indicator::Error(_)));
+        self.probes.first().filter(|_| by_error && self.end_rotation().is_none())
+    }
+
     /// Every value of the scene by its key in a scene file. Lists are values; keys without use are left out.
     pub(super) fn leaves(&self) -> BTreeMap<String, Value> {
         let mut leaves = BTreeMap::new();
         // A scene is structs of numbers, words and lists, which always have a JSON form.
         collect("", serde_json::to_value(self).unwrap_or_default(), &mut leaves);
+        if let Some(probe) = self.probe_that_refines() {
+            leaves.insert(REFINED_BY.to_owned(), serde_json::to_value(&probe.kind).unwrap_or_default());
+        }
         leaves
     }
 }
@@ -90,6 +102,9 @@ fn collect(path: &str, value: Value, leaves: &mut BTreeMap<String, Value>) {
 /// How far a change of a value reaches; the whole of an array of tables as far as any of its keys.
 pub(super) fn reach(sections: &'static [Section], path: &str) -> Reach {
     let array = path.strip_suffix('s').and_then(|name| sections.iter().find(|it| it.many && it.name == name));
+    if path == REFINED_BY {
+        return Reach::Steps;
+    }
     let key = || sections.iter().flat_map(|section| section.keys).find(|key| key.path() == path).map(|key| key.reach);
     array.map(Section::reach).or_else(key).unwrap_or(Reach::Everything)
 }

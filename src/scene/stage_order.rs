@@ -156,8 +156,8 @@ mod tests {
                 &refining[..2],
                 &Stage::ALL[..3],
                 &refining[..],
-                &[&refining[..], &[Stage::CoarsenKnots]].concat()[..],
                 &Stage::ALL[..6],
+                &[&refining[..], &[Stage::CoarsenKnots]].concat()[..],
                 &Stage::ALL[..],
             ]
         );

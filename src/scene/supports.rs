@@ -32,7 +32,7 @@ pub(super) fn support(table: &Table) -> Checked<Support> {
             let hold = Hold::Rigid { motions: [Motion::Given(0.0); 6], reference_mm: None, normals_turn: true };
             (Region::Edge(table.get("on")), hold)
         }
-        _ => {
+        "rigid" => {
             let names = ["x_mm", "y_mm", "z_mm", "rotation_x_deg", "rotation_y_deg", "rotation_z_deg"];
             let hold = Hold::Rigid {
                 motions: names.map(|name| table.get(name)),
@@ -41,6 +41,7 @@ pub(super) fn support(table: &Table) -> Checked<Support> {
             };
             (Region::Edge(table.get("on")), hold)
         }
+        other => unreachable!("a support of kind {other}"),
     };
     let history: History = history(table)?;
     Ok(Support { name: table.name(), on, hold, history })

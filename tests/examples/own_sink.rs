@@ -1,4 +1,4 @@
-//! A sink of one's own: it sees every stage beside the journal, and keeps the least stable equilibrium.
+//! A user-defined sink: it passes every stage on to the journal, and keeps the equilibrium that stores most energy.
 //!
 //! ```text
 //! cargo run --release --example own_sink
@@ -9,20 +9,22 @@ use std::path::Path;
 
 use foldline::journal::{JournalWriter, Manifest};
 use foldline::pipeline::{Run, Stages};
-use foldline::record::{Record, Sink, SinkError};
+use foldline::record::{Outcome, Record, Sink, SinkError};
 use foldline::scene::parse;
 use foldline::state::State;
 
 /// Hands every stage to the journal first, so that what it keeps is safe there as well.
-struct LeastStable {
+struct MostStored {
     journal: JournalWriter,
     found: Option<State>,
 }
 
-impl Sink for LeastStable {
+impl Sink for MostStored {
     fn take(&mut self, state: &State, record: &Record) -> Result<(), SinkError> {
         self.journal.take(state, record)?;
-        if self.found.as_ref().is_none_or(|found| state.negative_pivots > found.negative_pivots) {
+        let is_equilibrium = record.report.stage.finds_equilibrium() && record.report.outcome == Outcome::Done;
+        let stores_more = self.found.as_ref().is_none_or(|found| state.strain_energy_n_mm > found.strain_energy_n_mm);
+        if is_equilibrium && stores_more {
             self.found = Some(state.clone());
         }
         Ok(())
@@ -36,13 +38,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("run.mcap");
     let journal = JournalWriter::create(&path, &Manifest::here(Path::new(file), &text, 1), scene.output.sync)?;
-    let mut sink = LeastStable { journal, found: None };
+    let mut sink = MostStored { journal, found: None };
     let mut stages = Stages::new(scene);
     let start = stages.start()?;
     Run::new(stages, start, None).to_end(Some(5.0), &|| false, &mut sink)?;
     sink.journal.close()?;
-    if let Some(State { parameter, negative_pivots, .. }) = sink.found {
-        println!("least stable at {parameter:.3}°: {negative_pivots} negative pivots");
+    if let Some(State { parameter, strain_energy_n_mm, .. }) = sink.found {
+        println!("most energy at {parameter:.3}°: {strain_energy_n_mm:.3} N·mm");
     }
     Ok(())
 }

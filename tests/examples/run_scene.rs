@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use foldline::pipeline::{Run, Stages};
 use foldline::record::{MemorySink, Outcome};
-use foldline::scene::{Stage, parse};
+use foldline::scene::parse;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path =
@@ -21,7 +21,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     // To 5°, or to the scene's own target where that comes first.
     Run::new(stages, start, None).to_end(Some(5.0), &|| false, &mut sink)?;
     for (state, record) in &sink.stages {
-        if record.report.stage == Stage::Solve && record.report.outcome == Outcome::Done {
+        // A step that refined ends with the equilibrium on the finer mesh.
+        if record.report.stage.finds_equilibrium() && record.report.outcome == Outcome::Done {
             println!(
                 "{:>7.3}  {:>9.3} N·mm  {:?} elements",
                 state.parameter,

@@ -189,7 +189,8 @@ pub(super) static CONTINUATION: &[Key] = &[
 pub(super) static PIPELINE: &[Key] = &[
     pipeline("stages", Kind::Stages, "[\"solve\", \"evaluate-indicators\", \"refine-knots\", \"project-displacements\", \"re-equilibrate\"]")
         .means("The stages of one load step: solve alone, with evaluate-indicators to watch, or with refine-knots, \
-              project-displacements and re-equilibrate to refine. switch-branch after solve leaves an unstable equilibrium \
+              project-displacements and re-equilibrate to refine. coarsen-knots at the end takes knots out again where \
+              adapt.tolerance allows. switch-branch after solve leaves an unstable equilibrium \
               along its soft mode, down to a stable one; by arc length only at bifurcations, since behind a limit point the \
               unstable path is what is followed.")
         .or(Follows("all five stages where the scene has [adapt], else [\"solve\"]"))
