@@ -62,7 +62,9 @@ impl ToSplit<'_> {
             let shares = &self.errors[direction].shares;
             let sum: f64 = shares.iter().map(|share| share.abs()).sum();
             let split = move |(span, share): (usize, &f64)| {
-                let error = if sum > 0.0 { self.relative[direction] * share.abs() / sum } else { 0.0 };
+                // Where supports hold every point, all spans are as likely.
+                let part = if sum > 0.0 { share.abs() / sum } else { 1.0 / shares.len() as f64 };
+                let error = self.relative[direction] * part;
                 let fitting = (self.lengths[direction][span] / self.limit[direction]).min(MOST_PARTS as f64);
                 Split { direction, span, error, parts: 1, most: fitting as usize }
             };

@@ -211,6 +211,9 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
             ("knots asked for", format!("{marked1} along the length, {marked2} along the arc")),
             ("largest max|κ| h", format!("{r1} along the length, {r2} along the arc")),
         ]);
+        if let Some([e1, e2]) = report.estimated_error.map(|error| error.map(|relative| 100.0 * relative)) {
+            lines.push(("estimated error", format!("{e1:.4} % by spans along the length, {e2:.4} % along the arc")));
+        }
     }
     lines.extend(report.warnings.iter().map(|warning| ("warning", warning.in_words())));
     lines.extend([

@@ -14,6 +14,13 @@ use crate::record::{Report, Warning};
 use crate::scene::{Adapt, Indicator, Scene, Stage};
 use crate::state::{Estimate, State};
 
+/// Share of the energy that the free strain puts into a shell that is held, up to which the strain energy of one that is not says
+/// nothing, as in [`Halving::energy_share`](crate::adapt::Halving::energy_share).
+const OF_HELD: f64 = 1e-3;
+
+/// What halving the spans of either direction would change, and the relative errors that are in it.
+type Errors = ([DirectionalError; 2], [f64; 2]);
+
 /// A state whose mesh is judged.
 pub(super) struct Evaluation<'a> {
     pub scene: &'a Scene,
@@ -92,10 +99,13 @@ impl Evaluation<'_> {
 
     /// What halving the spans of either direction would change, and the relative errors that are in it; `None` where the
     /// stiffness on a halved mesh has no factor, as exactly at a limit point.
-    fn errors(&mut self) -> Result<Option<([DirectionalError; 2], [f64; 2])>, WorkspaceError> {
+    fn errors(&mut self) -> Result<Option<Errors>, WorkspaceError> {
         let Self { scene, own, state, .. } = *self;
+        let work = self.current.workspace(scene, own, &state.mesh)?;
+        let held = work.energy(&vec![[0.0; 3]; state.displacement.len()], state.parameter);
+        let stored = (state.strain_energy_n_mm / scene.symmetry.copies() as f64).max(OF_HELD * held);
         // Nothing is stored before the first load: there is no error yet.
-        if state.strain_energy_n_mm == 0.0 {
+        if stored <= 0.0 {
             return Ok(None);
         }
         let measured = Measured::of(scene);
@@ -120,7 +130,7 @@ impl Evaluation<'_> {
             return Err(cause.into());
         }
         let Ok(errors) = <[DirectionalError; 2]>::try_from(errors) else { return Ok(None) };
-        let relative = errors.each_ref().map(|error| measured.relative_error(scene, state, here, slope, error));
+        let relative = errors.each_ref().map(|error| measured.relative_error(scene, state, here, slope, error, stored));
         Ok(Some((errors, relative)))
     }
 }

@@ -5,20 +5,20 @@ use crate::equilibrium::{Configuration, Workspace};
 use crate::model::ModelError;
 use crate::pipeline::probes::read_first_probe;
 use crate::scene::{ProbeKind, Scene};
-use crate::shell::{add, norm, scaled};
-use crate::state::{Course, PathMemory, Previous, State};
+use crate::shell::norm;
+use crate::state::{Course, Previous, State};
 
 /// Share of the mean moment so far, or of the largest displacement, that a smaller moment or displacement is compared with: where
 /// one passes through zero, no relative error of it can be asked for.
 const SMALL: f64 = 0.1;
 
+/// Relative change of a quantity by finer spans, up to which it is rounding.
+const FIXED: f64 = 1e-10;
+
 /// Relative change of the quantity, for one of the parameter, from which on an equilibrium is next to a limit point: the baseline
 /// has 4 at 9.8° and 23 at 9.9°, where it snaps at 9.906°; before 9.6° less than 1. Springs that stiffen with the cube of the
 /// motion have 3.
 const STEEP: f64 = 4.0;
-
-/// Share of the first step of a path along which a rate is taken.
-const SHORT: f64 = 1e-3;
 
 /// The quantity whose error counts: the moment of turning ends, or else the first probe, or else the strain energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,8 @@ impl Measured {
     }
 
     /// The relative error of a state where the quantity is `here`, from what halving the spans of one direction would change.
-    /// `slope` is the rate of the quantity with the parameter.
+    /// `slope` is the rate of the quantity with the parameter, and `stored` the energy, N·mm, that the energy of the model is
+    /// compared with.
     ///
     /// Next to a limit point what changes at one value of the parameter grows without bound, where the curve hardly moves: what
     /// counts there is the shift of the curve along the parameter.
@@ -65,13 +66,17 @@ impl Measured {
         here: f64,
         slope: Option<f64>,
         error: &DirectionalError,
+        stored: f64,
     ) -> f64 {
-        let of_energy = scene.symmetry.copies() as f64 * error.energy.abs() / state.strain_energy_n_mm.abs();
-        if self == Self::Energy {
-            // The first-order change of the energy is twice what equilibrium releases.
+        let of_energy = error.energy.abs() / stored;
+        let scale = self.scale(scene, state, here);
+        let is_fixed = error.measured.abs() <= FIXED * scale;
+        // The first-order change of the energy is twice what equilibrium releases. A probe that supports or symmetry fix has
+        // nothing to refine by.
+        if self == Self::Energy || is_fixed {
             return of_energy;
         }
-        let of_quantity = error.measured.abs() / self.scale(scene, state, here);
+        let of_quantity = error.measured.abs() / scale;
         let steepness = slope.map_or(0.0, |slope| (slope * state.parameter / here).abs());
         let shift = if steepness > STEEP { of_quantity / steepness } else { of_quantity };
         if shift.is_finite() { shift } else { of_energy }
@@ -90,16 +95,11 @@ impl Measured {
     ) -> Result<Option<f64>, ModelError> {
         let at = Configuration::of(state);
         let (displacement, parameter) = match &state.drive.course {
-            Course::Unknown => return Ok(None),
-            Course::Load(Previous { displacement, parameter }) => (displacement.clone(), *parameter),
-            Course::Path(PathMemory { heading, parameter_rate, first_mm, .. }) => {
-                let back = -SHORT * first_mm;
-                let moved = state.displacement.iter().zip(heading).map(|(u, rate)| add(*u, scaled(back, *rate)));
-                (moved.collect(), state.parameter + back * parameter_rate)
-            }
+            Course::Unknown | Course::Path(_) => return Ok(None),
+            Course::Load(Previous { displacement, parameter }) => (displacement, *parameter),
         };
         // What was carried over to a finer mesh is read as its supports allow it there.
-        let (displacement, turns) = work.allowed(Configuration { displacement: &displacement, parameter, ..at });
+        let (displacement, turns) = work.allowed(Configuration { displacement, parameter, ..at });
         let before =
             self.read(scene, work, Configuration { displacement: &displacement, turns: &turns, parameter, ..at })?;
         let slope = (here - before) / (state.parameter - parameter);

@@ -16,7 +16,7 @@ use crate::pipeline::path_drive::PathDrive;
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step::{Drives, Step, out_of_order};
 use crate::record::{Reading, Report, Warning, run_hash};
-use crate::scene::{Drive, Scene, Stage};
+use crate::scene::{Drive, Indicator, Scene, Stage};
 use crate::spline::Mesh;
 use crate::state::{DriveMemory, Refinement, State};
 
@@ -277,7 +277,9 @@ impl Stages {
 
     /// Adds the warnings about the state that a stage made, or about the one before it.
     fn warn(&mut self, before: &State, after: &State, report: &mut Report) -> Result<(), StageError> {
-        let refined = matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
+        // Where a tolerance rules, the estimate says what meshes before were off by.
+        let by_error = self.scene.adapt.as_ref().is_some_and(|adapt| matches!(adapt.indicator, Indicator::Error(_)));
+        let refined = !by_error && matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
         report.warnings.extend(refined.then(|| Warning::of_refining(before, after, report.elements)).flatten());
         for (state, read_at) in doubtful(&self.scene, before, after, report) {
             let work = self.current.workspace(&self.scene, &self.own, &state.mesh);

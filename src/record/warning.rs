@@ -157,7 +157,7 @@ impl Warning {
                 };
                 format!(
                     "{n1} × {n2} elements cannot show this shape: halving each would change {change} of the strain energy; \
-                     write more elements or a higher degree in [mesh], or a lower adapt.threshold"
+                     write more elements or a higher degree in [mesh], or a lower adapt.threshold or adapt.tolerance"
                 )
             }
             Self::ProbeOff { elements: [n1, n2], probe, value, halved, unit, others, .. } => {
@@ -167,7 +167,7 @@ impl Warning {
                 };
                 format!(
                     "probe \"{probe}\" reads {} {unit} on {n1} × {n2} elements and {} {unit} with each of them \
-                     halved{others}; write more elements or a higher degree in [mesh], or a lower adapt.threshold",
+                     halved{others}; write more elements or a higher degree in [mesh], or a lower adapt.threshold or adapt.tolerance",
                     significant(*value, 3),
                     significant(*halved, 3)
                 )
@@ -204,7 +204,7 @@ impl Warning {
             }
             &Self::EnergyChangedByRefining { elements: [n1, n2], energy_change, .. } => format!(
                 "refining to {n1} × {n2} elements changed the strain energy at the same load by {} %, and what was read before \
-                 is as far off; start from a finer mesh, or lower adapt.threshold",
+                 is as far off; start from a finer mesh, or lower adapt.threshold or adapt.tolerance",
                 signed(100.0 * energy_change, 1)
             ),
         }

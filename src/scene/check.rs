@@ -241,11 +241,18 @@ fn adapt(tables: &Tables, pipeline: &[Stage]) -> Checked<Option<Adapt>> {
         ));
     }
     let splitting: Splitting = table.get("splitting");
-    if splitting != Splitting::default() && matches!(indicator, Indicator::Error(_)) {
+    if table.place_of("splitting").is_some() && matches!(indicator, Indicator::Error(_)) {
         return Err(table.wrong_at(
             "splitting",
             "with a tolerance, spans are split in as many parts as the error asks for",
             "leave it out",
+        ));
+    }
+    if tables.one("continuation").is_given && matches!(indicator, Indicator::Error(_)) {
+        return Err(table.wrong_at(
+            "tolerance",
+            "by arc length, a mesh that is refined by its error behind a limit point may lead back along the path",
+            "write `threshold` in place of `tolerance`, or leave [continuation] out",
         ));
     }
     if pipeline.contains(&Stage::CoarsenKnots) && !matches!(indicator, Indicator::Error(_)) {

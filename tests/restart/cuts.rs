@@ -1,5 +1,7 @@
 //! A run cut anywhere and resumed ends with the same chain of hashes as one that was never cut.
 
+use foldline::scene::Stage;
+
 use crate::program::{SMALL, Sandbox, Straight, assert_ends_with, assert_resumes_from_every_cut, small_syncing};
 
 /// The small run with a policy of syncing, cut after every stage in turn.
@@ -36,6 +38,24 @@ fn every_cut_of_a_run_whose_increments_grow() {
     let longest = rotations.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     assert!(longest > 1.9, "the longest step is {longest}°");
     assert_resumes_from_every_cut(&whole, "growing", 1, 2);
+}
+
+/// The estimate of the error, superfluous knots and meshes that lose some are parts of a state.
+#[test]
+fn every_cut_of_a_run_that_keeps_a_tolerance() {
+    let kept = SMALL
+        .replace("threshold = 0.019\nlength_limit_mm = 4.0", "tolerance = 0.2")
+        .replace("\"re-equilibrate\"]", "\"re-equilibrate\", \"coarsen-knots\"]")
+        .replace("increment_deg = 2.0", "increment_deg = 4.0")
+        .replace("rotation_deg = 16.0", "rotation_deg = 40.0");
+    let whole = Straight::run(&kept, 1);
+    let place = Sandbox::new();
+    place.write("whole.mcap", &whole.bytes);
+    let log = place.log("whole.mcap");
+    let count = |stage| log.entries().iter().filter(|entry| entry.record.report.stage == stage).count();
+    println!("{} refined, {} coarsened", count(Stage::RefineKnots), count(Stage::CoarsenKnots));
+    assert!(count(Stage::RefineKnots) > 2 && count(Stage::CoarsenKnots) > 0);
+    assert_resumes_from_every_cut(&whole, "tolerance", 1, 2);
 }
 
 /// What a resume says: what it found, what it dropped and why, and what it computes first.

@@ -16,7 +16,7 @@ fn scene(name: &str, text: &str) -> Scene {
 
 /// Reactions and residual together, N: internal forces less loads on all control points.
 fn forces(scene: &Scene, state: &State) -> f64 {
-    let mut work = Workspace::new(scene, &state.mesh).unwrap();
+    let work = Workspace::new(scene, &state.mesh).unwrap();
     work.forces(Configuration::of(state)).iter().flatten().map(|force| force * force).sum::<f64>().sqrt()
 }
 

@@ -9,7 +9,7 @@ use foldline::scene::{
 };
 use foldline::state::State;
 
-fn read(name: &str) -> Scene {
+pub fn read(name: &str) -> Scene {
     let path = format!("{}/pipelines/verification/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap_or_else(|error| panic!("{error}"))
 }

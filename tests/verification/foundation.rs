@@ -356,7 +356,7 @@ fn it_stands_in_the_sums() {
     );
     let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(3.0))];
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
-    let mut work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
+    let work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
     let field = |seed: f64| -> Vec<[f64; 3]> {
         let value = |i: usize| ((i as f64 + 1.0) * seed).fract() - 0.5;
         (0..mesh.control_points.len()).map(|i| [0, 1, 2].map(|c| 0.1 * value(3 * i + c))).collect()
@@ -368,7 +368,7 @@ fn it_stands_in_the_sums() {
     let step = 1e-5;
     let energy = |step: f64| work.energy(&at(step), 0.0);
     let slope = (energy(step) - energy(-step)) / (2.0 * step);
-    let mut forces = |step: f64| {
+    let forces = |step: f64| {
         work.forces(Configuration { displacement: &at(step), turns: &[], parameter: 0.0, largest_force: 0.0 })
     };
     let product = |a: &[[f64; 3]], b: &[[f64; 3]]| -> f64 {

@@ -27,3 +27,4 @@ mod spring_path;
 mod support;
 mod surfaces;
 mod terms;
+mod tolerance;

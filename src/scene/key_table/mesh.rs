@@ -94,7 +94,7 @@ pub(super) static ADAPT: &[Key] = &[
         "0.01",
     )
     .means("Relative error of the moment of turning ends, or else of the first probe (of the strain energy where there is \
-          none), that the mesh may cause; next to a limit point, of the parameter. The run estimates it by halving the knot spans of one direction after the other, and \
+          none, or one that finer spans do not change), that the mesh may cause; next to a limit point, of the parameter. The run estimates it by halving the knot spans of one direction after the other, and \
           splits those that lower it most per unknown.")
     .or(InsteadOf("threshold"))
     .reaches(Steps)
