@@ -62,7 +62,11 @@
 //! # Features
 //!
 //! `cli`, on by default, is the program; `pictures`, a part of it, draws curves. Without them the library builds without clap,
-//! indicatif and plotters.
+//! indicatif and plotters:
+//!
+//! ```toml
+//! foldline = { version = "0.1", default-features = false }
+//! ```
 
 pub mod adapt;
 #[cfg(feature = "cli")]

@@ -46,7 +46,7 @@ pub struct State {
     pub estimate: Option<Estimate>,
 }
 
-/// An estimate of the error that the mesh causes, and what tells when it no longer holds.
+/// An estimate of the error that the mesh causes, and from what state on it no longer holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Load step that it was made at.

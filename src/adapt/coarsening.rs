@@ -17,20 +17,20 @@ use crate::state::State;
 /// of a tape spring, the moment has 5 to 17 times the relative error of the energy.
 const OF_QUANTITY: f64 = 20.0;
 
-/// A knot that may leave.
+/// A knot that may be removed.
 struct Leaving {
     direction: usize,
     /// Its number among the inner knots of the direction.
     index: usize,
     knot: f64,
-    /// Relative error that its leaving adds.
+    /// Relative error that its removal adds.
     added: f64,
-    /// The same for each control point that leaves with it.
+    /// The same for each control point that is removed with it.
     per_point: f64,
 }
 
-/// Knots of the mesh of an equilibrium that are not in the mesh that the run starts with and whose leaving adds no more than
-/// `room` to the relative error: those that are worth least, no two next to each other.
+/// Finds inserted knots of the mesh of an equilibrium whose removal adds no more than `room` to the relative error: those that are
+/// worth least, no two next to each other. What is in `start`, the mesh that the run starts with, stays.
 ///
 /// # Errors
 /// Where the stiffness cannot be formed.

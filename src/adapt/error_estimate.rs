@@ -10,7 +10,7 @@
 //! The step starts from where the supports allow the shell to stand on the halved mesh. At a section that keeps its normals a
 //! halved edge has other unknowns, and from the projected displacement as it is the moment of the baseline seemed 21 % off.
 //!
-//! Each span has its share: the work of the residual on the part of the step that the mesh in hand cannot show, found by its best
+//! Each span has its share: the work of the residual on the part of the step that the current mesh cannot show, found by its best
 //! approximation ([`Coarsening`]).
 
 use std::sync::Arc;
@@ -94,7 +94,7 @@ impl Enriched {
         })
     }
 
-    /// −½ r · (d − best approximation of d on the mesh in hand) by the span in which a control point has its weight, for a step d
+    /// −½ r · (d − best approximation of d on the current mesh) by the span in which a control point has its weight, for a step d
     /// and the residual r. Points that supports or joints hold have forces that are no residual.
     fn shares(&self, mesh: &Mesh, release: &LinearRelease) -> Vec<f64> {
         let Discretization { mesh: finer, unknowns, .. } = self.work.discretization();

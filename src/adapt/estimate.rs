@@ -31,7 +31,7 @@ pub fn still_holds(estimate: &Estimate, state: &State, indicators: [f64; 2], tol
     state.step < estimate.step + LONGEST && indicators.into_iter().zip(estimate.largest_indicator).all(is_near)
 }
 
-/// A mesh with the errors that it causes at an equilibrium.
+/// The error that a mesh causes at an equilibrium, by direction and span.
 #[derive(Clone, Copy, Debug)]
 pub struct JudgedMesh<'a> {
     /// The mesh.
@@ -49,7 +49,9 @@ pub struct JudgedMesh<'a> {
 }
 
 impl JudgedMesh<'_> {
-    /// Knots to insert in each direction; none where the mesh does.
+    /// Knots to insert in each direction; empty where the error is small enough.
+    ///
+    /// The shares by which spans are chosen are of the energy. A probe far from a point load is so refined for at the load.
     pub fn marked(&self) -> [Vec<f64>; 2] {
         if self.relative.iter().sum::<f64>() <= REFINED_FROM * self.tolerance {
             return Default::default();

@@ -31,10 +31,10 @@ const STILL: f64 = 5e-3;
 /// The same relative to the size of the shell: displacements of a shell that was let go again are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// An equilibrium looked at on a mesh with every element halved. Energies are of the model, N·mm.
+/// Energies of an equilibrium on its mesh and on the one with every element halved; of the model, N·mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Halving {
-    /// Strain energy on the mesh in hand.
+    /// Strain energy on the equilibrium's own mesh.
     pub energy: f64,
     /// Strain energy of the same shape with the quadrature of the halved elements.
     pub integrated: f64,
@@ -59,8 +59,8 @@ pub struct Halved {
 }
 
 impl Halved {
-    /// Of an equilibrium of a scene with terms of the caller's own; `None` where the halved mesh has no factor, does not fit in memory, or has more than a fifth of
-    /// [`MOST_CONTROL_POINTS`].
+    /// Relaxes an equilibrium on the mesh with every element halved, where `own` are user-defined terms; `None` where the
+    /// stiffness there has no factor, does not fit in memory, or there are more than a fifth of [`MOST_CONTROL_POINTS`].
     pub fn of(scene: &Scene, own: &[Arc<dyn TermSource>], state: &State) -> Option<Self> {
         let mesh = &state.mesh;
         let middles = [0, 1].map(|way| {
@@ -86,7 +86,7 @@ impl Halved {
         Some(Self { work, halving, relaxed, parameter: state.parameter, largest_force: state.largest_force_n })
     }
 
-    /// Solves on the halved mesh and returns what that changes of the energy.
+    /// The energies on the two meshes, as computed when this was made.
     pub fn halving(&self) -> Halving {
         self.halving
     }

@@ -100,7 +100,7 @@ fn spans_where(elements: Grid, axis: usize, holds: impl Fn(usize, usize) -> bool
     spans
 }
 
-/// The indicators beside what they are compared with.
+/// The indicators and what they are compared with.
 struct Judged<'a> {
     threshold: [f64; 2],
     /// Elements are not halved below this each way, mm.

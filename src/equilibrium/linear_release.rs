@@ -32,7 +32,7 @@ impl LinearRelease {
         self.motion.iter().map(|motion| norm(*motion)).fold(0.0, f64::max)
     }
 
-    /// Where the shell stands after a share of the step, on the mesh of the workspace that computed it.
+    /// Places the shell after a share of the step, on the mesh of the workspace that computed it.
     pub fn after(&self, share: f64, work: &Workspace) -> Placed {
         let moved = self.free.iter().zip(&self.step).map(|(value, change)| value + share * change).collect();
         let there = Coordinates::at(&work.discretization.unknowns, moved, self.parameter);
@@ -57,8 +57,8 @@ impl Workspace {
         Ok(LinearRelease { energy, forces, motion, parameter, free, step })
     }
 
-    /// The nearest displacement that supports and joints allow on this mesh: on a finer one than that of the state, unknowns at
-    /// a section are others, and what they give differs by what the coarser one could not show there.
+    /// Computes a displacement again from its free unknowns, so that supports and joints hold on this mesh: on a finer one than that
+    /// of the state, a section holds other points, and what it gives them differs by what the coarser mesh could not show.
     pub fn allowed(&self, at: Configuration) -> Placed {
         let there =
             Coordinates::at(&self.discretization.unknowns, at.free(&self.discretization.unknowns), at.parameter);

@@ -133,6 +133,7 @@ pub(crate) use index::word_number;
 pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
 pub use long::{LongLog, LongLogError};
+#[cfg(feature = "cli")]
 pub(crate) use lost_manifest::stages_in_words;
 pub use manifest::{Manifest, ManifestError, SceneInLogError};
 pub use mending::MendError;

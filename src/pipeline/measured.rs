@@ -29,6 +29,7 @@ pub(super) enum Measured {
 }
 
 impl Measured {
+    /// The quantity of a scene.
     pub fn of(scene: &Scene) -> Self {
         match (scene.end_rotation(), scene.probes.is_empty()) {
             (Some(_), _) => Self::Moment,

@@ -26,7 +26,8 @@ const REFINED_BY: &str = "adapt: the first probe";
 const DOMAIN: &str = "foldline scene 1";
 
 impl Scene {
-    /// Hashes everything that decides states: all keys but `output.*`, `expect.*` and `load.rotation_deg`. Those may
+    /// Hashes everything that decides states: all keys but those that reach nothing ([`Reach::Free`]: outputs, expectations, the
+    /// target, probes; though of these the first, without its name, where a tolerance asks for its error). Those may
     /// change, so that a run can be extended, or written with more output, and every stage done so far is found again.
     ///
     /// Fed are the domain string and then, in the order of their paths, each key and its value as JSON, each with its

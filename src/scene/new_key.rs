@@ -1,4 +1,4 @@
-//! A key is added in one place: all that uses it follows from there.
+//! A key is described in one place: reading, errors, hints, help and schema follow from there.
 
 use super::document::Document;
 use super::error::SceneError;

@@ -23,7 +23,7 @@ impl Coarsening {
         Self { refinement, factor }
     }
 
-    /// Coarse values next to some fine ones.
+    /// Finds the coarse control values whose refinement is nearest to `fine`.
     pub fn coarsened(&self, fine: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut sums = vec![[0.0; 3]; self.factor.len()];
         for ((first, shares), value) in self.refinement.iter().zip(fine) {
@@ -35,7 +35,7 @@ impl Coarsening {
         sums
     }
 
-    /// The fine values of some coarse ones: exact refinement.
+    /// Refines coarse control values, exactly.
     pub fn refined(&self, coarse: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let value = |(first, shares): &(usize, Vec<f64>)| {
             let mut sum = [0.0; 3];

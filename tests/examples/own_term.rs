@@ -1,4 +1,4 @@
-//! An energy term of one's own: a strip on an elastic foundation, beside the closed form of a beam on one.
+//! A user-defined energy term: a strip on an elastic foundation, compared with the closed form of a beam on one.
 //!
 //! ```text
 //! cargo run --release --example own_term

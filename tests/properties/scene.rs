@@ -239,6 +239,22 @@ fn free_are_the_outputs_the_target_and_what_is_expected_alone() {
     );
 }
 
+/// Where a tolerance asks for the error of the first probe, that probe decides states; its name does not, nor do the others.
+#[test]
+fn the_first_probe_is_part_of_the_identity_under_a_tolerance() {
+    let by_error = PLATE.replace("threshold = 0.02", "tolerance = 0.01");
+    let hash = |text: &str| parse(text, "plate.toml").unwrap().hash();
+    for (text, decides) in [(PLATE, false), (&by_error[..], true)] {
+        assert_eq!(hash(&text.replace("component = \"z\"", "component = \"x\"")) != hash(text), decides);
+        assert_eq!(hash(&text.replace("name = \"tip\"", "name = \"corner\"")), hash(text));
+        assert_eq!(hash(&text.replace("component = \"moment-y\"", "component = \"moment-x\"")), hash(text));
+    }
+    let [one, other] = ["z", "x"].map(|axis| by_error.replace("component = \"z\"", &format!("component = \"{axis}\"")));
+    let [one, other] = [one, other].map(|text| parse(&text, "plate.toml").unwrap());
+    let reaches: Vec<Reach> = one.differences(&other).iter().map(|difference| difference.reach).collect();
+    assert!(reaches.contains(&Reach::Steps), "{reaches:?}");
+}
+
 #[test]
 fn every_value_of_a_scene_is_a_key_of_the_table() {
     let json = serde_json::to_value(right()).unwrap();

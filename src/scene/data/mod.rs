@@ -399,7 +399,7 @@ mod one_or_pair {
 pub enum Stage {
     /// Move the load on by one increment and find equilibrium.
     Solve,
-    /// Measure bending per knot span and mark what is too coarse.
+    /// Mark the knot spans that are too coarse, by their bending or by the error that they cause.
     EvaluateIndicators,
     /// Insert knots into the geometry where spans are marked.
     RefineKnots,

@@ -1,4 +1,6 @@
-//! Every key of a scene file: its type, unit, limits, default, meaning and reach are given here alone.
+//! Every key of a scene file: its type, unit, limits, default, meaning and reach are given here alone, and parser, errors, hints,
+//! help, schema and identity follow from them. What a value does is in the data of a scene, in `check` where it depends on other
+//! keys, and in `write` where it is not written as it is read.
 //!
 //! | file | tables |
 //! |---|---|
