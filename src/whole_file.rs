@@ -61,7 +61,8 @@ impl WholeFile {
     }
 
     /// Replaces whatever has the name `target`, if anything has, by the file. A symbolic link of that name is replaced,
-    /// not followed.
+    /// not followed. A process that is killed between the two calls that this takes leaves the whole file under a hidden name
+    /// (`.foldline-….new`): no call replaces a file by one without a name.
     ///
     /// # Errors
     /// Where this fails; what was there then stays.
