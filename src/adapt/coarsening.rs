@@ -7,10 +7,11 @@
 
 use std::sync::Arc;
 
+use crate::adapt::refinement::{unweighted, weighted};
 use crate::equilibrium::{Configuration, SolveError, Workspace};
 use crate::scene::Scene;
 use crate::shell::sub;
-use crate::spline::{Coarsening, Grid, Mesh};
+use crate::spline::{Coarsening, Grid, Mesh, without_knots};
 use crate::state::State;
 
 /// Relative error of the measured quantity that is taken for a relative change of the energy: where spans are too long for the fold
@@ -103,14 +104,14 @@ pub struct Coarsened {
 impl Coarsened {
     /// Takes knots out of a mesh; `start` is one that has none of them and the same geometry. `None` where it has.
     pub fn new(finer: &Arc<Mesh>, superfluous: &[Vec<f64>; 2], start: &Mesh) -> Option<Self> {
-        let kept = [0, 1].map(|k| without(&finer.knots[k], &superfluous[k]));
+        let kept = [0, 1].map(|k| without_knots(&finer.knots[k], &superfluous[k]));
         let count = |knots: &[f64], knot: &f64| knots.iter().filter(|other| *other == knot).count();
         let has_start =
             |k: usize| start.knots[k].iter().all(|knot| count(&kept[k], knot) >= count(&start.knots[k], knot));
         if finer.degree != start.degree || !(has_start(0) && has_start(1)) {
             return None;
         }
-        let inserted = [0, 1].map(|k| without(&kept[k], &start.knots[k]));
+        let inserted = [0, 1].map(|k| without_knots(&kept[k], &start.knots[k]));
         // Geometry is inserted again rather than approximated.
         let mesh = Arc::new(start.with_knots(&inserted));
         let maps = [0, 1].map(|k| Coarsening::new(&finer.knots[k], &mesh.knots[k], finer.degree[k]));
@@ -120,7 +121,7 @@ impl Coarsened {
     /// The best approximation of vectors at the control points, in the coarser space.
     pub fn approximated(&self, vectors: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let (_, net) = self.coarse_net(vectors);
-        net.iter().zip(&self.mesh.control_points).map(|(vector, point)| vector.map(|value| value / point[3])).collect()
+        unweighted(&self.mesh, &net)
     }
 
     /// The same at the control points of the finer mesh: what of the vectors the coarser space can show.
@@ -129,13 +130,12 @@ impl Coarsened {
         for (direction, map) in self.maps.iter().enumerate() {
             (grid, net) = along(grid, direction, &net, |line| map.refined(line));
         }
-        net.iter().zip(&self.finer.control_points).map(|(vector, point)| vector.map(|value| value / point[3])).collect()
+        unweighted(&self.finer, &net)
     }
 
     /// The best approximation in homogeneous coordinates.
     fn coarse_net(&self, vectors: &[[f64; 3]]) -> (Grid, Vec<[f64; 3]>) {
-        let weighted = |(vector, point): (&[f64; 3], &[f64; 4])| vector.map(|value| value * point[3]);
-        let mut net: Vec<[f64; 3]> = vectors.iter().zip(&self.finer.control_points).map(weighted).collect();
+        let mut net = weighted(&self.finer, vectors);
         let mut grid = self.finer.grid();
         for (direction, map) in self.maps.iter().enumerate() {
             (grid, net) = along(grid, direction, &net, |line| map.coarsened(line));
@@ -164,10 +164,4 @@ fn along(
         lines[place[1 - direction]][place[direction]]
     };
     (after, (0..after.len()).map(point).collect())
-}
-
-/// Knots without some of them; both ascending.
-fn without(knots: &[f64], taken: &[f64]) -> Vec<f64> {
-    let mut taken = taken.iter().peekable();
-    knots.iter().copied().filter(|knot| taken.next_if(|other| *other == knot).is_none()).collect()
 }

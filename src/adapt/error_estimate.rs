@@ -17,7 +17,8 @@ use std::sync::Arc;
 
 use crate::adapt::project_displacements;
 use crate::energy::{Discretization, TermSource};
-use crate::equilibrium::{Configuration, LinearRelease, SolveError, Workspace, WorkspaceError};
+use crate::equilibrium::{Configuration, LinearRelease, Workspace, WorkspaceError};
+use crate::model::ModelError;
 use crate::scene::Scene;
 use crate::shell::{dot, scaled, sub};
 use crate::spline::{Coarsening, Mesh, Spans, find_span};
@@ -47,7 +48,7 @@ pub struct DirectionalError {
 }
 
 /// Reads a quantity at a configuration on the mesh of a workspace.
-pub type Measure<'a> = dyn FnMut(&mut Workspace, Configuration) -> f64 + 'a;
+pub type Measure<'a> = dyn Fn(&mut Workspace, Configuration) -> Result<f64, ModelError> + 'a;
 
 impl Enriched {
     /// Builds the shell on the mesh with the spans of `direction` halved.
@@ -62,36 +63,37 @@ impl Enriched {
     ) -> Result<Self, WorkspaceError> {
         let (knots, degree) = (&mesh.knots[direction], mesh.degree[direction]);
         let mut middles: [Vec<f64>; 2] = Default::default();
-        middles[direction] = Spans::of(knots, degree).bounds.iter().map(|[from, to]| 0.5 * (from + to)).collect();
+        middles[direction] = Spans::of(knots, degree).middles();
         let finer = Arc::new(mesh.with_knots(&middles));
         let coarsening = Coarsening::new(&finer.knots[direction], knots, degree);
         Ok(Self { direction, work: Workspace::with_terms(scene, &finer, own)?, coarsening })
     }
 
-    /// Estimates the error of a state on the mesh that this was made for, where the measured quantity is `here`.
+    /// Estimates the error of a state on the mesh that this was made for, where the measured quantity is `here`; `None` where the
+    /// stiffness of the halved mesh has no factor, as exactly at a limit point.
     ///
     /// # Errors
-    /// Where the stiffness of the halved mesh has no factor.
+    /// Where the quantity cannot be read.
     pub fn error_of(
         &mut self,
         state: &State,
         here: f64,
-        measure: &mut Measure,
-    ) -> Result<DirectionalError, SolveError> {
+        measure: &Measure,
+    ) -> Result<Option<DirectionalError>, ModelError> {
         let mesh = self.work.discretization().mesh.clone();
         let projected = project_displacements(&state.mesh, &mesh, &state.displacement);
         let (displacement, turns) =
             self.work.allowed(Configuration { displacement: &projected, ..Configuration::of(state) });
         let at = Configuration { displacement: &displacement, turns: &turns, ..Configuration::of(state) };
-        let release = self.work.linear_release(at)?;
-        let before = measure(&mut self.work, at);
+        let Ok(release) = self.work.linear_release(at) else { return Ok(None) };
+        let before = measure(&mut self.work, at)?;
         let (displacement, turns) = release.after(SLIGHTLY, &self.work);
-        let after = measure(&mut self.work, Configuration { displacement: &displacement, turns: &turns, ..at });
-        Ok(DirectionalError {
+        let after = measure(&mut self.work, Configuration { displacement: &displacement, turns: &turns, ..at })?;
+        Ok(Some(DirectionalError {
             energy: release.energy,
             measured: before - here + (after - before) / SLIGHTLY,
             shares: self.shares(&state.mesh, &release),
-        })
+        }))
     }
 
     /// −½ r · (d − best approximation of d on the current mesh) by the span in which a control point has its weight, for a step d

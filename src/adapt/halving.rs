@@ -63,10 +63,7 @@ impl Halved {
     /// stiffness there has no factor, does not fit in memory, or there are more than a fifth of [`MOST_CONTROL_POINTS`].
     pub fn of(scene: &Scene, own: &[Arc<dyn TermSource>], state: &State) -> Option<Self> {
         let mesh = &state.mesh;
-        let middles = [0, 1].map(|way| {
-            let bounds = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds;
-            bounds.iter().map(|[from, to]| 0.5 * (from + to)).collect()
-        });
+        let middles = [0, 1].map(|direction| Spans::of(&mesh.knots[direction], mesh.degree[direction]).middles());
         let finer = Arc::new(mesh.with_knots(&middles));
         if finer.control_points.len() > MOST_LOOKED_AT {
             return None;
@@ -119,8 +116,14 @@ impl Halving {
     /// on 4 × 4 cubic ones, before the snap: 0.1 and 0.6 %; refined as it ships, next to the limit point: 0.00 and 0.03 %.
     pub fn energy_share(&self) -> f64 {
         let quadrature = (self.integrated - self.energy).abs();
-        quadrature.max(self.released.abs()) / self.energy.max(OF_HELD * self.held)
+        quadrature.max(self.released.abs()) / compared_with(self.energy, self.held)
     }
+}
+
+/// The energy that a change of it is compared with, where a shell stores `energy` and the free strain would put `held` in, were it
+/// held.
+pub fn compared_with(energy: f64, held: f64) -> f64 {
+    energy.max(OF_HELD * held)
 }
 
 /// The longest side of the box of a mesh's control points, mm.

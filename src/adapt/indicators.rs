@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use crate::adapt::splitting::{MOST_PARTS, cuts};
+use crate::adapt::judged_mesh::{MOST_PARTS, cuts};
 use crate::energy::Discretization;
 use crate::model::Tables;
 use crate::scene::{Adapt, Geometry, Indicator, LengthLimit, Scene, Splitting};

@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `error_estimate`, `estimate`, `splitting` | the error that the mesh causes, by direction and span, and the knots that lower it |
+//! | `error_estimate`, `estimate`, `judged_mesh` | the error that the mesh causes, by direction and span, and the knots that lower it |
 //! | `coarsening` | knots taken out, and the best approximation on what is left |
 //! | `halving` | what halving every element would change |
 //! | `indicators` | refinement indicators, and the marks that they set |
@@ -13,15 +13,16 @@ mod error_estimate;
 mod estimate;
 mod halving;
 mod indicators;
+mod judged_mesh;
 mod refinement;
-mod splitting;
 
 pub use coarsening::{Coarsened, superfluous};
 pub use error_estimate::{DirectionalError, Enriched, Measure};
-pub use estimate::{JudgedMesh, still_holds};
-pub use halving::{Halved, Halving};
+pub use estimate::still_holds;
+pub use halving::{Halved, Halving, compared_with};
 pub use indicators::{
     Blocked, Indicators, element_strains, evaluate_indicators, largest_bending_strain, largest_strain, length_limit,
     span_lengths,
 };
+pub use judged_mesh::JudgedMesh;
 pub use refinement::project_displacements;

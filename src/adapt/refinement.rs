@@ -2,26 +2,29 @@
 //! coordinates, since the weights change too. The old displacement lies in the new space, so the energy is the same to
 //! rounding.
 
-use crate::spline::{Mesh, insert_knots_into_net};
+use crate::spline::{Mesh, insert_knots_into_net, without_knots};
 
 /// Carries a displacement over from `mesh` to `finer`, which is `mesh` with knots inserted.
 pub fn project_displacements(mesh: &Mesh, finer: &Mesh, displacement: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let weights = mesh.control_points.iter().map(|point| point[3]);
-    let mut net: Vec<[f64; 3]> = displacement.iter().zip(weights).map(|(u, w)| u.map(|value| value * w)).collect();
+    let mut net = weighted(mesh, displacement);
     let mut counts = mesh.control_counts();
     for direction in 0..2 {
-        let inserted = added_knots(&mesh.knots[direction], &finer.knots[direction]);
+        let inserted = without_knots(&finer.knots[direction], &mesh.knots[direction]);
         let degree = mesh.degree[direction];
         (_, net) = insert_knots_into_net(&mesh.knots[direction], degree, &net, counts, direction, &inserted);
         counts[direction] += inserted.len();
     }
-    net.iter().zip(&finer.control_points).map(|(u, point)| u.map(|value| value / point[3])).collect()
+    unweighted(finer, &net)
 }
 
-/// Knots of `finer` that are not in `coarse`, with multiplicity; both ascending.
-fn added_knots(coarse: &[f64], finer: &[f64]) -> Vec<f64> {
-    let mut rest = coarse.iter().peekable();
-    finer.iter().copied().filter(|knot| rest.next_if(|other| *other == knot).is_none()).collect()
+/// Vectors at the control points of a mesh in homogeneous coordinates.
+pub(super) fn weighted(mesh: &Mesh, vectors: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    vectors.iter().zip(&mesh.control_points).map(|(vector, point)| vector.map(|value| value * point[3])).collect()
+}
+
+/// Vectors at the control points of a mesh from homogeneous coordinates.
+pub(super) fn unweighted(mesh: &Mesh, net: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    net.iter().zip(&mesh.control_points).map(|(vector, point)| vector.map(|value| value / point[3])).collect()
 }
 
 #[cfg(test)]

@@ -9,8 +9,8 @@ use crate::model::{ModelError, Unknowns};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
-/// The workspace of the current mesh, and the unknowns of a mesh that has no workspace yet. Both are made once for each
-/// mesh.
+/// The workspace of the current mesh, the unknowns of a mesh that has no workspace yet, and, where a tolerance asks for them, the
+/// meshes with halved spans. Each is made once for a mesh.
 #[derive(Debug, Default)]
 pub(super) struct CurrentMesh {
     work: Option<Workspace>,
@@ -46,9 +46,7 @@ impl CurrentMesh {
         };
         Ok(self.work.insert(work))
     }
-}
 
-impl CurrentMesh {
     /// The shell on a mesh with the spans of one direction halved, for either direction.
     pub fn enriched(
         &mut self,

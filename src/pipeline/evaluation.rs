@@ -3,20 +3,17 @@
 use std::sync::Arc;
 
 use crate::adapt::{
-    DirectionalError, JudgedMesh, evaluate_indicators, length_limit, span_lengths, still_holds, superfluous,
+    DirectionalError, JudgedMesh, compared_with, evaluate_indicators, length_limit, span_lengths, still_holds,
+    superfluous,
 };
 use crate::energy::TermSource;
-use crate::equilibrium::{Configuration, WorkspaceError};
-use crate::model::{ModelError, starting_mesh};
+use crate::equilibrium::{Configuration, Workspace, WorkspaceError};
+use crate::model::starting_mesh;
 use crate::pipeline::current_mesh::CurrentMesh;
 use crate::pipeline::measured::Measured;
 use crate::record::{Report, Warning};
 use crate::scene::{Adapt, Indicator, Scene, Stage};
 use crate::state::{Estimate, State};
-
-/// Share of the energy that the free strain puts into a shell that is held, up to which the strain energy of one that is not says
-/// nothing, as in [`Halving::energy_share`](crate::adapt::Halving::energy_share).
-const OF_HELD: f64 = 1e-3;
 
 /// What halving the spans of either direction would change, and the relative errors that are in it.
 type Errors = ([DirectionalError; 2], [f64; 2]);
@@ -57,9 +54,8 @@ impl Evaluation<'_> {
     /// The same by the error that the mesh causes, unless the estimate before still holds.
     fn by_error(&mut self, tolerance: f64, next: State, report: Report) -> Result<(State, Report), WorkspaceError> {
         let largest_indicator = report.largest_indicator;
-        let known = self.state.estimate.as_ref();
-        let known_step = known.map(|known| known.step);
-        if known.is_some_and(|known| still_holds(known, self.state, largest_indicator, tolerance)) {
+        let known = self.state.estimate;
+        if known.is_some_and(|known| still_holds(&known, self.state, largest_indicator, tolerance)) {
             return Ok((next, report));
         }
         let Some((errors, relative)) = self.errors()? else { return Ok((State { estimate: None, ..next }, report)) };
@@ -75,7 +71,7 @@ impl Evaluation<'_> {
         };
         let marked = judged.marked();
         // A mesh that was changed at this step stays as it is for now: refining and coarsening would take turns.
-        let is_older = known_step.is_some_and(|step| step < state.step);
+        let is_older = known.is_some_and(|known| known.step < state.step);
         let may_coarsen = is_older
             && state.negative_pivots == 0
             && scene.pipeline.contains(&Stage::CoarsenKnots)
@@ -103,33 +99,19 @@ impl Evaluation<'_> {
         let Self { scene, own, state, .. } = *self;
         let work = self.current.workspace(scene, own, &state.mesh)?;
         let held = work.energy(&vec![[0.0; 3]; state.displacement.len()], state.parameter);
-        let stored = (state.strain_energy_n_mm / scene.symmetry.copies() as f64).max(OF_HELD * held);
+        let stored = compared_with(state.strain_energy_n_mm / scene.symmetry.copies() as f64, held);
         // Nothing is stored before the first load: there is no error yet.
         if stored <= 0.0 {
             return Ok(None);
         }
         let measured = Measured::of(scene);
-        let work = self.current.workspace(scene, own, &state.mesh)?;
         let here = measured.read(scene, work, Configuration::of(state))?;
         let slope = measured.slope(scene, work, state, here)?;
-        let mut unread: Option<ModelError> = None;
-        let mut errors = Vec::with_capacity(2);
-        for enriched in self.current.enriched(scene, own, &state.mesh)? {
-            let error = enriched.error_of(state, here, &mut |work, at| {
-                measured.read(scene, work, at).unwrap_or_else(|cause| {
-                    unread = Some(cause);
-                    f64::NAN
-                })
-            });
-            match error {
-                Ok(error) => errors.push(error),
-                Err(_) => return Ok(None),
-            }
-        }
-        if let Some(cause) = unread {
-            return Err(cause.into());
-        }
-        let Ok(errors) = <[DirectionalError; 2]>::try_from(errors) else { return Ok(None) };
+        let [along, across] = self.current.enriched(scene, own, &state.mesh)?;
+        let measure = |work: &mut Workspace, at: Configuration| measured.read(scene, work, at);
+        let (along, across) = (along.error_of(state, here, &measure)?, across.error_of(state, here, &measure)?);
+        let (Some(along), Some(across)) = (along, across) else { return Ok(None) };
+        let errors = [along, across];
         let relative = errors.each_ref().map(|error| measured.relative_error(scene, state, here, slope, error, stored));
         Ok(Some((errors, relative)))
     }

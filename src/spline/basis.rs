@@ -31,6 +31,11 @@ impl Spans {
         Self { index, bounds }
     }
 
+    /// The middle of each element in the parameter.
+    pub fn middles(&self) -> Vec<f64> {
+        self.bounds.iter().map(|[from, to]| 0.5 * (from + to)).collect()
+    }
+
     /// Number of elements.
     pub fn count(&self) -> usize {
         self.index.len()

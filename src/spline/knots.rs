@@ -78,6 +78,12 @@ pub fn check_knots(knots: &[f64], degree: usize, least_gap: f64) -> Result<(), K
     Ok(())
 }
 
+/// Removes some knots from others, each as often as it is in `taken`; both ascend.
+pub fn without_knots(knots: &[f64], taken: &[f64]) -> Vec<f64> {
+    let mut taken = taken.iter().peekable();
+    knots.iter().copied().filter(|knot| taken.next_if(|other| *other == knot).is_none()).collect()
+}
+
 /// Number of control points in a direction with these knots; there must be more knots than the degree.
 pub fn control_count(knots: &[f64], degree: usize) -> usize {
     knots.len() - degree - 1

@@ -27,6 +27,6 @@ pub use basis::{DEGREES, Spans, basis_derivatives, basis_derivatives_len, find_s
 pub use coarsening::Coarsening;
 pub use grid::Grid;
 pub use insertion::{insert_knots, insert_knots_into_net};
-pub use knots::{KnotFlaw, check_knots, control_count};
+pub use knots::{KnotFlaw, check_knots, control_count, without_knots};
 pub use mesh::{Mesh, cartesian};
 pub use surface::{SurfacePoint, evaluate_surface, mid_surface_point, quotient_derivatives, tensor_derivatives};

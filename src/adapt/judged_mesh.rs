@@ -1,7 +1,16 @@
-//! Knot spans split so that the estimated error falls below what is asked, for as few unknowns as that takes.
+//! The error that a mesh causes and what is to be done about it: knot spans are split so that it falls below what is asked, for as
+//! few unknowns as that takes.
 
 use crate::adapt::DirectionalError;
 use crate::spline::{Mesh, Spans};
+
+/// Share of the tolerance from which on a mesh is refined. Estimates are of first order, and made now and then: a fold that grows
+/// over spans of a length that just serves is off by up to three times what is estimated before and behind them.
+pub(super) const REFINED_FROM: f64 = 0.3;
+/// Share of the tolerance that refining aims at.
+const REFINED_TO: f64 = 0.15;
+/// Share of the tolerance that coarsening stays below.
+const COARSENED_TO: f64 = 0.1;
 
 /// Parts at most that a span is split in at once: the estimate is of the present mesh.
 pub(super) const MOST_PARTS: usize = 4;
@@ -22,26 +31,45 @@ struct Split {
     most: usize,
 }
 
-/// What is known of the errors of a mesh when its spans are to be split.
-pub(super) struct ToSplit<'a> {
+/// The error that a mesh causes at an equilibrium, by direction and span.
+#[derive(Clone, Copy, Debug)]
+pub struct JudgedMesh<'a> {
+    /// The mesh.
     pub mesh: &'a Mesh,
-    /// Errors by direction.
+    /// What halving the spans of either direction would change.
     pub errors: &'a [DirectionalError; 2],
     /// Relative error of the measured quantity by direction.
     pub relative: [f64; 2],
-    /// Length of every span, mm.
+    /// Length of every span of either direction, mm.
     pub lengths: &'a [Vec<f64>; 2],
-    /// Length that no part may fall below, mm.
+    /// Length that no span is split below, mm.
     pub limit: [f64; 2],
+    /// Relative error that the mesh may cause.
+    pub tolerance: f64,
 }
 
-impl ToSplit<'_> {
+impl JudgedMesh<'_> {
+    /// Knots to insert in each direction; empty where the error is small enough.
+    ///
+    /// The shares by which spans are chosen are of the energy. A probe far from a point load is so refined for at the load.
+    pub fn marked(&self) -> [Vec<f64>; 2] {
+        if self.relative.iter().sum::<f64>() <= REFINED_FROM * self.tolerance {
+            return Default::default();
+        }
+        self.split_to(REFINED_TO * self.tolerance)
+    }
+
+    /// Relative error that taking knots out may add; 0 where there is no room for that.
+    pub fn room(&self) -> f64 {
+        (COARSENED_TO * self.tolerance - self.relative.iter().sum::<f64>()).max(0.0)
+    }
+
     /// Knots to insert in each direction, so that the estimated relative error falls to `target` or by a round's share.
     ///
     /// A span of degree p in k parts has k^(−2(p−1)) of its error left (bending energy; Strang & Fix, *An Analysis of the
     /// Finite Element Method*, 1973), at the cost of k − 1 rows of control points. Part after part goes to the span that gains
     /// most per unknown; as gains only fall, no other split of as many unknowns leaves less.
-    pub fn knots(&self, target: f64) -> [Vec<f64>; 2] {
+    fn split_to(&self, target: f64) -> [Vec<f64>; 2] {
         let target = target.max(LEFT_BY_A_ROUND * self.relative.iter().sum::<f64>());
         let mut splits = self.whole();
         while splits.iter().map(|split| self.left(split)).sum::<f64>() > target {
@@ -89,5 +117,6 @@ impl ToSplit<'_> {
 
 /// Knots that cut a span in so many equal parts.
 pub(super) fn cuts([from, to]: [f64; 2], parts: usize) -> impl Iterator<Item = f64> {
-    (1..parts).map(move |cut| from + (to - from) * cut as f64 / parts as f64)
+    // Of two parts exactly the middle of the span, to the bit.
+    (1..parts).map(move |cut| (from * (parts - cut) as f64 + to * cut as f64) / parts as f64)
 }
