@@ -80,7 +80,13 @@ impl Measured {
         let of_quantity = error.measured.abs() / scale;
         let steepness = slope.map_or(0.0, |slope| (slope * state.parameter / here).abs());
         let shift = if steepness > STEEP { of_quantity / steepness } else { of_quantity };
-        if shift.is_finite() { shift } else { of_energy }
+        match self {
+            _ if !shift.is_finite() => of_energy,
+            // The moment is the rate of the energy with the turn. Where its own change passes through zero, as on coarse meshes in
+            // the middle of a snap, that of the energy does not.
+            Self::Moment => shift.max(of_energy),
+            Self::Probe | Self::Energy => shift,
+        }
     }
 
     /// Rate of the quantity with the parameter, from where the equilibrium came from; `None` where that is not known.
