@@ -8,7 +8,7 @@ use crate::model::ModelError;
 use crate::printable::one_line;
 use crate::record::Parameter;
 use crate::scene::{Scene, Stage};
-use crate::study::{AccuracyError, BenchError, ConvergenceError};
+use crate::study::{AccuracyError, BenchError, CalibrationError, ConvergenceError};
 use crate::view::{PlotError, SamplesError};
 
 /// Stopped by a signal; nothing is wrong.
@@ -94,6 +94,8 @@ pub(super) enum Failure {
     Bench { source: Box<BenchError> },
     #[error("degree {}, {} × {} elements gave nothing", degree[0], elements[0], elements[1])]
     Convergence { degree: [usize; 2], elements: [usize; 2], source: Box<ConvergenceError> },
+    #[error("{scene} cannot be calibrated")]
+    Calibration { scene: String, source: Box<CalibrationError> },
     #[error("{failed} of {of} runs gave nothing to compare")]
     StudyIncomplete { failed: usize, of: usize },
     #[error("{key} is set more than once: give all its values in one list")]
@@ -128,6 +130,11 @@ impl Failure {
             | Failure::NoSuchScene { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,
+            Failure::Calibration { source, .. }
+                if !matches!(**source, CalibrationError::Run { .. } | CalibrationError::NothingInCommon) =>
+            {
+                2
+            }
             Failure::Study { source, .. }
                 if matches!(
                     **source,

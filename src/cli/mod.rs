@@ -9,6 +9,7 @@
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `extremes` | suites, and how fast and exact runs are |
+//! | `calibrate` | the threshold at which a scene's mesh keeps an error |
 //! | `help` | help on subcommands and topics |
 //! | `scene_file`, `log_file`, `asked` | what is read: scenes, logs, some stages of a log |
 //! | `session` | threads, signals, the log of a run under way |
@@ -20,6 +21,7 @@
 mod asked;
 mod bench;
 mod bisect;
+mod calibrate;
 mod converge;
 mod extremes;
 mod failure;
@@ -82,6 +84,7 @@ enum Command {
     Thin(thin::Arguments),
     Bench(bench::Arguments),
     Converge(converge::Arguments),
+    Calibrate(calibrate::Arguments),
     Study(study::Arguments),
     #[command(alias = "stress")]
     Extremes(extremes::Arguments),
@@ -111,6 +114,7 @@ impl Command {
             Command::Recover(arguments) => arguments.run(),
             Command::Thin(arguments) => arguments.run().map(|()| 0),
             Command::Converge(arguments) => arguments.run().map(|()| 0),
+            Command::Calibrate(arguments) => arguments.run().map(|()| 0),
             Command::Study(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
             Command::Extremes(arguments) => arguments.run(),

@@ -8,10 +8,12 @@
 //! | `summary`, `summary_text` | what a run found |
 //! | `timed_run`, `bench` | what it costs |
 //! | `accuracy`, `convergence` | error against that |
+//! | `calibration` | the threshold of the bending indicator |
 //! | `extremes`, `extremes_run`, `extremes_curve`, `extremes_fault` | scenes that state how they end |
 
 mod accuracy;
 mod bench;
+mod calibration;
 mod convergence;
 mod extremes;
 mod extremes_curve;
@@ -26,6 +28,10 @@ mod wuest;
 
 pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_one_structure, measure};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
+pub use calibration::{
+    Calibrated, Calibration, CalibrationError, CalibrationPoint, CoarseIn, EndedBy, Verdict, calibrate,
+    check_calibratable, fine_elements,
+};
 pub use convergence::{ConvergenceError, ConvergenceRow, check_spring, converge};
 pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;

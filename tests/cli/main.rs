@@ -1,6 +1,7 @@
 //! What a user sees, pinned by snapshots.
 
 mod binary;
+mod calibrate;
 mod extremes;
 mod folded;
 mod pictures;
