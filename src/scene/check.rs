@@ -2,29 +2,22 @@
 
 use std::path::Path;
 
-use super::data::{
-    Adapt, ArcLength, EndRotation, Geometry, Indicator, LengthLimit, Load, LoadSteps, Material, MeshSpec, Scene,
-    Solver, Splitting, Stage, Symmetry,
-};
+use super::data::{ArcLength, EndRotation, Geometry, Load, LoadSteps, Material, Scene, Solver};
 use super::document::Document;
 use super::error::SceneError;
-use super::fault::{Checked, CheckedWhole, Fault, Faults, Source, TextSpan};
+use super::fault::{Checked, CheckedWhole, Faults, Source};
+use super::geometries::TAPE_SPRING;
 use super::key_table::SECTIONS;
-use super::problem::{Direction, Problem};
+use super::problem::Problem;
 use super::structure::structure;
-use super::table::Table;
+use super::table::{Table, between};
 use super::tables::Tables;
-use super::{geometries, materials};
+use super::{geometries, materials, meshes};
 use crate::units::significant;
 
 /// Length of the layer in which a cylinder feels its held end, in units of sqrt(R t): pi decay lengths of
 /// sqrt(R t)/(3(1 - nu^2))^(1/4), after which 4 % are left (Timoshenko & Woinowsky-Krieger, section 114), at nu = 0.3.
 const BOUNDARY_LAYER: f64 = 2.4;
-
-/// The kind of geometry whose ends turn.
-const TAPE_SPRING: &str = "tape-spring";
-/// Kinds of geometry without curvature.
-const FLAT: [&str; 2] = ["plate", "annulus"];
 
 /// Parses and checks a scene in TOML; errors call the text `file_name`.
 ///
@@ -54,12 +47,12 @@ fn scene(tables: &Tables, folder: &Path) -> CheckedWhole<Scene> {
     let mut faults = Faults::default();
     let geometry = faults.keep(geometries::geometry(tables.one("geometry"), folder));
     let material = faults.keep(material(tables));
-    let mesh = faults.keep(mesh(tables));
+    let mesh = faults.keep(meshes::mesh(tables));
     let load = faults.keep(load(tables));
-    let pipeline = stages(tables);
-    let adapt = faults.keep(adapt(tables, &pipeline));
-    let (Some(geometry), Some(material), Some((mesh, symmetry)), Some(load), Some(adapt)) =
-        (geometry, material, mesh, load, adapt)
+    let stages = faults.keep(meshes::stages(tables));
+    let pipeline = stages.and_then(|stages| Some((faults.keep(meshes::adapt(tables, &stages))?, stages)));
+    let (Some(geometry), Some(material), Some((mesh, symmetry)), Some(load), Some((adapt, pipeline))) =
+        (geometry, material, mesh, load, pipeline)
     else {
         return Err(faults.0);
     };
@@ -135,24 +128,6 @@ fn material(tables: &Tables) -> Checked<Material> {
     Ok(material)
 }
 
-fn mesh(tables: &Tables) -> Checked<(MeshSpec, Symmetry)> {
-    let (table, symmetry_table) = (tables.one("mesh"), tables.one("symmetry"));
-    let (mesh, symmetry): (MeshSpec, Symmetry) = (table.data(), symmetry_table.get("part"));
-    for (index, direction) in Direction::BOTH.into_iter().enumerate() {
-        let count = mesh.elements[index];
-        if symmetry.cuts()[index] && count % 2 == 1 {
-            let problem = Problem::OddElements { direction, elements: count, part: symmetry_table.word("part").into() };
-            let place = table.place_of_item("elements", index);
-            let fault = between(problem, place.clone(), symmetry_table.place_of("part"), table);
-            return Err(match place {
-                Some(place) => fault.edit(&place, (count + 1).to_string()),
-                None => fault,
-            });
-        }
-    }
-    Ok((mesh, symmetry))
-}
-
 fn load(tables: &Tables) -> Checked<Load> {
     let table = tables.one("load");
     if table.kind() == "steps" {
@@ -200,69 +175,6 @@ fn steps(table: &Table) -> Checked<LoadSteps> {
         return Err(table.wrong_at("least_increment", problem, "make it smaller"));
     }
     Ok(LoadSteps { longest_increment: longest_increment.filter(|longest| *longest > increment), ..load })
-}
-
-fn stages(tables: &Tables) -> Vec<Stage> {
-    let given: Option<Vec<Stage>> = tables.one("pipeline").get("stages");
-    let adapts = tables.one("adapt").is_given;
-    given.unwrap_or_else(|| if adapts { Stage::REFINING.to_vec() } else { vec![Stage::Solve] })
-}
-
-/// A number for both directions, or one for each.
-fn one_or_pair(table: &Table, name: &str) -> Option<[f64; 2]> {
-    let value = table.values.get(name)?;
-    Some(value.as_f64().map_or_else(|| table.get(name), |both| [both; 2]))
-}
-
-fn adapt(tables: &Tables, pipeline: &[Stage]) -> Checked<Option<Adapt>> {
-    let table = tables.one("adapt");
-    if !pipeline.contains(&Stage::EvaluateIndicators) {
-        let stages = tables.one("pipeline").place_of("stages");
-        let unused = Fault::new(Problem::AdaptUnused, &table.place).also(stages.as_ref());
-        return if table.is_given { Err(unused) } else { Ok(None) };
-    }
-    let geometry = tables.one("geometry").kind();
-    let Some(threshold) = one_or_pair(table, "threshold") else { unreachable!("adapt.threshold has a default") };
-    let indicator = table.get::<Option<f64>>("tolerance").map_or(Indicator::BendingStrain(threshold), Indicator::Error);
-    let default = match (indicator, geometry) {
-        (Indicator::Error(_), _) => LengthLimit::Thickness,
-        (_, TAPE_SPRING) => LengthLimit::SqrtRadiusThickness,
-        _ => LengthLimit::HalfDecayLength,
-    };
-    let length_limit = match one_or_pair(table, "length_limit_mm") {
-        Some(lengths_mm) => LengthLimit::Millimetres(lengths_mm),
-        None => table.get::<Option<_>>("length_limit").unwrap_or(default),
-    };
-    if FLAT.contains(&geometry) && length_limit == LengthLimit::SqrtRadiusThickness {
-        return Err(table.wrong(
-            None,
-            "a flat shell has no radius to limit the elements by",
-            "write \"half-decay-length\", or `length_limit_mm`, a number or one for each direction",
-        ));
-    }
-    let splitting: Splitting = table.get("splitting");
-    if table.place_of("splitting").is_some() && matches!(indicator, Indicator::Error(_)) {
-        return Err(table.wrong_at(
-            "splitting",
-            "with a tolerance, spans are split in as many parts as the error asks for",
-            "leave it out",
-        ));
-    }
-    if tables.one("continuation").is_given && matches!(indicator, Indicator::Error(_)) {
-        return Err(table.wrong_at(
-            "tolerance",
-            "by arc length, a mesh that is refined by its error behind a limit point may lead back along the path",
-            "write `threshold` in place of `tolerance`, or leave [continuation] out",
-        ));
-    }
-    if pipeline.contains(&Stage::CoarsenKnots) && !matches!(indicator, Indicator::Error(_)) {
-        return Err(table.wrong(
-            tables.one("pipeline").place_of("stages").as_ref(),
-            "coarsen-knots goes by the error that the mesh causes, and a threshold says nothing about it",
-            "write `tolerance` in [adapt] in place of `threshold`, or leave coarsen-knots out",
-        ));
-    }
-    Ok(Some(Adapt { indicator, length_limit, splitting }))
 }
 
 fn solver(tables: &Tables, load: &Load) -> Checked<Solver> {
@@ -315,15 +227,6 @@ fn continuation(tables: &Tables, load: &Load) -> Checked<Option<ArcLength>> {
             "this is about lengths along the path, and the steps of this scene are increments of its load",
             "write `control = \"arc-length\"` beside it, or take it out",
         )),
-    }
-}
-
-/// The error for two values that do not go together; either may be a default, which is not in the text.
-fn between(problem: Problem, first: Option<TextSpan>, second: Option<TextSpan>, table: &Table) -> Box<Fault> {
-    match (first, second) {
-        (Some(first), second) => Fault::new(problem, &first).also(second.as_ref()),
-        (None, Some(second)) => Fault::new(problem, &second),
-        (None, None) => Fault::new(problem, &table.place),
     }
 }
 

@@ -7,6 +7,9 @@ use super::fault::Checked;
 use super::nurbs::nurbs;
 use super::table::Table;
 
+/// The kind of geometry whose ends turn.
+pub(super) const TAPE_SPRING: &str = "tape-spring";
+
 /// A gap of a full turn that is smaller is rounding of coordinates: 1e-4 rad.
 const NEAR_FULL_TURN_DEG: f64 = 0.006;
 

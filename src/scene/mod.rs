@@ -15,6 +15,7 @@
 //! | `read`, `regions` | one entry to one value, within the limits of its key |
 //! | `table`, `tables` | one table, and all of them, with every default filled in |
 //! | `geometries`, `nurbs`, `materials`, `supports`, `actions`, `histories`, `probes` | tables to data, and what must hold between their keys |
+//! | `meshes` | the mesh that a run starts with, and how it is refined |
 //! | `check`, `structure`, `stage_order`, `nearness` | tables to a scene; what must hold between tables, between supports and actions, between stages, between places |
 //! | `problem`, `fault` | what can be wrong, and where |
 //! | `explain`, `render`, `error` | that in words, with the text underlined, as callers see it |
@@ -42,6 +43,7 @@ mod key_table;
 mod keys;
 mod materials;
 mod meant;
+mod meshes;
 mod names;
 mod nearest;
 mod nearness;

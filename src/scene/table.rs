@@ -164,3 +164,17 @@ pub(super) fn missing(document: &Document<'_>, key: &'static Key, written: Optio
         None => fault,
     }
 }
+
+/// The error for two values that do not go together; either may be a default, which is not in the text.
+pub(super) fn between(
+    problem: Problem,
+    first: Option<TextSpan>,
+    second: Option<TextSpan>,
+    table: &Table,
+) -> Box<Fault> {
+    match (first, second) {
+        (Some(first), second) => Fault::new(problem, &first).also(second.as_ref()),
+        (None, Some(second)) => Fault::new(problem, &second),
+        (None, None) => Fault::new(problem, &table.place),
+    }
+}

@@ -152,7 +152,6 @@ fn missing() {
         &errors(&[
             ("radius_mm = 10.0\n", ""),
             ("increment_deg = 0.4\n\n", "\n"),
-            ("elements = [4, 4]\n", ""),
             ("kind = \"isotropic\"\n", ""),
             ("[load]\nkind = \"end-rotation\"\nsense = \"opposite\"\nrotation_deg = 60.0\nincrement_deg = 0.4\n\n", ""),
             (

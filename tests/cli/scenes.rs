@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use foldline::scene::{Geometry, LengthLimit, Material, Quadrature, Scene, Sense, Stage, Symmetry, parse};
+use foldline::scene::{Geometry, Indicator, LengthLimit, Material, Quadrature, Scene, Sense, Stage, Symmetry, parse};
 
 fn read(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines").join(name);
@@ -80,6 +80,30 @@ fn the_uniform_scene_has_no_stage_that_refines() {
     assert_eq!(uniform.adapt, None);
     assert_eq!(uniform.symmetry, Symmetry::Quarter);
     assert_eq!(uniform.mesh.elements, [128, 16]);
+}
+
+/// A scene of geometry, material and load alone is refined and coarsened by the error that its mesh causes; one that says how
+/// many elements it has is not.
+#[test]
+fn a_scene_may_leave_its_mesh_to_the_program() {
+    let baseline = include_str!("../../pipelines/baseline.toml");
+    let until = |text: &str, section: &str| text[..text.find(section).unwrap()].to_owned();
+    let load = &baseline[baseline.find("[load]").unwrap()..baseline.find("[adapt]").unwrap()];
+    let plain = until(baseline, "[mesh]") + load;
+    let parsed = |text: &str| parse(text, "plain.toml");
+    let scene = parsed(&plain).unwrap();
+    assert_eq!((scene.mesh.degree, scene.mesh.elements), ([3, 5], [4, 4]));
+    let adapt = scene.adapt.unwrap();
+    assert_eq!((adapt.indicator, adapt.length_limit), (Indicator::Error(0.01), LengthLimit::Thickness));
+    assert_eq!(scene.pipeline, [&Stage::REFINING[..], &[Stage::CoarsenKnots]].concat());
+    let uniform = parsed(&(plain.clone() + "[mesh]\nelements = [16, 8]\n")).unwrap();
+    assert_eq!((uniform.mesh.degree, uniform.adapt, &uniform.pipeline[..]), ([3, 3], None, &[Stage::Solve][..]));
+    let by_threshold = parsed(&(plain.clone() + "[adapt]\nthreshold = 0.02\n")).unwrap();
+    assert_eq!(by_threshold.adapt.unwrap().indicator, Indicator::BendingStrain([0.02, 0.02]));
+    assert_eq!(by_threshold.pipeline, Stage::REFINING);
+    for refused in ["[pipeline]\nstages = [\"solve\"]\n", "[continuation]\ncontrol = \"arc-length\"\n"] {
+        assert!(parsed(&(plain.clone() + refused)).unwrap_err().to_string().contains("`elements`"), "{refused}");
+    }
 }
 
 /// What [material] says of a laminate holds for plies that say nothing of it, each key on its own.

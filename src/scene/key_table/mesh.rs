@@ -26,7 +26,7 @@ pub(super) static MESH: &[Key] = &[
         high: Limit::included(5.0, "an element of degree p costs about (p+1)^6; degrees above 5 are not offered"),
     }), "[3, 3]")
         .means("Polynomial degree along the length and along the arc; degree 2 locks on coarse meshes with full quadrature.")
-        .or(Default("3"))
+        .or(Follows("3; [3, 5] for a tape spring whose elements are left out"))
         .also_called(&["p", "order", "degrees"]),
     mesh("elements", Kind::Pair(Limits {
         low: Limit::included(1.0, "a mesh has at least one element each way"),
@@ -38,6 +38,10 @@ pub(super) static MESH: &[Key] = &[
         .means("Elements along the length and along the arc, counted over the whole shell whatever the symmetry; \
               even in a direction that the symmetry cuts. Indicators see what the start mesh can show: two elements of \
               degree 2 across an arc cannot flatten, and are never refined.")
+        .or(Follows(
+            "[4, 4], refined and coarsened so that the mesh causes an error of 1 % at most, as by [adapt] with tolerance = 0.01 and \
+             by all stages",
+        ))
         .also_called(&["n", "element_count", "number_of_elements", "spans"]),
     mesh("quadrature", Kind::Word(&[
         choice(

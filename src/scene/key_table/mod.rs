@@ -23,7 +23,7 @@ pub static SECTIONS: &[Section] = &[
     one("geometry", true, "The undeformed mid-surface.", geometry::GEOMETRY),
     one("material", true, "Constitutive law and thickness.", material::MATERIAL),
     many("ply", "A layer of a laminate, from bottom (the side that n points away from) to top.", material::PLY),
-    one("mesh", true, "Spline space and quadrature that the run starts with.", mesh::MESH),
+    one("mesh", false, "Spline space and quadrature that the run starts with.", mesh::MESH),
     one("symmetry", false, "Which part of the shell is modelled.", mesh::SYMMETRY),
     one("load", true, "What moves the shell.", run::LOAD),
     many("support", "What holds the shell, where [load] is of kind \"steps\"; at least one.", structure::SUPPORT),
