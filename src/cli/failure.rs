@@ -8,7 +8,7 @@ use crate::model::ModelError;
 use crate::printable::one_line;
 use crate::record::Parameter;
 use crate::scene::{Scene, Stage};
-use crate::study::{AccuracyError, BenchError, CalibrationError, ConvergenceError};
+use crate::study::{AccuracyError, BenchError, CalibrationError, ConvergenceError, TaskError};
 use crate::view::{PlotError, SamplesError};
 
 /// Stopped by a signal; nothing is wrong.
@@ -98,6 +98,13 @@ pub(super) enum Failure {
     Calibration { scene: String, source: Box<CalibrationError> },
     #[error("{failed} of {of} runs gave nothing to compare")]
     StudyIncomplete { failed: usize, of: usize },
+    /// Rendered as an error of a scene is.
+    #[error("wrong study")]
+    WrongStudy { rendered: String },
+    #[error("no run of a study can be kept")]
+    Archive { source: Box<TaskError> },
+    #[error("interrupted; the same command continues the study, and does no finished run again")]
+    StudyInterrupted,
     #[error("{key} is set more than once: give all its values in one list")]
     VariedTwice { key: String },
     #[error("{case} gave nothing to compare")]
@@ -126,6 +133,7 @@ impl Failure {
             | Failure::Model(_)
             | Failure::Condition(_)
             | Failure::VariedTwice { .. }
+            | Failure::WrongStudy { .. }
             | Failure::NoSuchTopic { .. }
             | Failure::NoSuchScene { .. } => 2,
             // A wrong scene as well.
@@ -146,7 +154,7 @@ impl Failure {
             {
                 2
             }
-            Failure::Interrupted { .. } => INTERRUPTED,
+            Failure::Interrupted { .. } | Failure::StudyInterrupted => INTERRUPTED,
             _ => 1,
         }
     }
@@ -155,7 +163,9 @@ impl Failure {
     pub(super) fn in_full(&self) -> String {
         let mut text = match self {
             // Has its own head.
-            Failure::WrongScene { rendered } => return rendered.trim_end().to_string(),
+            Failure::WrongScene { rendered } | Failure::WrongStudy { rendered } => {
+                return rendered.trim_end().to_string();
+            }
             // A line for each change.
             Failure::NothingKept(_) => format!("foldline: {self}"),
             _ => format!("foldline: {}", one_line(&self.to_string())),

@@ -40,6 +40,7 @@ mod resume;
 mod run;
 mod scene_file;
 mod session;
+mod speed_ups;
 mod stability;
 mod stage_table;
 mod study;
@@ -138,7 +139,7 @@ pub fn main() -> ExitCode {
         Err(failure) => {
             match &failure {
                 // Its lines are rendered for a terminal where there is one, and what they quote is made printable there.
-                Failure::WrongScene { .. } => output::eprint_rendered(&failure.in_full()),
+                Failure::WrongScene { .. } | Failure::WrongStudy { .. } => output::eprint_rendered(&failure.in_full()),
                 _ => output::eprint(&failure.in_full()),
             }
             ExitCode::from(failure.exit_code())

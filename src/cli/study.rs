@@ -8,27 +8,32 @@ use super::failure::Failure;
 use super::output::{eprint, path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
+use super::speed_ups;
 use crate::scene::Scene;
 use crate::study::{AccuracyError, AccuracyRow, is_one_structure, measure};
 
 /// Run scenes with one setting after another, and hold each against a reference: the error of its moment (or first probe)
-/// before and after the first snap, with its run time
+/// before and after the first snap, with its run time; or run study files, which say all that themselves
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// Scenes (TOML)
-    #[arg(required = true)]
+    /// Scenes (TOML), or study files where there is no --against
+    #[arg(required = true, value_name = "SCENES")]
     scenes: Vec<PathBuf>,
     /// Scene of the reference: the same structure and increments on a mesh that leaves no doubt. Compared are the load steps
     /// that end where one of its does
     #[arg(long, value_name = "SCENE")]
-    against: PathBuf,
+    against: Option<PathBuf>,
     /// Values that a setting takes in turn, as a TOML list: 'mesh.quadrature=["full", "patch"]'; may be repeated, for all
     /// combinations
-    #[arg(long, value_name = "KEY=LIST", value_parser = varied)]
+    #[arg(long, value_name = "KEY=LIST", value_parser = varied, requires = "against")]
     vary: Vec<Varied>,
     /// Lay a setting over every scene, the reference too, such as load.rotation_deg=20; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Folder for the logs of a study file's runs, each named after the hash of its scene: those that are finished are read,
+    /// not run again
+    #[arg(long, value_name = "DIR", default_value = "checkpoints/studies", conflicts_with = "against")]
+    logs: PathBuf,
     /// Threads [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -68,10 +73,14 @@ struct Case {
 impl Arguments {
     /// Runs the reference and then every case; a row as soon as it is known.
     pub(super) fn run(self) -> Result<(), Failure> {
-        use_threads(self.threads.map(usize::from))?;
+        let threads = use_threads(self.threads.map(usize::from))?;
+        let Some(against) = &self.against else {
+            let Self { scenes, set, logs, json, .. } = self;
+            return speed_ups::run(&scenes, &set, &logs, threads, json);
+        };
         let cases = self.cases()?;
-        let name = path_in_line(&self.against);
-        let reference = checked(&read_scene(&self.against)?.text, &name, &self.set)?;
+        let name = path_in_line(against);
+        let reference = checked(&read_scene(against)?.text, &name, &self.set)?;
         for case in &cases {
             let comparable = is_one_structure(&case.scene, &reference);
             comparable.map_err(|cause| Failure::Study { case: case.label(), source: Box::new(cause) })?;

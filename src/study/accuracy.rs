@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use crate::model::ModelError;
 use crate::pipeline::RunError;
-use crate::record::Parameter;
-use crate::scene::{Drive, Scene};
+use crate::record::{Parameter, Record};
+use crate::scene::{Drive, Scene, Stage};
 use crate::study::path::{PathPoint, equilibrium_path, snaps};
 use crate::study::timed_run::timed_run;
 
@@ -32,6 +32,7 @@ pub struct Measured {
     iterations: usize,
     factorizations: usize,
     wall_s: f64,
+    mesh_s: f64,
 }
 
 /// The end of a load step.
@@ -69,8 +70,10 @@ pub struct AccuracyRow {
     pub iterations: usize,
     /// Numeric factorizations.
     pub factorizations: usize,
-    /// Wall time, seconds, with nothing logged.
+    /// Wall time, seconds.
     pub wall_s: f64,
+    /// Wall time of the stages that change the mesh or say how, with the solves on new meshes, seconds.
+    pub mesh_s: f64,
 }
 
 /// Why runs cannot be compared.
@@ -132,11 +135,18 @@ pub fn is_one_structure(scene: &Scene, reference: &Scene) -> Result<(), Accuracy
     }
 }
 
-/// Runs a scene to its end and measures its results and its time.
+/// Runs a scene to its end, with nothing logged, and measures its results and its time.
 ///
 /// # Errors
 /// Where the run stops before, or measures nothing.
 pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
+    parameter_of(scene)?;
+    let (records, wall_s) = timed_run::<AccuracyError>(scene)?;
+    Measured::of(scene, &records, wall_s)
+}
+
+/// What drives a run that can be compared with others at the same value of it.
+fn parameter_of(scene: &Scene) -> Result<&'static str, AccuracyError> {
     let what = match Parameter::of(scene) {
         Parameter::Rotation => "rotation",
         Parameter::LoadFactor => "load factor",
@@ -147,25 +157,12 @@ pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
     if Parameter::of(scene) == Parameter::LoadFactor && scene.probes.is_empty() {
         return Err(AccuracyError::NothingMeasured);
     }
-    let (records, wall_s) = timed_run::<AccuracyError>(scene)?;
-    let last = records.last().map(|record| &record.report);
-    Ok(Measured {
-        curve: curve(&equilibrium_path(&records), Parameter::of(scene)),
-        jump_at: snaps(&records).first().map(|snap| snap.after),
-        what,
-        quantity: match records.iter().find_map(|record| record.report.probes.first()) {
-            Some(reading) if Parameter::of(scene) == Parameter::LoadFactor => {
-                format!("{} ({})", reading.name, reading.unit)
-            }
-            _ => "moment (N·mm)".to_string(),
-        },
-        steps: last.map_or(0, |report| report.step),
-        elements: last.map_or([0, 0], |report| report.elements),
-        unknowns: last.map_or(0, |report| report.unknowns),
-        iterations: records.iter().map(|record| record.report.iterations).sum(),
-        factorizations: records.iter().map(|record| record.report.factorizations).sum(),
-        wall_s,
-    })
+    Ok(what)
+}
+
+/// Whether a stage is there for the mesh alone.
+fn is_of_mesh(stage: Stage) -> bool {
+    !matches!(stage, Stage::Solve | Stage::SwitchBranch)
 }
 
 /// The moment of turning ends, or else the first probe, at the end of each load step, and once more before a jump that a
@@ -185,6 +182,36 @@ fn curve(path: &[PathPoint], parameter: Parameter) -> Vec<CurvePoint> {
 }
 
 impl Measured {
+    /// Reads the results of a finished run from what it reported; it took `wall_s` seconds.
+    ///
+    /// # Errors
+    /// Where the scene measures nothing that can be compared.
+    pub fn of(scene: &Scene, records: &[Record], wall_s: f64) -> Result<Self, AccuracyError> {
+        let what = parameter_of(scene)?;
+        let last = records.last().map(|record| &record.report);
+        Ok(Measured {
+            curve: curve(&equilibrium_path(records), Parameter::of(scene)),
+            jump_at: snaps(records).first().map(|snap| snap.after),
+            what,
+            quantity: match records.iter().find_map(|record| record.report.probes.first()) {
+                Some(reading) if Parameter::of(scene) == Parameter::LoadFactor => {
+                    format!("{} ({})", reading.name, reading.unit)
+                }
+                _ => "moment (N·mm)".to_string(),
+            },
+            steps: last.map_or(0, |report| report.step),
+            elements: last.map_or([0, 0], |report| report.elements),
+            unknowns: last.map_or(0, |report| report.unknowns),
+            iterations: records.iter().map(|record| record.report.iterations).sum(),
+            factorizations: records.iter().map(|record| record.report.factorizations).sum(),
+            wall_s,
+            mesh_s: records
+                .iter()
+                .filter(|record| is_of_mesh(record.report.stage))
+                .fold(0.0, |sum, record| sum + record.wall_s),
+        })
+    }
+
     /// Name of the quantity that is compared: the moment of turning ends, or the name of the first probe with its unit.
     pub fn quantity(&self) -> &str {
         &self.quantity
@@ -232,6 +259,7 @@ impl Measured {
             iterations: self.iterations,
             factorizations: self.factorizations,
             wall_s: self.wall_s,
+            mesh_s: self.mesh_s,
         })
     }
 }
@@ -258,6 +286,7 @@ mod tests {
             iterations: 1,
             factorizations: 1,
             wall_s: 1.0,
+            mesh_s: 0.0,
         }
     }
 

@@ -8,10 +8,13 @@
 //! | `summary`, `summary_text` | what a run found |
 //! | `timed_run`, `bench` | what it costs |
 //! | `accuracy`, `convergence` | error against that |
+//! | `archive` | runs by the hash of their scene, each in a log |
+//! | `study_file`, `speed_up` | studies of structures, and what they show |
 //! | `calibration` | the threshold of the bending indicator |
 //! | `extremes`, `extremes_run`, `extremes_curve`, `extremes_fault` | scenes that state how they end |
 
 mod accuracy;
+mod archive;
 mod bench;
 mod calibration;
 mod convergence;
@@ -21,12 +24,15 @@ mod extremes_fault;
 mod extremes_run;
 mod path;
 mod section_shape;
+mod speed_up;
+mod study_file;
 mod summary;
 mod summary_text;
 mod timed_run;
 mod wuest;
 
 pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_one_structure, measure};
+pub use archive::{Archive, Done, Purpose, TaskError};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use calibration::{
     Calibrated, Calibration, CalibrationError, CalibrationPoint, CoarseIn, EndedBy, Verdict, calibrate,
@@ -37,5 +43,7 @@ pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;
 pub use path::{Passed, PathPoint, Snap, equilibria, equilibrium_path, snaps};
+pub use speed_up::{Errors, MeshPoint, SpeedUp, speed_up};
+pub use study_file::{Adaptive, Family, Planned, ReferenceMesh, Role, Structure, StudyError, StudyFile};
 pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, StageWork, Summary, WarningCount};
 pub use wuest::{FoldMoments, Peak, Plateau, TapeSpring};

@@ -10,6 +10,7 @@ mod paths;
 mod program;
 mod reading;
 mod replay;
+mod studies;
 mod thin;
 mod threads;
 

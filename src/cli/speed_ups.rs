@@ -1,0 +1,247 @@
+//! `foldline study STUDY`: the runs of a study file, their errors and times, and the speed-ups over uniform meshes.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+use serde_json::json;
+
+use super::failure::Failure;
+use super::output::{eprint, path_in_line, print, print_json};
+use super::scene_file::rendered;
+use super::session::watch_signals;
+use crate::study::{
+    AccuracyRow, Archive, Errors, Measured, MeshPoint, Planned, Purpose, Role, SpeedUp, Structure, StudyError,
+    StudyFile, TaskError, speed_up,
+};
+
+/// Width of names of runs in tables, and of columns of speed-ups.
+const NAME: usize = 26;
+
+/// A study that is being run.
+struct Running<'r> {
+    study: StudyFile,
+    archive: Archive,
+    interrupted: &'r dyn Fn() -> bool,
+    json: bool,
+    failed: usize,
+    runs: usize,
+}
+
+/// A run with its errors against the reference.
+struct Found {
+    role: Role,
+    label: String,
+    point: MeshPoint,
+}
+
+/// Runs study files one after another, with settings laid over all their scenes.
+pub(super) fn run(files: &[PathBuf], set: &[String], logs: &Path, threads: usize, json: bool) -> Result<(), Failure> {
+    let raised = watch_signals()?;
+    let (mut failed, mut runs) = (0, 0);
+    for file in files {
+        let text = std::fs::read_to_string(file).map_err(|source| Failure::Read { path: file.clone(), source })?;
+        let mut study = StudyFile::parse(&text, &path_in_line(file)).map_err(|error| wrong(&error))?;
+        study.settings.extend_from_slice(set);
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let planned = study.structure.iter().map(|structure| study.runs(structure, folder));
+        let planned = planned.collect::<Result<Vec<_>, _>>().map_err(|error| wrong(&error))?;
+        let archive = Archive::open(logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let interrupted = || raised.load(Ordering::Relaxed);
+        let mut running = Running { study, archive, interrupted: &interrupted, json, failed: 0, runs: 0 };
+        if !json {
+            print(&format!("{}\n", running.study.title))?;
+        }
+        for (structure, planned) in running.study.structure.clone().iter().zip(planned) {
+            running.structure(structure, &planned)?;
+        }
+        (failed, runs) = (failed + running.failed, runs + running.runs);
+    }
+    match failed {
+        0 => Ok(()),
+        failed => Err(Failure::StudyIncomplete { failed, of: runs }),
+    }
+}
+
+impl Running<'_> {
+    /// Does the runs of a structure and shows what they found.
+    fn structure(&mut self, structure: &Structure, planned: &[Planned]) -> Result<(), Failure> {
+        let mut reference: Option<Measured> = None;
+        let mut found: Vec<Found> = Vec::new();
+        let mut own: Errors = [None, None];
+        for planned in planned {
+            self.runs += 1;
+            let purpose = match planned.role {
+                Role::Reference | Role::Coarser => Purpose::Results,
+                Role::Uniform(_) | Role::Adaptive(_) => Purpose::Time,
+            };
+            let done = match self.archive.done(&planned.scene, purpose, self.interrupted) {
+                Err(TaskError::Interrupted) => return Err(Failure::StudyInterrupted),
+                done => done,
+            };
+            let measured = done
+                .map_err(|error| in_full(&error))
+                .and_then(|done| {
+                    Measured::of(&planned.scene, &done.records, done.wall_s).map_err(|error| in_full(&error))
+                })
+                .and_then(|measured| {
+                    let row = measured.against(reference.as_ref().unwrap_or(&measured));
+                    Ok((row.map_err(|error| in_full(&error))?, measured))
+                });
+            let (row, measured) = match measured {
+                Ok(found) => found,
+                Err(why) => {
+                    self.failed += 1;
+                    self.show_failure(structure, planned, &why)?;
+                    if planned.role == Role::Reference {
+                        return Ok(());
+                    }
+                    continue;
+                }
+            };
+            let errors = [row.error_before, row.error_after];
+            match planned.role {
+                Role::Reference => {
+                    self.show_head(structure, measured.quantity())?;
+                    reference = Some(measured);
+                }
+                Role::Coarser => own = errors,
+                Role::Uniform(_) | Role::Adaptive(_) => {
+                    let point = MeshPoint { wall_s: row.wall_s, errors };
+                    found.push(Found { role: planned.role, label: planned.label.clone(), point });
+                }
+            }
+            self.show(structure, planned, &row, own)?;
+        }
+        self.show_speed_ups(structure, &found, own)
+    }
+
+    fn show_head(&self, structure: &Structure, quantity: &str) -> Result<(), Failure> {
+        if self.json {
+            return Ok(());
+        }
+        print(&format!(
+            "\n{}: errors of {quantity} before the first snap and behind it, of its largest value there\n\
+             {:<NAME$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>5} {:>6} {:>7} {:>6} {:>6}\n",
+            structure.name,
+            "run",
+            "elements",
+            "unknowns",
+            "before",
+            "snap",
+            "behind",
+            "steps",
+            "iters",
+            "factors",
+            "mesh s",
+            "wall s"
+        ))
+    }
+
+    /// A row. Errors below those of the reference itself are not told apart.
+    fn show(&self, structure: &Structure, planned: &Planned, row: &AccuracyRow, own: Errors) -> Result<(), Failure> {
+        let timed = matches!(planned.role, Role::Uniform(_) | Role::Adaptive(_));
+        if self.json {
+            let role = match planned.role {
+                Role::Reference => "reference",
+                Role::Coarser => "coarser-reference",
+                Role::Uniform(_) => "uniform",
+                Role::Adaptive(_) => "adaptive",
+            };
+            let hash = planned.scene.hash().to_string();
+            return print_json(&json!({
+                "structure": structure.name, "run": planned.label, "role": role, "scene": hash,
+                "degree": planned.scene.mesh.degree, "row": row,
+            }));
+        }
+        let percent = |error: Option<f64>, own: Option<f64>| match (error, own) {
+            _ if planned.role == Role::Reference => String::new(),
+            (Some(error), Some(own)) if timed && error < own => format!("<{:.2} %", 100.0 * own),
+            (Some(error), _) => format!("{:.2} %", 100.0 * error),
+            (None, _) => String::new(),
+        };
+        let seconds = |time: f64| if timed { format!("{time:.2}") } else { String::new() };
+        let [n1, n2] = row.elements;
+        print(&format!(
+            "{:<NAME$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>5} {:>6} {:>7} {:>6} {:>6}\n",
+            planned.label,
+            format!("{n1}×{n2}"),
+            row.unknowns,
+            percent(row.error_before, own[0]),
+            row.jump_at.map_or_else(String::new, |at| format!("{at:.3}")),
+            percent(row.error_after, own[1]),
+            row.steps,
+            row.iterations,
+            row.factorizations,
+            seconds(row.mesh_s),
+            seconds(row.wall_s)
+        ))
+    }
+
+    fn show_failure(&self, structure: &Structure, planned: &Planned, why: &str) -> Result<(), Failure> {
+        if self.json {
+            return print_json(&json!({ "structure": structure.name, "run": planned.label, "error": why }));
+        }
+        print(&format!("{:<NAME$} failed\n", planned.label))?;
+        eprint(&format!("{}, {}: {why}", structure.name, planned.label));
+        Ok(())
+    }
+
+    fn show_speed_ups(&self, structure: &Structure, found: &[Found], own: Errors) -> Result<(), Failure> {
+        let columns = self.study.columns();
+        let families_of = |column: &str| -> Vec<Vec<MeshPoint>> {
+            let of_column = self.study.uniform.iter().enumerate();
+            let of_column = of_column.filter(|(_, family)| family.columns.iter().any(|name| name == column));
+            let meshes = |number| found.iter().filter(move |found| found.role == Role::Uniform(number));
+            of_column.map(|(number, _)| meshes(number).map(|found| found.point).collect()).collect()
+        };
+        if !self.json {
+            let names = columns.iter().map(|column| format!(" {column:>14}")).collect::<String>();
+            print(&format!("{:<NAME$}{names} {:>10}\n", "speed-up over uniform", "published"))?;
+        }
+        for adaptive in found.iter().filter(|found| matches!(found.role, Role::Adaptive(_))) {
+            let of_columns: Vec<Option<SpeedUp>> =
+                columns.iter().map(|column| speed_up(&adaptive.point, &families_of(column), own)).collect();
+            if self.json {
+                let named: serde_json::Map<_, _> =
+                    columns.iter().zip(&of_columns).map(|(name, found)| (name.to_string(), json!(found))).collect();
+                print_json(&json!({
+                    "structure": structure.name, "run": adaptive.label, "speed_up": named, "published": structure.published,
+                }))?;
+                continue;
+            }
+            let shown = of_columns.iter().map(|found| format!(" {:>14}", in_words(found))).collect::<String>();
+            let published = structure.published.map_or_else(String::new, |ratio| format!("{ratio:.1}"));
+            print(&format!("{:<NAME$}{shown} {published:>10}\n", adaptive.label))?;
+        }
+        Ok(())
+    }
+}
+
+/// A wrong study as a wrong scene is shown: with the place in its text.
+fn wrong(error: &StudyError) -> Failure {
+    let rendered = match error {
+        StudyError::Scene { source, .. } => format!("{}in the runs of {error}", rendered(source)),
+        StudyError::Syntax { .. } => {
+            format!(
+                "error: {error}\n   = help: a scene is run with `--against REFERENCE`; `pipelines/studies/` has studies"
+            )
+        }
+        StudyError::Wrong { .. } => format!("error: {error}"),
+        StudyError::NoScene { source, .. } => format!("error: {error}: {source}"),
+    };
+    Failure::WrongStudy { rendered }
+}
+
+fn in_words(found: &Option<SpeedUp>) -> String {
+    match found {
+        Some(SpeedUp::Times(ratio)) => format!("{ratio:.1}"),
+        Some(SpeedUp::MoreThan(ratio)) => format!("> {ratio:.1}"),
+        None => String::new(),
+    }
+}
+
+/// An error with its causes.
+fn in_full(error: &dyn std::error::Error) -> String {
+    let causes = std::iter::successors(error.source(), |cause| cause.source());
+    causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))
+}
