@@ -40,7 +40,7 @@
 //! | r across, 8 across | 0.096 | 0.118 | ≥ 0.088 | 0.032 | 0.053 | 0.054 |
 //!
 //! Elements along leave r across as it is, and elements across leave r along. Across, 8 elements give 3 to 10 times what 4
-//! give: a scene that starts with 4 must keep the small value ([0.014, 0.2] from 4 × 4 is 12 % off before the snap of the baseline).
+//! give: a scene that starts with 4 must keep the small value (`[0.014, 0.2]` from 4 × 4 is 12 % off before the snap of the baseline).
 //!
 //! A start mesh that never passes runs into the snap of the fine mesh, and the step through it costs most of the time: the
 //! baseline from 8 × 4 takes 1.2 s with `--until 9.6` and 31 s without. Give `--until` where the snap is known.
