@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     /// Stop at this rotation (degrees) or load factor
     #[arg(long, value_name = "VALUE")]
     until: Option<f64>,
-    /// Lay a setting over the scene, such as mesh.elements=[8,4]; may be repeated
+    /// Lay a setting over the scene, such as load.increment_deg=0.2; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Threads [default: one for each core]
