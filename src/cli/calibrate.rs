@@ -74,7 +74,8 @@ fn table(found: &Calibration, scene: &Scene) -> String {
     };
     let [n1, n2] = found.fine;
     let mut text = format!(
-        "error of the {quantity} against {n1}×{n2} elements, and the largest max|κ|h so far\n\
+        "error of the {quantity} against {n1}×{n2} elements, and the largest max|κ|h so far:\n\
+         of a mesh that is coarse along u alone, along v alone, and both ways\n\
          {:>9}  {:>18}  {:>18}  {:>26}\n{parameter:>9}  {:>9} {:>8}  {:>9} {:>8}  {:>8} {:>8} {:>8}\n",
         "",
         title("u", &found.coarse[0]),
@@ -113,20 +114,20 @@ fn title(coarse_in: &str, one: &Calibrated) -> String {
     format!("{coarse_in}: {}×{}", one.elements[0], one.elements[1])
 }
 
-/// What each mesh tells, and the line for the scene where there is one.
+/// What each mesh tells, and the line for the scene where both directions passed the error: a bound is no threshold.
 fn conclusion(found: &Calibration) -> String {
     let told: String = found.coarse.iter().map(|one| told(one, found.error)).collect();
-    let [u, v] = [0, 1].map(|axis| threshold(&found.coarse[axis].verdict).map(|pair| pair[axis]));
+    let [u, v] = [0, 1].map(|axis| match found.coarse[axis].verdict {
+        Verdict::Passed { threshold } => Some(threshold[axis]),
+        Verdict::AtLeast { .. } | Verdict::TooCoarse => None,
+    });
     match u.zip(v) {
-        Some((u, v)) => format!("{told}threshold = [{u:.5}, {v:.5}]\n"),
-        None => told,
-    }
-}
-
-fn threshold(verdict: &Verdict) -> Option<[f64; 2]> {
-    match verdict {
-        Verdict::Passed { threshold } | Verdict::AtLeast { threshold, .. } => Some(*threshold),
-        Verdict::TooCoarse => None,
+        Some((u, v)) => format!(
+            "{told}threshold = [{u:.5}, {v:.5}]\n\
+             This is of the start mesh and of what comes before a snap; behind one the length limit\n\
+             decides. To see what a run makes of it: foldline study SCENE --against REFERENCE\n"
+        ),
+        None => format!("{told}no threshold for both directions: fewer start elements show more\n"),
     }
 }
 
@@ -142,16 +143,16 @@ fn told(one: &Calibrated, error: f64) -> String {
         each.collect::<Vec<_>>().join(", ")
     };
     match one.verdict {
-        Verdict::Passed { threshold } => format!("coarse {name}: passes {percent} % beyond {}\n", shown(threshold)),
+        Verdict::Passed { threshold } => format!("{name}: passes {percent} % beyond {}\n", shown(threshold)),
         Verdict::AtLeast { threshold, ended_by } => {
             let end = match ended_by {
                 EndedBy::Snap => "before the snap",
                 EndedBy::End => "to the end",
             };
-            format!("coarse {name}: within {percent} % {end}; a lower bound is {}\n", shown(threshold))
+            format!("{name}: within {percent} % {end}: at least {}\n", shown(threshold))
         }
         Verdict::TooCoarse => format!(
-            "coarse {name}: over {percent} % at the first load step; nothing to calibrate:\n  \
+            "{name}: over {percent} % at the first load step; nothing to calibrate:\n  \
              start with more elements (mesh.elements), or smaller increments\n"
         ),
     }

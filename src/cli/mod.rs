@@ -8,7 +8,7 @@
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
 //! | `recover`, `thin` | a log written again |
-//! | `bench`, `converge`, `study`, `extremes` | suites, and how fast and exact runs are |
+//! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
 //! | `calibrate` | the threshold at which a scene's mesh keeps an error |
 //! | `help` | help on subcommands and topics |
 //! | `scene_file`, `log_file`, `asked` | what is read: scenes, logs, some stages of a log |

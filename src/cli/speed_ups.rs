@@ -11,7 +11,7 @@ use super::scene_file::rendered;
 use super::session::watch_signals;
 use crate::study::{
     AccuracyRow, Archive, Errors, Measured, MeshPoint, Planned, Purpose, Role, SpeedUp, Structure, StudyError,
-    StudyFile, TaskError, speed_up,
+    StudyFile, TaskError, error_of_finer, speed_up,
 };
 
 /// Width of names of runs in tables, and of columns of speed-ups.
@@ -104,13 +104,21 @@ impl Running<'_> {
                     self.show_head(structure, measured.quantity())?;
                     reference = Some(measured);
                 }
-                Role::Coarser => own = errors,
+                Role::Coarser => {
+                    let [finer, coarser] = structure.reference;
+                    own = error_of_finer(errors, finer, coarser, self.study.reference.degree);
+                }
                 Role::Uniform(_) | Role::Adaptive(_) => {
                     let point = MeshPoint { wall_s: row.wall_s, errors };
                     found.push(Found { role: planned.role, label: planned.label.clone(), point });
                 }
             }
             self.show(structure, planned, &row, own)?;
+            if planned.role == Role::Coarser && !self.json {
+                let percent = |own: Option<f64>| own.map_or_else(String::new, |own| format!("{:.3} %", 100.0 * own));
+                let name = "  so that the first is off by";
+                print(&format!("{name:<44} {:>8} {:>8} {:>8}\n", percent(own[0]), "", percent(own[1])))?;
+            }
         }
         self.show_speed_ups(structure, &found, own)
     }

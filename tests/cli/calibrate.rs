@@ -59,10 +59,11 @@ fn bounds_are_said() {
     let place = Sandbox::new();
     place.write("small.toml", SMALL.as_bytes());
     let bounded = place.foldline("calibrate small.toml --fine 16,8 --until 4 --error 0.9").ends(0);
-    bounded.says(&["within 90 % to the end; a lower bound is r_u = ", "threshold = ["]);
+    assert!(!bounded.out.contains("threshold = "), "a bound is no threshold");
+    let bounded = bounded.says(&["within 90 % to the end: at least r_u = ", "no threshold for both directions"]);
     assert!(bounded.out.lines().all(|line| line.chars().count() <= 80), "{}", bounded.out);
     let coarse = place.foldline("calibrate small.toml --fine 16,8 --until 2 --error 1e-9").ends(0);
-    coarse.says(&["at the first load step; nothing to calibrate", "more elements"]);
+    let coarse = coarse.says(&["at the first load step; nothing to calibrate", "more elements"]);
     assert!(!coarse.out.contains("threshold = "), "{}", coarse.out);
 }
 
