@@ -9,13 +9,16 @@ use super::failure::Failure;
 use super::output::{eprint, path_in_line, print, print_json};
 use super::scene_file::rendered;
 use super::session::watch_signals;
+use crate::scene::Scene;
 use crate::study::{
     AccuracyRow, Archive, Errors, Measured, MeshPoint, Planned, Purpose, Role, SpeedUp, Structure, StudyError,
-    StudyFile, TaskError, error_of_finer, speed_up,
+    StudyFile, TaskError, error_of_finer, is_comparable, speed_up,
 };
 
-/// Width of names of runs in tables, and of columns of speed-ups.
-const NAME: usize = 26;
+/// Width of names of runs in tables.
+const NAME: usize = 22;
+/// Width of what stands before the errors.
+const WIDTH_TO_ERRORS: usize = NAME + 17;
 
 /// A study that is being run.
 struct Running<'r> {
@@ -67,26 +70,22 @@ impl Running<'_> {
     fn structure(&mut self, structure: &Structure, planned: &[Planned]) -> Result<(), Failure> {
         let mut reference: Option<Measured> = None;
         let mut found: Vec<Found> = Vec::new();
-        let mut own: Errors = [None, None];
+        let mut own: Option<Errors> = None;
+        let [reference_scene, ..] = planned else { return Ok(()) };
         for planned in planned {
             self.runs += 1;
             let purpose = match planned.role {
                 Role::Reference | Role::Coarser => Purpose::Results,
                 Role::Uniform(_) | Role::Adaptive(_) => Purpose::Time,
             };
-            let done = match self.archive.done(&planned.scene, purpose, self.interrupted) {
-                Err(TaskError::Interrupted) => return Err(Failure::StudyInterrupted),
-                done => done,
-            };
-            let measured = done
-                .map_err(|error| in_full(&error))
-                .and_then(|done| {
-                    Measured::of(&planned.scene, &done.records, done.wall_s).map_err(|error| in_full(&error))
-                })
-                .and_then(|measured| {
+            let measured = match self.measured(planned, &reference_scene.scene, purpose) {
+                Ok(Some(measured)) => {
                     let row = measured.against(reference.as_ref().unwrap_or(&measured));
-                    Ok((row.map_err(|error| in_full(&error))?, measured))
-                });
+                    row.map(|row| (row, measured)).map_err(|error| in_full(&error))
+                }
+                Ok(None) => return Err(Failure::StudyInterrupted),
+                Err(why) => Err(why),
+            };
             let (row, measured) = match measured {
                 Ok(found) => found,
                 Err(why) => {
@@ -106,21 +105,31 @@ impl Running<'_> {
                 }
                 Role::Coarser => {
                     let [finer, coarser] = structure.reference;
-                    own = error_of_finer(errors, finer, coarser, self.study.reference.degree);
+                    own = Some(error_of_finer(errors, finer, coarser, self.study.reference.degree));
                 }
                 Role::Uniform(_) | Role::Adaptive(_) => {
                     let point = MeshPoint { wall_s: row.wall_s, errors };
                     found.push(Found { role: planned.role, label: planned.label.clone(), point });
                 }
             }
-            self.show(structure, planned, &row, own)?;
-            if planned.role == Role::Coarser && !self.json {
-                let percent = |own: Option<f64>| own.map_or_else(String::new, |own| format!("{:.3} %", 100.0 * own));
-                let name = "  so that the first is off by";
-                print(&format!("{name:<44} {:>8} {:>8} {:>8}\n", percent(own[0]), "", percent(own[1])))?;
+            self.show(structure, planned, &row, own.unwrap_or_default())?;
+            if let (Role::Coarser, Some(own)) = (planned.role, own) {
+                self.show_own(structure, own)?;
             }
         }
-        self.show_speed_ups(structure, &found, own)
+        // Without it no error of the others is known.
+        own.map_or(Ok(()), |own| self.show_speed_ups(structure, &found, own))
+    }
+
+    /// Does a run, and reads what it measures; `None` where it was interrupted.
+    fn measured(&self, planned: &Planned, reference: &Scene, purpose: Purpose) -> Result<Option<Measured>, String> {
+        is_comparable(&planned.scene, reference).map_err(|error| in_full(&error))?;
+        let done = match self.archive.done(&planned.scene, purpose, self.interrupted) {
+            Err(TaskError::Interrupted) => return Ok(None),
+            done => done.map_err(|error| in_full(&error))?,
+        };
+        let measured = Measured::of(&planned.scene, &done.records, done.wall_s);
+        measured.map(Some).map_err(|error| in_full(&error))
     }
 
     fn show_head(&self, structure: &Structure, quantity: &str) -> Result<(), Failure> {
@@ -129,10 +138,10 @@ impl Running<'_> {
         }
         print(&format!(
             "\n{}: errors of {quantity} before the first snap and behind it, of its largest value there\n\
-             {:<NAME$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>5} {:>6} {:>7} {:>6} {:>6}\n",
+             {:<NAME$} {:>7} {:>8} {:>8} {:>7} {:>8} {:>5} {:>5} {:>7} {:>6} {:>6}\n",
             structure.name,
             "run",
-            "elements",
+            "mesh",
             "unknowns",
             "before",
             "snap",
@@ -170,7 +179,7 @@ impl Running<'_> {
         let seconds = |time: f64| if timed { format!("{time:.2}") } else { String::new() };
         let [n1, n2] = row.elements;
         print(&format!(
-            "{:<NAME$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>5} {:>6} {:>7} {:>6} {:>6}\n",
+            "{:<NAME$} {:>7} {:>8} {:>8} {:>7} {:>8} {:>5} {:>5} {:>7} {:>6} {:>6}\n",
             planned.label,
             format!("{n1}×{n2}"),
             row.unknowns,
@@ -183,6 +192,16 @@ impl Running<'_> {
             seconds(row.mesh_s),
             seconds(row.wall_s)
         ))
+    }
+
+    /// What the reference itself is off by.
+    fn show_own(&self, structure: &Structure, own: Errors) -> Result<(), Failure> {
+        if self.json {
+            return print_json(&json!({ "structure": structure.name, "error_of_reference": own }));
+        }
+        let percent = |own: Option<f64>| own.map_or_else(String::new, |own| format!("{:.3} %", 100.0 * own));
+        let (name, [before, behind]) = ("so that the reference is off by", own.map(percent));
+        print(&format!("{name:<WIDTH_TO_ERRORS$} {before:>8} {:>7} {behind:>8}\n", ""))
     }
 
     fn show_failure(&self, structure: &Structure, planned: &Planned, why: &str) -> Result<(), Failure> {
@@ -203,7 +222,7 @@ impl Running<'_> {
             of_column.map(|(number, _)| meshes(number).map(|found| found.point).collect()).collect()
         };
         if !self.json {
-            let names = columns.iter().map(|column| format!(" {column:>14}")).collect::<String>();
+            let names = columns.iter().map(|column| format!(" {column:>13}")).collect::<String>();
             print(&format!("{:<NAME$}{names} {:>10}\n", "speed-up over uniform", "published"))?;
         }
         for adaptive in found.iter().filter(|found| matches!(found.role, Role::Adaptive(_))) {
@@ -217,7 +236,7 @@ impl Running<'_> {
                 }))?;
                 continue;
             }
-            let shown = of_columns.iter().map(|found| format!(" {:>14}", in_words(found))).collect::<String>();
+            let shown = of_columns.iter().map(|found| format!(" {:>13}", in_words(found))).collect::<String>();
             let published = structure.published.map_or_else(String::new, |ratio| format!("{ratio:.1}"));
             print(&format!("{:<NAME$}{shown} {published:>10}\n", adaptive.label))?;
         }
@@ -225,26 +244,32 @@ impl Running<'_> {
     }
 }
 
-/// A wrong study as a wrong scene is shown: with the place in its text.
+/// A wrong study as a wrong scene is shown: with the place in its text, which may hold anything.
 fn wrong(error: &StudyError) -> Failure {
+    let printable = |text: String| text.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}");
+    let said = printable(format!("error: {error}"));
     let rendered = match error {
-        StudyError::Scene { source, .. } => format!("{}in the runs of {error}", rendered(source)),
-        StudyError::Syntax { .. } => {
-            format!(
-                "error: {error}\n   = help: a scene is run with `--against REFERENCE`; `pipelines/studies/` has studies"
-            )
+        StudyError::Scene { source, .. } => {
+            format!("{}in the runs of {}", rendered(source), printable(error.to_string()))
         }
-        StudyError::Wrong { .. } => format!("error: {error}"),
-        StudyError::NoScene { source, .. } => format!("error: {error}: {source}"),
+        StudyError::Syntax { .. } => {
+            format!("{said}\n   = help: a scene is run with `--against REFERENCE`; `pipelines/studies/` has studies")
+        }
+        StudyError::Wrong { .. } => said,
+        StudyError::NoScene { source, .. } => format!("{said}: {source}"),
     };
     Failure::WrongStudy { rendered }
 }
 
 fn in_words(found: &Option<SpeedUp>) -> String {
     match found {
-        Some(SpeedUp::Times(ratio)) => format!("{ratio:.1}"),
-        Some(SpeedUp::MoreThan(ratio)) => format!("> {ratio:.1}"),
-        None => String::new(),
+        Some(SpeedUp { at_least, at_most: None }) => format!("> {at_least:.1}"),
+        Some(SpeedUp { at_least, at_most: Some(at_most) }) if *at_least <= 0.0 => format!("< {at_most:.1}"),
+        Some(SpeedUp { at_least, at_most: Some(at_most) }) if at_least < at_most => {
+            format!("{at_least:.1} to {at_most:.1}")
+        }
+        Some(SpeedUp { at_least, .. }) => format!("{at_least:.1}"),
+        None => "-".to_owned(),
     }
 }
 

@@ -135,6 +135,15 @@ pub fn is_one_structure(scene: &Scene, reference: &Scene) -> Result<(), Accuracy
     }
 }
 
+/// Checks that the results of two scenes can be compared, as far as that is known before they are run.
+///
+/// # Errors
+/// Where they describe other structures, or one of them measures nothing that compares.
+pub fn is_comparable(scene: &Scene, reference: &Scene) -> Result<(), AccuracyError> {
+    is_one_structure(scene, reference)?;
+    parameter_of(scene).and(parameter_of(reference)).map(|_| ())
+}
+
 /// Runs a scene to its end, with nothing logged, and measures its results and its time.
 ///
 /// # Errors

@@ -1,7 +1,8 @@
 //! Runs that a study needs, each in a log of its own that is named after the hash of its scene: what is done is not done again.
 //!
 //! A run whose time counts has a record of that beside its log, since time is no function of a scene: it is kept only for the
-//! same number of threads and the same program. Where it was interrupted it starts again, as its time would mean nothing; a run
+//! same number of threads and the same version and numerics of the program (where its speed is worked on, a folder of its own for each
+//! build keeps times of one build together). Where it was interrupted it starts again, as its time would mean nothing; a run
 //! that others are compared with continues where it stopped.
 
 use std::fs;
@@ -16,7 +17,7 @@ use crate::journal::{Completeness, JournalWriter, Log, Manifest, ReadError, Resu
 use crate::model::ModelError;
 use crate::pipeline::{Ending, Run, RunError, Stages};
 use crate::record::{NUMERICS_REVISION, Record, Sink, SinkError};
-use crate::scene::Scene;
+use crate::scene::{Scene, SyncPolicy};
 use crate::state::State;
 use crate::whole_file::WholeFile;
 
@@ -149,14 +150,13 @@ impl Archive {
     pub fn done(&self, scene: &Scene, purpose: Purpose, interrupted: &dyn Fn() -> bool) -> Result<Done, TaskError> {
         let log = self.log_of(scene);
         if !log.exists() {
-            return self.run(scene, purpose, interrupted);
+            return self.run(scene, purpose, interrupted, JournalWriter::create);
         }
         let unusable = |source| TaskError::Resume { log: log.clone(), source: Box::new(source) };
         let claim = match Resume::open(&log) {
             // As a power cut may leave it.
             Err(ResumeError::Read { source: ReadError::TooShort { .. }, .. }) => {
-                remove(&log)?;
-                return self.run(scene, purpose, interrupted);
+                return self.run(scene, purpose, interrupted, JournalWriter::create_over_empty);
             }
             claim => claim.and_then(Resume::whole).map_err(unusable)?,
         };
@@ -175,9 +175,9 @@ impl Archive {
             (Purpose::Results, _) if is_current => self.resume(claim, scene, interrupted),
             _ => {
                 // Under the lock of the claim: nobody else writes it.
-                remove(&log)?;
+                fs::remove_file(&log).map_err(|source| TaskError::Io { path: log, source })?;
                 drop(claim);
-                self.run(scene, purpose, interrupted)
+                self.run(scene, purpose, interrupted, JournalWriter::create)
             }
         }
     }
@@ -186,13 +186,19 @@ impl Archive {
         Manifest::here(Path::new("study"), &scene.to_toml(), self.threads)
     }
 
-    /// Runs a scene from its start.
-    fn run(&self, scene: &Scene, purpose: Purpose, interrupted: &dyn Fn() -> bool) -> Result<Done, TaskError> {
+    /// Runs a scene from its start, in a log that `create` makes.
+    fn run(
+        &self,
+        scene: &Scene,
+        purpose: Purpose,
+        interrupted: &dyn Fn() -> bool,
+        create: impl Fn(&Path, &Manifest, SyncPolicy) -> Result<JournalWriter, WriteError>,
+    ) -> Result<Done, TaskError> {
         let log = self.log_of(scene);
         let begin = Instant::now();
         let mut stages = Stages::new(scene.clone());
         let start = stages.start()?;
-        let writer = JournalWriter::create(&log, &self.manifest(scene), scene.output.sync).map_err(Box::new)?;
+        let writer = create(&log, &self.manifest(scene), scene.output.sync).map_err(Box::new)?;
         let run = Run::new(stages, start, None);
         let records = self.finish(&log, run, Logged { writer, records: Vec::new() }, interrupted)?;
         let wall_s = match purpose {
@@ -272,8 +278,4 @@ fn of_stages(records: &[Record]) -> f64 {
 
 fn records(log: &Log) -> Vec<Record> {
     log.entries().iter().map(|entry| entry.record.clone()).collect()
-}
-
-fn remove(log: &Path) -> Result<(), TaskError> {
-    fs::remove_file(log).map_err(|source| TaskError::Io { path: log.to_path_buf(), source })
 }

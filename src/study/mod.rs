@@ -31,7 +31,7 @@ mod summary_text;
 mod timed_run;
 mod wuest;
 
-pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_one_structure, measure};
+pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_comparable, is_one_structure, measure};
 pub use archive::{Archive, Done, Purpose, TaskError};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use calibration::{

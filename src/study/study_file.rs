@@ -66,9 +66,6 @@ pub struct Family {
     pub across: usize,
     /// The columns of speed-ups that it counts in.
     pub columns: Vec<String>,
-    /// Share of the structure's numbers along that its meshes have; 1 where it is left out.
-    #[serde(default = "whole")]
-    pub share: f64,
 }
 
 /// Settings of adaptive runs.
@@ -83,10 +80,6 @@ pub struct Adaptive {
     /// Settings `section.key=value`.
     #[serde(default)]
     pub settings: Vec<String>,
-}
-
-fn whole() -> f64 {
-    1.0
 }
 
 /// What a run of a study is.
@@ -174,7 +167,19 @@ impl StudyFile {
         if self.structure.is_empty() {
             return Some("there is no [[structure]] to run".to_owned());
         }
-        for Structure { name, along, settings, .. } in &self.structure {
+        let named = |name: &str| self.adaptive.iter().filter(|adaptive| adaptive.name == name).count();
+        if let Some(twice) = self.adaptive.iter().find(|adaptive| named(&adaptive.name) > 1) {
+            return Some(format!("two [[adaptive]] are called {}: give each a name of its own", twice.name));
+        }
+        for Structure { name, along, settings, reference: [finer, coarser], .. } in &self.structure {
+            if finer[0] < coarser[0] || finer[1] < coarser[1] || finer == coarser {
+                return Some(format!(
+                    "{name}: of its references {finer:?} is not finer than {coarser:?}: the finer comes first"
+                ));
+            }
+            if let Some(odd) = along.iter().find(|along| **along % 2 == 1) {
+                return Some(format!("{name}: along has {odd}, and halves of a shell need an even number"));
+            }
             if self.structure.iter().filter(|other| other.name == *name).count() > 1 {
                 return Some(format!("two structures are called {name}: give each a name of its own"));
             }
@@ -187,8 +192,7 @@ impl StudyFile {
                 return Some(format!("{name} has settings for {unknown}, which no [[adaptive]] is called: {known}"));
             }
         }
-        let wrong = self.uniform.iter().find(|family| !(family.share > 0.0 && family.share <= 1.0));
-        wrong.map(|family| format!("share = {} of a [[uniform]] is not above 0 and at most 1", family.share))
+        None
     }
 
     /// All columns of speed-ups, in the order in which they are first named.
@@ -231,12 +235,10 @@ impl StudyFile {
         uniform(Role::Reference, "reference".to_owned(), degree, reference, part)?;
         uniform(Role::Coarser, "coarser reference".to_owned(), degree, coarser, part)?;
         for (number, family) in self.uniform.iter().enumerate() {
-            let Family { degree: [p, q], across, share, .. } = *family;
+            let Family { degree: [p, q], across, .. } = *family;
             for along in &structure.along {
-                // An even number, so that halves and quarters of it could be cut.
-                let along = 2 * (share * *along as f64 / 2.0).round().max(1.0) as usize;
                 let label = format!("uniform, degree {p}, {q}");
-                uniform(Role::Uniform(number), label, [p, q], [along, across], base.symmetry)?;
+                uniform(Role::Uniform(number), label, [p, q], [*along, across], base.symmetry)?;
             }
         }
         for (number, adaptive) in self.adaptive.iter().enumerate() {
