@@ -73,7 +73,7 @@ fn a_finished_study_runs_nothing_again() {
     let place = place();
     let first = place.foldline(COMMAND).ends(0).out;
     let made = logs(&place);
-    assert_eq!((rows(&first).len(), made.len()), (8, 6), "{first}");
+    assert_eq!((rows(&first).len(), made.len()), (9, 6), "{first}");
     let again = place.foldline(COMMAND).ends(0).out;
     assert_eq!(first, again, "with the times that were measured");
     assert_eq!(logs(&place), made);
