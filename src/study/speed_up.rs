@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn powers_are_interpolated_exactly() {
         let family = vec![point(1.0, 0.04, 0.04), point(4.0, 0.0025, 0.0025)];
-        assert_eq!(bounds(speed_up(&point(0.5, 0.01, 0.02), &[family.clone()], KNOWN)), (4.0, Some(4.0)));
+        assert_eq!(bounds(speed_up(&point(0.5, 0.01, 0.02), std::slice::from_ref(&family), KNOWN)), (4.0, Some(4.0)));
         // The side that needs more decides.
         assert_eq!(bounds(speed_up(&point(0.5, 0.039, 0.0025), &[family], KNOWN)), (8.0, Some(8.0)));
     }
@@ -120,7 +120,7 @@ mod tests {
         let good = vec![point(10.0, 0.04, 0.04), point(20.0, 0.01, 0.01)];
         let just_misses = vec![point(1.0, 0.04, 0.04), point(2.0, 0.0101, 0.0101)];
         let run = point(1.0, 0.01, 0.01);
-        assert_eq!(bounds(speed_up(&run, &[good.clone()], KNOWN)), (20.0, Some(20.0)));
+        assert_eq!(bounds(speed_up(&run, std::slice::from_ref(&good), KNOWN)), (20.0, Some(20.0)));
         assert_eq!(bounds(speed_up(&run, &[good.clone(), just_misses.clone()], KNOWN)), (2.0, Some(20.0)));
         assert_eq!(bounds(speed_up(&run, &[just_misses], KNOWN)), (2.0, None));
         // The coarsest mesh is better: a coarser one might be as good.
@@ -137,7 +137,7 @@ mod tests {
     fn nothing_is_better_than_the_reference() {
         let family = vec![point(1.0, 0.02, 0.02), point(3.0, 0.01, 0.0004)];
         let run = point(1.0, 0.01, 0.0001);
-        assert_eq!(bounds(speed_up(&run, &[family.clone()], KNOWN)), (3.0, None));
+        assert_eq!(bounds(speed_up(&run, std::slice::from_ref(&family), KNOWN)), (3.0, None));
         assert_eq!(bounds(speed_up(&run, &[family], [Some(0.0005), Some(0.0005)])), (3.0, Some(3.0)));
     }
 
@@ -146,8 +146,8 @@ mod tests {
     fn what_has_not_snapped_is_not_compared() {
         let still = MeshPoint { wall_s: 1.0, errors: [Some(0.02), None] };
         let family = vec![still, point(4.0, 0.02, 0.02), point(5.0, 0.01, 0.01)];
-        assert_eq!(bounds(speed_up(&point(1.0, 0.01, 0.01), &[family.clone()], KNOWN)), (5.0, Some(5.0)));
-        assert_eq!(speed_up(&still, &[family.clone()], KNOWN), None);
+        assert_eq!(bounds(speed_up(&point(1.0, 0.01, 0.01), std::slice::from_ref(&family), KNOWN)), (5.0, Some(5.0)));
+        assert_eq!(speed_up(&still, std::slice::from_ref(&family), KNOWN), None);
         assert!(speed_up(&still, &[family], [Some(0.0), None]).is_some(), "where nothing snaps, one side is enough");
     }
 
