@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use foldline::scene::{Geometry, Indicator, LengthLimit, Material, Quadrature, Scene, Sense, Stage, Symmetry, parse};
+use foldline::study::StudyFile;
 
 fn read(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines").join(name);
@@ -80,6 +81,23 @@ fn the_uniform_scene_has_no_stage_that_refines() {
     assert_eq!(uniform.adapt, None);
     assert_eq!(uniform.symmetry, Symmetry::Quarter);
     assert_eq!(uniform.mesh.elements, [128, 16]);
+}
+
+/// Studies find their scenes, and every run of them is a scene that parses.
+#[test]
+fn every_study_can_be_run() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/studies");
+    let mut structures = 0;
+    for entry in fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        let study = StudyFile::parse(&fs::read_to_string(&path).unwrap(), "study.toml").unwrap();
+        for structure in &study.structure {
+            let runs = study.runs(structure, &folder).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            assert!(runs.len() > 10 && structure.published.is_some(), "{}", structure.name);
+            structures += 1;
+        }
+    }
+    assert_eq!(structures, 9, "three tables of three");
 }
 
 /// A scene of geometry, material and load alone is refined and coarsened by the error that its mesh causes; one that says how
