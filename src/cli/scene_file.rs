@@ -15,8 +15,7 @@ pub(super) struct SceneFile {
 
 /// Reads and checks a scene file.
 pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
-    let bytes = bytes_of(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
-    let text = text_of(bytes).map_err(|reason| Failure::NotText { path: path.to_path_buf(), reason })?;
+    let text = read_text(path)?;
     let scene = checked(&text, &path_in_line(path), &[])?;
     // A log needs no other file: a surface from a file of its own goes into the text that the log keeps.
     let text = match scene.geometry {
@@ -24,6 +23,12 @@ pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
         _ => text,
     };
     Ok(SceneFile { scene, text })
+}
+
+/// Reads the text of a scene or a study.
+pub(super) fn read_text(path: &Path) -> Result<String, Failure> {
+    let bytes = bytes_of(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
+    text_of(bytes).map_err(|reason| Failure::NotText { path: path.to_path_buf(), reason })
 }
 
 /// What a scene file holds. A pipe would hang, and a device never end.

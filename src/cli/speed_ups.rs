@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::failure::Failure;
 use super::output::{eprint, path_in_line, print, print_json};
-use super::scene_file::rendered;
+use super::scene_file::{read_text, rendered};
 use super::session::watch_signals;
 use crate::scene::Scene;
 use crate::study::{
@@ -20,9 +20,8 @@ const NAME: usize = 22;
 /// Width of what stands before the errors.
 const WIDTH_TO_ERRORS: usize = NAME + 17;
 
-/// A study that is being run.
+/// Studies that are being run.
 struct Running<'r> {
-    study: StudyFile,
     archive: Archive,
     interrupted: &'r dyn Fn() -> bool,
     json: bool,
@@ -37,57 +36,55 @@ struct Found {
     point: MeshPoint,
 }
 
-/// Runs study files one after another, with settings laid over all their scenes.
+/// Runs study files one after another, with settings laid over all their scenes. All of them are checked before the first run.
 pub(super) fn run(files: &[PathBuf], set: &[String], logs: &Path, threads: usize, json: bool) -> Result<(), Failure> {
     let raised = watch_signals()?;
-    let (mut failed, mut runs) = (0, 0);
-    for file in files {
-        let text = std::fs::read_to_string(file).map_err(|source| Failure::Read { path: file.clone(), source })?;
-        let mut study = StudyFile::parse(&text, &path_in_line(file)).map_err(|error| wrong(&error))?;
-        study.settings.extend_from_slice(set);
-        let folder = file.parent().unwrap_or(Path::new(""));
-        let planned = study.structure.iter().map(|structure| study.runs(structure, folder));
-        let planned = planned.collect::<Result<Vec<_>, _>>().map_err(|error| wrong(&error))?;
-        let archive = Archive::open(logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
-        let interrupted = || raised.load(Ordering::Relaxed);
-        let mut running = Running { study, archive, interrupted: &interrupted, json, failed: 0, runs: 0 };
+    let studies = files.iter().map(|file| planned(file, set)).collect::<Result<Vec<_>, _>>()?;
+    let archive = Archive::open(logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+    let interrupted = || raised.load(Ordering::Relaxed);
+    let mut running = Running { archive, interrupted: &interrupted, json, failed: 0, runs: 0 };
+    for (study, planned) in &studies {
         if !json {
-            print(&format!("{}\n", running.study.title))?;
+            print(&format!("{}\n", study.title))?;
         }
-        for (structure, planned) in running.study.structure.clone().iter().zip(planned) {
-            running.structure(structure, &planned)?;
+        for (structure, planned) in study.structure.iter().zip(planned) {
+            running.structure(study, structure, planned)?;
         }
-        (failed, runs) = (failed + running.failed, runs + running.runs);
     }
-    match failed {
+    match running.failed {
         0 => Ok(()),
-        failed => Err(Failure::StudyIncomplete { failed, of: runs }),
+        failed => Err(Failure::StudyIncomplete { failed, of: running.runs }),
     }
+}
+
+/// Reads a study, with the runs of each of its structures.
+fn planned(file: &Path, set: &[String]) -> Result<(StudyFile, Vec<Vec<Planned>>), Failure> {
+    let text = read_text(file)?;
+    let mut study = StudyFile::parse(&text, &path_in_line(file)).map_err(|error| wrong(&error))?;
+    study.settings.extend_from_slice(set);
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let planned = study.structure.iter().map(|structure| study.runs(structure, folder));
+    let planned = planned.collect::<Result<Vec<_>, _>>().map_err(|error| wrong(&error))?;
+    Ok((study, planned))
 }
 
 impl Running<'_> {
     /// Does the runs of a structure and shows what they found.
-    fn structure(&mut self, structure: &Structure, planned: &[Planned]) -> Result<(), Failure> {
+    fn structure(&mut self, study: &StudyFile, structure: &Structure, planned: &[Planned]) -> Result<(), Failure> {
         let mut reference: Option<Measured> = None;
         let mut found: Vec<Found> = Vec::new();
         let mut own: Option<Errors> = None;
         let [reference_scene, ..] = planned else { return Ok(()) };
         for planned in planned {
             self.runs += 1;
-            let purpose = match planned.role {
-                Role::Reference | Role::Coarser => Purpose::Results,
-                Role::Uniform(_) | Role::Adaptive(_) => Purpose::Time,
-            };
-            let measured = match self.measured(planned, &reference_scene.scene, purpose) {
-                Ok(Some(measured)) => {
-                    let row = measured.against(reference.as_ref().unwrap_or(&measured));
-                    row.map(|row| (row, measured)).map_err(|error| in_full(&error))
-                }
+            let compared = self.measured(planned, &reference_scene.scene).and_then(|measured| {
+                let Some(measured) = measured else { return Ok(None) };
+                let row = measured.against(reference.as_ref().unwrap_or(&measured));
+                row.map(|row| Some((row, measured))).map_err(|error| in_full(&error))
+            });
+            let (row, measured) = match compared {
+                Ok(Some(found)) => found,
                 Ok(None) => return Err(Failure::StudyInterrupted),
-                Err(why) => Err(why),
-            };
-            let (row, measured) = match measured {
-                Ok(found) => found,
                 Err(why) => {
                     self.failed += 1;
                     self.show_failure(structure, planned, &why)?;
@@ -105,7 +102,7 @@ impl Running<'_> {
                 }
                 Role::Coarser => {
                     let [finer, coarser] = structure.reference;
-                    own = Some(error_of_finer(errors, finer, coarser, self.study.reference.degree));
+                    own = Some(error_of_finer(errors, finer, coarser, study.reference.degree));
                 }
                 Role::Uniform(_) | Role::Adaptive(_) => {
                     let point = MeshPoint { wall_s: row.wall_s, errors };
@@ -118,13 +115,13 @@ impl Running<'_> {
             }
         }
         // Without it no error of the others is known.
-        own.map_or(Ok(()), |own| self.show_speed_ups(structure, &found, own))
+        own.map_or(Ok(()), |own| self.show_speed_ups(study, structure, &found, own))
     }
 
     /// Does a run, and reads what it measures; `None` where it was interrupted.
-    fn measured(&self, planned: &Planned, reference: &Scene, purpose: Purpose) -> Result<Option<Measured>, String> {
+    fn measured(&self, planned: &Planned, reference: &Scene) -> Result<Option<Measured>, String> {
         is_comparable(&planned.scene, reference).map_err(|error| in_full(&error))?;
-        let done = match self.archive.done(&planned.scene, purpose, self.interrupted) {
+        let done = match self.archive.done(&planned.scene, planned.role.purpose(), self.interrupted) {
             Err(TaskError::Interrupted) => return Ok(None),
             done => done.map_err(|error| in_full(&error))?,
         };
@@ -156,7 +153,7 @@ impl Running<'_> {
 
     /// A row. Errors below those of the reference itself are not told apart.
     fn show(&self, structure: &Structure, planned: &Planned, row: &AccuracyRow, own: Errors) -> Result<(), Failure> {
-        let timed = matches!(planned.role, Role::Uniform(_) | Role::Adaptive(_));
+        let timed = planned.role.purpose() == Purpose::Time;
         if self.json {
             let role = match planned.role {
                 Role::Reference => "reference",
@@ -213,10 +210,16 @@ impl Running<'_> {
         Ok(())
     }
 
-    fn show_speed_ups(&self, structure: &Structure, found: &[Found], own: Errors) -> Result<(), Failure> {
-        let columns = self.study.columns();
+    fn show_speed_ups(
+        &self,
+        study: &StudyFile,
+        structure: &Structure,
+        found: &[Found],
+        own: Errors,
+    ) -> Result<(), Failure> {
+        let columns = study.columns();
         let families_of = |column: &str| -> Vec<Vec<MeshPoint>> {
-            let of_column = self.study.uniform.iter().enumerate();
+            let of_column = study.uniform.iter().enumerate();
             let of_column = of_column.filter(|(_, family)| family.columns.iter().any(|name| name == column));
             let meshes = |number| found.iter().filter(move |found| found.role == Role::Uniform(number));
             of_column.map(|(number, _)| meshes(number).map(|found| found.point).collect()).collect()

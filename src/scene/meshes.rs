@@ -50,27 +50,24 @@ fn chooses_mesh(tables: &Tables) -> bool {
     !tables.one("mesh").values.contains_key("elements")
 }
 
+/// Whether the error that the mesh causes decides how it is refined, since the scene says nothing else.
+fn chooses_by_error(tables: &Tables) -> bool {
+    chooses_mesh(tables) && tables.one("adapt").place_of("threshold").is_none()
+}
+
 /// The stages of a load step.
 pub(super) fn stages(tables: &Tables) -> Checked<Vec<Stage>> {
-    let (mesh, adapt, pipeline) = (tables.one("mesh"), tables.one("adapt"), tables.one("pipeline"));
+    let pipeline = tables.one("pipeline");
     let given: Option<Vec<Stage>> = pipeline.get("stages");
-    if !chooses_mesh(tables) {
-        let refines = adapt.is_given;
-        return Ok(given.unwrap_or_else(|| if refines { Stage::REFINING.to_vec() } else { vec![Stage::Solve] }));
-    }
-    let stages = given.unwrap_or_else(|| match adapt.place_of("threshold") {
-        Some(_) => Stage::REFINING.to_vec(),
-        None => [&Stage::REFINING[..], &[Stage::CoarsenKnots]].concat(),
+    let stages = given.unwrap_or_else(|| match tables.one("adapt").is_given || chooses_mesh(tables) {
+        true if chooses_by_error(tables) => [&Stage::REFINING[..], &[Stage::CoarsenKnots]].concat(),
+        true => Stage::REFINING.to_vec(),
+        false => vec![Stage::Solve],
     });
-    if !stages.contains(&Stage::RefineKnots) {
+    if chooses_mesh(tables) && !stages.contains(&Stage::RefineKnots) {
         let problem = "no number of elements is given, and no stage refines those that a run starts with";
-        let place = pipeline.place_of("stages");
+        let (mesh, place) = (tables.one("mesh"), pipeline.place_of("stages"));
         return Err(mesh.wrong(place.as_ref(), problem, "write `elements` in [mesh], or leave [pipeline] out"));
-    }
-    if tables.one("continuation").is_given && adapt.place_of("threshold").is_none() {
-        let problem = "by arc length a mesh cannot be chosen by its error: behind a limit point that may lead back along the path";
-        let remedy = "write [mesh] with `elements`, or [adapt] with a `threshold`";
-        return Err(mesh.wrong(Some(&tables.one("continuation").place), problem, remedy));
     }
     Ok(stages)
 }
@@ -91,7 +88,7 @@ pub(super) fn adapt(tables: &Tables, pipeline: &[Stage]) -> Checked<Option<Adapt
     }
     let geometry = tables.one("geometry").kind();
     let Some(threshold) = one_or_pair(table, "threshold") else { unreachable!("adapt.threshold has a default") };
-    let chosen = (chooses_mesh(tables) && table.place_of("threshold").is_none()).then_some(TOLERANCE);
+    let chosen = chooses_by_error(tables).then_some(TOLERANCE);
     let tolerance = table.get::<Option<f64>>("tolerance").or(chosen);
     let indicator = tolerance.map_or(Indicator::BendingStrain(threshold), Indicator::Error);
     let default = match (indicator, geometry) {
@@ -118,12 +115,16 @@ pub(super) fn adapt(tables: &Tables, pipeline: &[Stage]) -> Checked<Option<Adapt
             "leave it out",
         ));
     }
-    if tables.one("continuation").is_given && matches!(indicator, Indicator::Error(_)) {
-        return Err(table.wrong_at(
-            "tolerance",
-            "by arc length, a mesh that is refined by its error behind a limit point may lead back along the path",
-            "write `threshold` in place of `tolerance`, or leave [continuation] out",
-        ));
+    let continuation = tables.one("continuation");
+    if continuation.is_given && matches!(indicator, Indicator::Error(_)) {
+        let problem =
+            "by arc length, a mesh that is refined by its error behind a limit point may lead back along the path";
+        let tolerance = table.place_of("tolerance");
+        let remedy = match tolerance {
+            Some(_) => "write `threshold` in place of `tolerance`, or leave [continuation] out",
+            None => "write [mesh] with `elements`, or [adapt] with a `threshold`",
+        };
+        return Err(table.wrong(tolerance.as_ref().or(Some(&continuation.place)), problem, remedy));
     }
     if pipeline.contains(&Stage::CoarsenKnots) && !matches!(indicator, Indicator::Error(_)) {
         return Err(table.wrong(

@@ -14,7 +14,7 @@ use crate::study::path::{PathPoint, equilibrium_path, snaps};
 use crate::study::timed_run::timed_run;
 
 /// Parameters closer than this, relatively, are one.
-const SAME: f64 = 1e-9;
+pub(super) const SAME: f64 = 1e-9;
 
 /// The results of a run that are compared with others: moment, or first probe, against the parameter.
 #[derive(Clone, Debug, PartialEq)]

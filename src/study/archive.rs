@@ -139,7 +139,7 @@ impl Archive {
     }
 
     /// Where the log of a scene lies.
-    pub fn log_of(&self, scene: &Scene) -> PathBuf {
+    fn log_of(&self, scene: &Scene) -> PathBuf {
         self.folder.join(format!("{}.mcap", &scene.hash().to_hex()[..DIGITS]))
     }
 
@@ -166,13 +166,18 @@ impl Archive {
         }
         let is_current = claim.log().manifests().iter().all(|manifest| manifest.numerics == NUMERICS_REVISION);
         let is_finished = is_current && claim.log().completeness() == Completeness::Finished;
-        match (purpose, self.time_of(scene)) {
-            (Purpose::Results, _) if is_finished => {
-                let records = records(claim.log());
-                Ok(Done { wall_s: of_stages(&records), records })
+        if is_finished {
+            let records = records(claim.log());
+            let known = match purpose {
+                Purpose::Results => Some(of_stages(&records)),
+                Purpose::Time => self.time_of(scene),
+            };
+            if let Some(wall_s) = known {
+                return Ok(Done { records, wall_s });
             }
-            (Purpose::Time, Some(wall_s)) if is_finished => Ok(Done { records: records(claim.log()), wall_s }),
-            (Purpose::Results, _) if is_current => self.resume(claim, scene, interrupted),
+        }
+        match purpose {
+            Purpose::Results if is_current => self.resume(claim, scene, interrupted),
             _ => {
                 // Under the lock of the claim: nobody else writes it.
                 fs::remove_file(&log).map_err(|source| TaskError::Io { path: log, source })?;
@@ -202,12 +207,9 @@ impl Archive {
         let run = Run::new(stages, start, None);
         let records = self.finish(&log, run, Logged { writer, records: Vec::new() }, interrupted)?;
         let wall_s = match purpose {
-            Purpose::Time => begin.elapsed().as_secs_f64(),
+            Purpose::Time => self.keep_time(scene, begin.elapsed().as_secs_f64())?,
             Purpose::Results => of_stages(&records),
         };
-        if purpose == Purpose::Time {
-            self.keep_time(scene, wall_s)?;
-        }
         Ok(Done { records, wall_s })
     }
 
@@ -258,7 +260,8 @@ impl Archive {
         counts.then_some(taken.wall_s).filter(|wall_s| wall_s.is_finite() && *wall_s > 0.0)
     }
 
-    fn keep_time(&self, scene: &Scene, wall_s: f64) -> Result<(), TaskError> {
+    /// Writes the time that a run took beside its log, and gives it back.
+    fn keep_time(&self, scene: &Scene, wall_s: f64) -> Result<f64, TaskError> {
         let Manifest { program_version, numerics, host, threads, .. } = self.manifest(scene);
         let taken = TimeTaken { wall_s, threads, program_version, numerics, host };
         let path = self.time_file(scene);
@@ -267,7 +270,7 @@ impl Archive {
             whole.file().write_all(&text)?;
             whole.replace(&path)
         });
-        written.map_err(|source| TaskError::Io { path, source })
+        written.map(|()| wall_s).map_err(|source| TaskError::Io { path, source })
     }
 }
 

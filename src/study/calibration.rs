@@ -65,9 +65,8 @@ use crate::pipeline::{Run, RunError, Stages};
 use crate::record::{Outcome, Parameter, Record, Sink, SinkError};
 use crate::scene::{Adapt, Drive, Indicator, Scene, Stage};
 use crate::state::State;
+use crate::study::accuracy::SAME;
 
-/// Parameters closer than this, relatively, are one.
-const SAME: f64 = 1e-9;
 /// Elements of the fine mesh that is chosen are longer than the length limit by this at most, where their number allows it:
 /// before a snap nothing bends over less.
 const OVER_LENGTH_LIMIT: f64 = 2.0;

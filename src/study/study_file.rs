@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::scene::{Scene, SceneError, Stage, Symmetry, parse, parse_with_settings};
+use crate::study::archive::Purpose;
 
 /// A study: what is run, and what is compared with what.
 #[derive(Clone, Debug, Deserialize)]
@@ -93,6 +94,16 @@ pub enum Role {
     Uniform(usize),
     /// Adaptive, with the settings of this number.
     Adaptive(usize),
+}
+
+impl Role {
+    /// What such a run is for.
+    pub fn purpose(self) -> Purpose {
+        match self {
+            Role::Reference | Role::Coarser => Purpose::Results,
+            Role::Uniform(_) | Role::Adaptive(_) => Purpose::Time,
+        }
+    }
 }
 
 /// A run of a study.
