@@ -21,6 +21,8 @@ pub(super) struct LoadStep {
     loads_follow: bool,
     /// Whether a ripple of the mesh was passed.
     rippled: bool,
+    /// Parameter that the run returned from, since the refined mesh jumps before it.
+    returned_from: Option<f64>,
 }
 
 impl LoadStep {
@@ -61,6 +63,9 @@ impl LoadStep {
         }
         if self.elements_before != self.report.elements {
             events.push(format!("refined from {} × {}", self.elements_before[0], self.elements_before[1]));
+        }
+        if let Some(parameter) = self.returned_from {
+            events.push(format!("back from {}, before which this mesh jumps", self.report.driven_by.shown_short(parameter)));
         }
         if self.report.negative_pivots > 0 {
             events.push(format!("not stable ({})", count(self.report.negative_pivots as usize, "negative pivot")));
@@ -139,6 +144,7 @@ impl Gatherer {
                     loads_follow: self.loads_follow,
                     rippled: report.rippled,
                     passed: report.critical_point,
+                    returned_from: None,
                 });
             }
         }
@@ -159,6 +165,7 @@ impl Gatherer {
                     step.report.probes = probes;
                 }
                 step.iterations += report.iterations;
+                step.returned_from = report.returned_from().or(step.returned_from);
                 step.wall_s += record.wall_s;
                 if report.jumped {
                     let before = step.released_n_mm.unwrap_or(Some(0.0));

@@ -72,5 +72,15 @@ pub struct Effort {
     pub factorizations: usize,
 }
 
+impl Effort {
+    /// Adds the effort of another solve.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            iterations: self.iterations + other.iterations,
+            factorizations: self.factorizations + other.factorizations,
+        }
+    }
+}
+
 /// Callback that sees every iterate; returning `true` stops the solve.
 pub type Observer<'o> = &'o mut dyn FnMut(&Iterate) -> bool;

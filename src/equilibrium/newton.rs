@@ -65,6 +65,23 @@ impl<'a> Equilibrium<'a> {
         self.minimize(start, None, from, from.parameter, &before, observer)
     }
 
+    /// Solves for the equilibrium at another parameter from a displacement that is thought to be near it.
+    ///
+    /// # Errors
+    /// As for [`Self::advance`], and where the stiffness has no factor at `from`.
+    pub fn reach(
+        &mut self,
+        from: Configuration,
+        to: f64,
+        near: &[[f64; 3]],
+        observer: Observer,
+    ) -> Result<Solved, SolveError> {
+        let start = Configuration { displacement: near, parameter: to, ..from }.free(&self.work.discretization.unknowns);
+        self.work.factorize_at(from)?;
+        let before = SolveStart::at(self.work, from);
+        self.minimize(start, None, from, to, &before, observer)
+    }
+
     /// Descends from an unstable equilibrium to another one at the same parameter: moves off along its soft mode by a
     /// largest motion of `amplitude` mm, to the side that has less energy, and continues as [`Self::relax`] does.
     ///

@@ -1,6 +1,8 @@
 //! The drive by load: increments of the parameter, which are cut where they fail or jump.
 
-use crate::equilibrium::{Configuration, Continuation, Equilibrium, Observer, SolveError, Solved, Workspace};
+use crate::equilibrium::{
+    Configuration, Continuation, Effort, Equilibrium, Iterate, Observer, SolveError, Solved, Workspace,
+};
 use crate::pipeline::StageError;
 use crate::pipeline::branch_switch::switch_branch;
 use crate::pipeline::ripple::{Watch, is_ripple};
@@ -8,13 +10,17 @@ use crate::pipeline::step::{Drives, Step, settle};
 use crate::pipeline::step_control::{Attempt, energy_released, is_jump, known_release, next_attempt};
 use crate::record::{CriticalPoint, Outcome, Report};
 use crate::scene::Scene;
-use crate::shell::{norm, sub};
-use crate::state::{Course, DriveMemory, Previous, State};
+use crate::shell::{add, norm, scaled, sub};
+use crate::state::{Course, DriveMemory, Previous, State, StepControl};
 
 /// Ratio of the rates of motion in a step and in the one before, beyond which the shell has changed to another branch.
 /// Near a limit point the rate grows without bound, but a step that ends stable has not come to it; next to
 /// bifurcations of tape springs the ratio was 7 and more.
 const BRANCH_CHANGE_RATIO: f64 = 4.0;
+
+/// Steps that a return from a jump on refining goes back beyond the equilibrium that the step began at, one after the other:
+/// a mesh that is too coarse may pass the limit point by more than a step. The course is taken for straight.
+const STEPS_BACK: [f64; 4] = [0.0, 1.0, 3.0, 7.0];
 
 /// Drive that moves the load on by increments.
 pub(super) struct LoadDrive<'a> {
@@ -53,8 +59,12 @@ impl Drives for LoadDrive<'_> {
         self.take(attempt, arrival, &solved)
     }
 
+    /// Finds the equilibrium on the refined mesh. Where the shell jumps on it, the step has passed a limit point that the
+    /// coarser mesh did not show: the drive returns to before it, and the jump is located on this mesh.
     fn re_equilibrate(&mut self) -> Result<(State, Report), StageError> {
-        self.step.relax()
+        let (relaxed, report) = self.step.relax()?;
+        let returned = if report.jumped { self.before_refining(&report)? } else { None };
+        Ok(returned.unwrap_or((relaxed, report)))
     }
 
     fn switch_branch(&mut self) -> Result<(State, Report), StageError> {
@@ -67,6 +77,52 @@ impl LoadDrive<'_> {
     fn before_jump(&self, attempt: Attempt) -> State {
         let DriveMemory { control, course } = &self.step.state.drive;
         self.step.stay(attempt.control_after_jump(control), course.clone())
+    }
+
+    /// Returns to a stable equilibrium before a step that turned out, on a finer mesh, to have passed a limit point: the one
+    /// that the step began at, or where that lies beyond it too, one that the course so far leads back to. `None` where the
+    /// course is not known, the jump is located well enough already, or none is found.
+    fn before_refining(&mut self, jumped: &Report) -> Result<Option<(State, Report)>, StageError> {
+        let Step { scene, work, state, observer, .. } = &mut self.step;
+        let Some(previous) = state.drive.previous() else { return Ok(None) };
+        let step = state.parameter - previous.parameter;
+        if step <= scene.snap_tolerance() {
+            return Ok(None);
+        }
+        let mut effort = Effort { iterations: jumped.iterations, factorizations: jumped.factorizations };
+        for back in STEPS_BACK {
+            let parameter = previous.parameter - back * step;
+            if parameter <= 0.0 {
+                break;
+            }
+            let moved = |(there, here): (&[f64; 3], &[f64; 3])| add(*there, scaled(back, sub(*there, *here)));
+            let near: Vec<[f64; 3]> = previous.displacement.iter().zip(&state.displacement).map(moved).collect();
+            let mut loses_stability = |iterate: &Iterate| {
+                observer(iterate);
+                iterate.negative_pivots > 0
+            };
+            let from = Configuration::of(state);
+            match Equilibrium::new(scene, work).reach(from, parameter, &near, &mut loses_stability) {
+                Ok(solved) => {
+                    let effort = effort.and(solved.effort);
+                    return self.returned(parameter, &Solved { effort, ..solved }).map(Some);
+                }
+                Err(cause) => effort = effort.and(cause.effort()),
+            }
+        }
+        Ok(None)
+    }
+
+    /// The state at an equilibrium before a jump on refining, which is ahead again.
+    fn returned(&mut self, parameter: f64, solved: &Solved) -> Result<(State, Report), StageError> {
+        let state = self.step.state;
+        let mut next = settle(state, solved);
+        next.parameter = parameter;
+        next.refinement = None;
+        let control = StepControl { jump_beyond: Some(state.parameter), rejection: None, ..state.drive.control };
+        next.drive = DriveMemory { control, course: Course::Unknown };
+        let report = self.step.arrived(&next, solved)?;
+        Ok((next, Report { attempted_parameter: state.parameter, ..report }))
     }
 
     /// Accepts the step: returns the state at the attempted load.

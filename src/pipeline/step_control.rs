@@ -11,6 +11,7 @@
 //! | found no equilibrium | halvings, so that the increment is at most half of what was tried | the next multiple of that |
 //! | continued inside a bracket, or jumped, with an increment that had grown | the scene's own increment | the next multiple of that |
 //! | passed an unstable shape or released energy | the rotation where it did | the middle between here and there |
+//! | continued, but on a refined mesh the shell jumps | the rotation where it did, and the state before it | the middle between there and here |
 //! | the same, within `snap_tolerance_deg` of here | the same | there, and the jump is taken |
 //!
 //! A success inside a bracket forgets the bracket and tries the whole step again: what looked like a jump may have

@@ -22,7 +22,8 @@ pub struct Report {
     pub driven_by: Parameter,
     /// Parameter of the state.
     pub parameter: f64,
-    /// Parameter that the stage worked at; differs from `parameter` where a solve was rejected.
+    /// Parameter that the stage worked at; differs from `parameter` where a solve was rejected, and where a refined mesh jumped
+    /// and the run returned to before that.
     pub attempted_parameter: f64,
     /// Turning ends: end moment, N·mm.
     pub moment_n_mm: f64,
@@ -72,6 +73,12 @@ pub struct Report {
 }
 
 impl Report {
+    /// Parameter that the run returned from in this stage, since the refined mesh jumps before it.
+    pub fn returned_from(&self) -> Option<f64> {
+        let returned = self.stage == Stage::ReEquilibrate && self.attempted_parameter != self.parameter;
+        returned.then_some(self.attempted_parameter)
+    }
+
     /// The report of a state, on a mesh with so many free unknowns; the stage fills in what it did.
     pub(crate) fn of(scene: &Scene, state: &State, unknowns: usize) -> Self {
         Self {

@@ -55,10 +55,16 @@ pub struct Snap {
 }
 
 /// Extracts the moment–rotation curve: the last equilibrium of every load step, and where a step jumped after it had
-/// found one (on a finer mesh), the one before the jump too.
+/// found one (on a finer mesh), the one before the jump too. What a coarser mesh found where the finer one jumps before it is
+/// no part of it.
 pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
     let mut path: Vec<PathPoint> = Vec::new();
     for report in equilibria(records).map(|record| &record.report) {
+        if report.returned_from().is_some() {
+            while path.last().is_some_and(|last| last.parameter >= report.parameter && !last.jumped) {
+                path.pop();
+            }
+        }
         let same_step = path.last().is_some_and(|last| last.step == report.step);
         let jumped_before = same_step && path.last().is_some_and(|last| last.jumped);
         let mut passed_before = None;

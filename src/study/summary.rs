@@ -248,17 +248,27 @@ fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
         if report.jumped {
             break;
         }
+        let turned = (moment + report.moment_n_mm) * (report.parameter - sum.parameter).to_radians();
         match report.stage {
             Stage::Solve if report.outcome == Outcome::Done => {
                 sum.work_n_mm += match report.driven_by {
-                    Parameter::Rotation => {
-                        (moment + report.moment_n_mm) * (report.parameter - sum.parameter).to_radians()
-                    }
+                    Parameter::Rotation => turned,
                     Parameter::LoadFactor => report.work_n_mm,
                 };
                 sum.parameter = report.parameter;
                 sum.put_in_n_mm += report.put_in_n_mm;
                 sum.released_in_ripples_n_mm += report.energy_released_n_mm.unwrap_or(0.0);
+            }
+            // A return to before a jump on refining takes the work of the step back.
+            Stage::ReEquilibrate if report.returned_from().is_some() => {
+                let work = match report.driven_by {
+                    Parameter::Rotation => turned,
+                    Parameter::LoadFactor => report.work_n_mm,
+                };
+                sum.work_n_mm += work;
+                sum.parameter = report.parameter;
+                sum.put_in_n_mm -= report.put_in_n_mm;
+                sum.taken_out_by_refinement_n_mm += work + sum.strain_energy_n_mm - report.strain_energy_n_mm;
             }
             // Refining integrates the energy again, and re-equilibrating lowers it: neither is work of the ends.
             Stage::RefineKnots | Stage::ReEquilibrate => {

@@ -40,21 +40,18 @@ fn every_cut_of_a_run_whose_increments_grow() {
     assert_resumes_from_every_cut(&whole, "growing", 1, 2);
 }
 
-/// The estimate of the error, superfluous knots and meshes that lose some are parts of a state.
+/// The estimate of the error, superfluous knots, meshes that lose some and returns to before a jump are parts of a state.
 #[test]
 fn every_cut_of_a_run_that_keeps_a_tolerance() {
-    let kept = SMALL
-        .replace("threshold = 0.019\nlength_limit_mm = 4.0", "tolerance = 0.3")
-        .replace("\"re-equilibrate\"]", "\"re-equilibrate\", \"coarsen-knots\"]")
-        .replace("increment_deg = 2.0", "increment_deg = 4.0")
-        .replace("rotation_deg = 16.0", "rotation_deg = 40.0");
-    let whole = Straight::run(&kept, 1);
+    let kept = include_str!("tolerance.toml");
+    let whole = Straight::run(kept, 1);
     let place = Sandbox::new();
     place.write("whole.mcap", &whole.bytes);
     let log = place.log("whole.mcap");
     let count = |stage| log.entries().iter().filter(|entry| entry.record.report.stage == stage).count();
     println!("{} refined, {} coarsened", count(Stage::RefineKnots), count(Stage::CoarsenKnots));
     assert!(count(Stage::RefineKnots) > 2 && count(Stage::CoarsenKnots) > 0);
+    assert!(log.entries().iter().any(|entry| entry.record.report.returned_from().is_some()));
     assert_resumes_from_every_cut(&whole, "tolerance", 1, 2);
 }
 

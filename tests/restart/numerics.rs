@@ -12,12 +12,14 @@ use foldline::record::{MemorySink, NUMERICS_REVISION};
 
 use crate::program::{SMALL, scene};
 
-/// Load steps, refinement and a snap; arc length to a bifurcation and the branch behind it; a growing increment.
-const SCENES: [(&str, &str); 4] = [
+/// Load steps, refinement and a snap; arc length to a bifurcation and the branch behind it; a growing increment; a tolerance,
+/// knots that leave, and a return to before a jump on a refined mesh.
+const SCENES: [(&str, &str); 5] = [
     ("small", SMALL),
     ("path", include_str!("path.toml")),
     ("column", include_str!("column.toml")),
     ("growing", include_str!("../../checkpoints/golden/growing.toml")),
+    ("tolerance", include_str!("tolerance.toml")),
 ];
 
 fn chain_of(text: &str) -> String {
@@ -52,7 +54,7 @@ fn a_change_of_bits_is_a_new_revision() {
         assert!(
             stored.lines().any(|line| line == row),
             "the bits of this scene are not those of revision {NUMERICS_REVISION}:\n{row}\nIf they are meant to change, raise \
-             NUMERICS_REVISION in src/pipeline/revision.rs, then store the new ones:\n\
+             NUMERICS_REVISION in src/record/revision.rs, then store the new ones:\n\
              FOLDLINE_STORE_BITS=1 cargo test --release --test restart numerics"
         );
     }

@@ -7,6 +7,7 @@ use foldline::model::starting_mesh;
 use foldline::record::Record;
 use foldline::scene::{Adapt, Indicator, LengthLimit, Scene, Splitting, Stage};
 use foldline::state::State;
+use foldline::study::{equilibrium_path, snaps};
 
 use crate::benchmarks::read;
 use crate::support::{of, run, scene, steps};
