@@ -43,7 +43,7 @@ Columns:
   outcome    finished, or the kind of stop; an error follows below
   as stated  whether it ended as its [expect] says, and all numbers are sound
   error      largest error of the peak before the first jump and of the last result (moment, first probe,
-             strain energy) against those that [expect] states; above 2 % the reason follows below
+             strain energy) against those that [expect] states, which says how much is allowed
   steps      load steps with an equilibrium
   iter       Newton iterations, those of solves that were rejected included
   residual   largest |residual| of all equilibria over the forces

@@ -97,10 +97,10 @@ pub enum ExtremeFault {
         /// How the run with the changed input ended.
         ended: &'static str,
     },
-    /// The result is not what it should be, and the scene does not say why.
+    /// The result is farther off than the scene states.
     #[error(
-        "the result is {:.1} % off `expect.peak` or `expect.last`, and {:.0} % is the most: refine the mesh, or say why in \
-         `expect.inexact`",
+        "the result is {:.1} % off `expect.peak` or `expect.last`, and {:.0} % is the most: refine the mesh, or state \
+         more in `expect.within`, and why in `expect.inexact`",
         100.0 * error,
         100.0 * most
     )]

@@ -181,7 +181,7 @@ fn read_scene(name: &str) -> (Scene, Manifest) {
 #[test]
 #[ignore = "writes to checkpoints/golden"]
 fn write_golden_logs_of_other_courses() {
-    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch))] {
+    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch)), ("tolerance", None)] {
         if path_of(what).exists() {
             continue;
         }

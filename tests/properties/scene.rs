@@ -199,6 +199,7 @@ fn another_value(key: &Key) -> Option<&'static str> {
         "expect.same_as" => "\"other.toml\"",
         "expect.peak" => "292.0",
         "expect.last" => "-28.3",
+        "expect.within" => "0.05",
         "expect.inexact" => "\"too coarse\"",
         path => panic!("{path} needs a value here"),
     })
@@ -234,6 +235,7 @@ fn free_are_the_outputs_the_target_and_what_is_expected_alone() {
             "expect.least_bits",
             "expect.peak",
             "expect.last",
+            "expect.within",
             "expect.inexact"
         ]
     );

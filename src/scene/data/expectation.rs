@@ -18,7 +18,10 @@ pub struct Expectation {
     /// The same at the last equilibrium.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<f64>,
-    /// Why the run may be farther off these than [`Self::MOST_ERROR`].
+    /// Largest error relative to these.
+    #[serde(default = "most_error", skip_serializing_if = "is_most_error")]
+    pub within: f64,
+    /// Why it may be more than [`Self::MOST_ERROR`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inexact: Option<String>,
 }
@@ -31,6 +34,7 @@ impl Default for Expectation {
             least_bits: Self::LEAST_BITS,
             peak: None,
             last: None,
+            within: Self::MOST_ERROR,
             inexact: None,
         }
     }
@@ -40,8 +44,17 @@ impl Expectation {
     /// Number of correct bits of a result (three digits) below which it counts as noise, unless the scene gives a
     /// reason.
     pub const LEAST_BITS: usize = 10;
-    /// Largest error, relative to a closed form or a finer mesh, for which a scene need not give a reason.
+    /// Largest error, relative to a closed form or a finer mesh, unless the scene states another one.
     pub const MOST_ERROR: f64 = 0.02;
+}
+
+fn most_error() -> f64 {
+    Expectation::MOST_ERROR
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_most_error(within: &f64) -> bool {
+    *within == Expectation::MOST_ERROR
 }
 
 /// The ways for a run to end that a scene can expect.

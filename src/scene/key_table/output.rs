@@ -74,8 +74,16 @@ pub(super) static EXPECT: &[Key] = &[
         .or(Follows("nothing to be compared with"))
         .reaches(Free)
         .also_called(&["value", "reference"]),
+    expect("within", Kind::Number(Limits {
+        low: Limit::excluded(0.0, "no run is without error"),
+        high: Limit::excluded(1.0, "an error as large as the value says nothing of it"),
+    }), "0.05")
+        .means("The largest error of `peak` and `last`, relative to them.")
+        .or(Default("0.02"))
+        .reaches(Free)
+        .also_called(&["tolerance", "error", "relative_error"]),
     expect("inexact", Kind::Text, "\"elements of 75 mm hold no fold\"")
-        .means("Why the run may be off `peak` or `last` by more than 2 %.")
+        .means("Why that is more than 2 %.")
         .or(Follows("right to 2 %"))
         .reaches(Free)
         .also_called(&["because", "reason"]),
