@@ -108,6 +108,25 @@ fn knots_leave_a_fold_that_has_grown() {
     assert!((moment / 28.3 - 1.0).abs() < 0.015, "{moment}");
 }
 
+/// A coarse mesh passes the limit point of the baseline, which a finer one jumps at: the run returns to before it, and locates the
+/// jump where independent solvers have it. What the coarse mesh found beyond is no part of the path.
+#[test]
+fn a_jump_on_refining_is_located_on_the_finer_mesh() {
+    let mut bending = by_error(quarter([3, 3], [4, 4], 12.0, 2.0), 0.3);
+    bending.solver.snap_tolerance_deg = Some(0.02);
+    let records: Vec<Record> = run(bending).into_iter().map(|(_, record)| record).collect();
+    let returned = records.iter().position(|record| record.report.returned_from().is_some()).expect("it returns");
+    let jumped = records.iter().position(|record| record.report.jumped).unwrap();
+    println!("from {:?} to {}", records[returned].report.returned_from(), records[returned].report.parameter);
+    assert!(returned < jumped && records[jumped].report.stage == Stage::Solve);
+    assert!(records[returned].report.returned_from().unwrap() > records[returned].report.parameter + 0.5);
+    let path = equilibrium_path(&records);
+    assert!(path.windows(2).all(|pair| pair[0].parameter <= pair[1].parameter));
+    let snap = snaps(&records)[0];
+    assert!(snap.after - snap.before < 0.021, "{snap:?}");
+    assert!((snap.after - 9.906).abs() < 0.1, "{snap:?}");
+}
+
 /// What a coarser space can show comes back exactly, with weights and in both directions; knots of the start do not leave.
 #[test]
 fn what_the_coarser_space_can_show_is_not_changed() {
