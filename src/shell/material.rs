@@ -108,7 +108,7 @@ pub(super) fn ply_stiffness(ply: &Ply) -> [[f64; 3]; 3] {
 }
 
 /// (ε₁₁, ε₂₂, 2ε₁₂) in the axes e₁, e₂ from the covariant components, with ε_ij = ε_αβ (A^α·e_i)(A^β·e_j).
-fn cartesian_strains(tangents: [[f64; 3]; 2]) -> [[f64; 3]; 3] {
+pub(super) fn cartesian_strains(tangents: [[f64; 3]; 2]) -> [[f64; 3]; 3] {
     let [a1, a2] = tangents;
     let normal = cross(a1, a2);
     let unit = |x: [f64; 3]| {

@@ -7,6 +7,7 @@
 //! | `free_strain` | strains without forces |
 //! | `quadrature` | Gauss–Legendre rules |
 //! | `point` | a point: energy, gradient, Hessian |
+//! | `local` | its strains and resultants in its own axes |
 //! | `lanes`, `lanes_x86` | several numbers at once |
 //! | `lane_vector` | vectors whose components are such lanes |
 //! | `batch` | four points at once: what both kinds share |
@@ -18,6 +19,7 @@ mod lane_vector;
 pub(crate) mod lanes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes_x86;
+mod local;
 mod material;
 mod point;
 mod point_batch;
@@ -27,6 +29,7 @@ mod vector;
 
 pub(crate) use batch::{BatchGradient, BatchHessian, PointKernel};
 pub use free_strain::{FreeStrain, thermal_strain};
+pub use local::{LocalPoint, layers, local_point, principal};
 pub use material::{ShellStiffness, shell_stiffness};
 pub use point::{Hessian, PointReference, Strains};
 pub use point_batch::PointBatch;

@@ -40,7 +40,7 @@ pub struct PointReference {
     /// Whether the layers are not symmetric, so that membrane and bending strains act on each other.
     pub(super) coupled: bool,
     /// Strains that have no energy.
-    free: Strains,
+    pub(super) free: Strains,
 }
 
 /// Strains at a point in the parameter basis, order (11, 22, 12), engineering shear.

@@ -2,6 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `fields` | what can be shown of a shell, with names and units |
 //! | `samples` | a sampled surface |
 //! | `deformed_surface` | the deformed shell as one |
 //! | `camera`, `colour`, `ticks` | projection, colours, round numbers |
@@ -13,6 +14,7 @@
 mod camera;
 mod colour;
 mod deformed_surface;
+mod fields;
 mod mesh_history;
 mod mesh_picture;
 #[cfg(feature = "pictures")]
@@ -23,6 +25,7 @@ mod vtu;
 
 pub use camera::ViewDirection;
 pub use deformed_surface::deformed_surface;
+pub use fields::{Field, ShellFields, fields_of};
 pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};
 #[cfg(feature = "pictures")]

@@ -1,0 +1,250 @@
+//! Fields: what pictures, files and viewers can show of a shell, each with its name, its unit and its components.
+//!
+//! Strains and resultants are in the axes of the shell: e₁ along u of the undeformed surface, e₂ = n × e₁. Their values are those
+//! of the NURBS surface at the point asked for, not means of what elements integrate.
+
+use crate::model::{FreeStrains, NaturalState};
+use crate::scene::{Material, Scene};
+use crate::shell::{LocalPoint, gauss_legendre, layers, local_point, norm, principal};
+use crate::spline::{Grid, Mesh, Spans, mid_surface_point};
+use crate::state::State;
+
+/// A field of the shell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Its name in files, viewers and arguments.
+    pub name: String,
+    /// The unit of its values; empty where they have none.
+    pub unit: &'static str,
+    /// The names of its components, at most three.
+    pub components: &'static [&'static str],
+    /// What it is.
+    pub means: &'static str,
+    quantity: Quantity,
+}
+
+/// What a field is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Quantity {
+    Displacement,
+    MembraneStrain,
+    PrincipalMembraneStrain,
+    BendingStrain,
+    PrincipalBendingStrain,
+    LargestBendingStrain,
+    MembraneForce,
+    PrincipalMembraneForce,
+    BendingMoment,
+    PrincipalBendingMoment,
+    EnergyDensity,
+    Indicator,
+    ElementSize,
+    Thickness,
+    /// Strain of the layer with this number, from the bottom.
+    Ply(usize),
+}
+
+const XYZ: &[&str] = &["x", "y", "z"];
+const TENSOR: &[&str] = &["11", "22", "12"];
+const PRINCIPAL: &[&str] = &["1", "2"];
+const ALONG_AND_ACROSS: &[&str] = &["u", "v"];
+const SCALAR: &[&str] = &[""];
+
+/// A row of the list: name, unit, components, what it is.
+type Row = (&'static str, &'static str, &'static [&'static str], &'static str, Quantity);
+
+const FIELDS: [Row; 14] = [
+    ("displacement", "mm", XYZ, "displacement from the undeformed shell", Quantity::Displacement),
+    ("membrane_strain", "", TENSOR, "Green–Lagrange strains ε₁₁, ε₂₂, 2ε₁₂ of the surface", Quantity::MembraneStrain),
+    ("membrane_strain_principal", "", PRINCIPAL, "principal membrane strains", Quantity::PrincipalMembraneStrain),
+    ("bending_strain", "1/mm", TENSOR, "changes of curvature κ₁₁, κ₂₂, 2κ₁₂", Quantity::BendingStrain),
+    ("bending_strain_principal", "1/mm", PRINCIPAL, "principal changes of curvature", Quantity::PrincipalBendingStrain),
+    ("bending_strain_max", "1/mm", SCALAR, "the larger of |κ₁₁| along u and |κ₂₂| along v", Quantity::LargestBendingStrain),
+    ("membrane_force", "N/mm", TENSOR, "membrane forces n₁₁, n₂₂, n₁₂", Quantity::MembraneForce),
+    ("membrane_force_principal", "N/mm", PRINCIPAL, "principal membrane forces", Quantity::PrincipalMembraneForce),
+    ("bending_moment", "N·mm/mm", TENSOR, "bending moments m₁₁, m₂₂, m₁₂", Quantity::BendingMoment),
+    ("bending_moment_principal", "N·mm/mm", PRINCIPAL, "principal bending moments", Quantity::PrincipalBendingMoment),
+    ("energy_density", "N·mm/mm²", SCALAR, "strain energy per undeformed area", Quantity::EnergyDensity),
+    ("indicator", "", ALONG_AND_ACROSS, "refinement indicators |κ| h along u and v", Quantity::Indicator),
+    ("element_size", "mm", ALONG_AND_ACROSS, "undeformed lengths of the element through its middle", Quantity::ElementSize),
+    ("thickness", "mm", SCALAR, "thickness of the shell", Quantity::Thickness),
+];
+
+/// All fields of the shell of a scene: those of any shell, and the strains of every ply of a laminate.
+pub fn fields_of(scene: &Scene) -> Vec<Field> {
+    let of_row = |(name, unit, components, means, quantity): Row| Field {
+        name: name.to_owned(),
+        unit,
+        components,
+        means,
+        quantity,
+    };
+    let plies = match &scene.material {
+        Material::Laminate { plies, .. } => plies.len(),
+        Material::Isotropic { .. } | Material::Orthotropic { .. } => 0,
+    };
+    let of_ply = |ply: usize| Field {
+        name: format!("ply_{}_strain", ply + 1),
+        unit: "",
+        components: TENSOR,
+        means: "strains along the ply's fibres, across them and in shear (2ε₁₂), at that face of the ply where they are larger; \
+                plies are counted from the bottom",
+        quantity: Quantity::Ply(ply),
+    };
+    FIELDS.into_iter().map(of_row).chain((0..plies).map(of_ply)).collect()
+}
+
+impl Field {
+    /// The name with the unit, as axes and colour bars have it.
+    pub fn title(&self) -> String {
+        let name = self.name.replace('_', " ");
+        if self.unit.is_empty() { name } else { format!("{name} ({})", self.unit) }
+    }
+
+    /// The value at the image of a point in a plane of symmetry: across the length (`direction` 0, normal to x) or through the apex
+    /// (1, normal to y). The axes of the image continue those of the shell.
+    pub fn mirrored(&self, mut value: [f64; 3], direction: usize) -> [f64; 3] {
+        match self.quantity {
+            Quantity::Displacement => value[direction] = -value[direction],
+            Quantity::MembraneStrain
+            | Quantity::BendingStrain
+            | Quantity::MembraneForce
+            | Quantity::BendingMoment
+            | Quantity::Ply(_) => value[2] = -value[2],
+            _ => {}
+        }
+        value
+    }
+}
+
+/// The fields of a shell in a state.
+#[derive(Debug)]
+pub struct ShellFields<'a> {
+    scene: &'a Scene,
+    mesh: &'a Mesh,
+    displacement: &'a [[f64; 3]],
+    natural: Option<NaturalState>,
+    spans: [Spans; 2],
+    /// Undeformed lengths of the elements through their middles, mm, the second direction fastest.
+    lengths: Vec<[f64; 2]>,
+    layers: Vec<([f64; 2], f64)>,
+}
+
+impl<'a> ShellFields<'a> {
+    /// The fields of a state of a scene.
+    pub fn new(scene: &'a Scene, state: &'a State) -> Self {
+        let mesh = &*state.mesh;
+        let spans = [0, 1].map(|direction| Spans::of(&mesh.knots[direction], mesh.degree[direction]));
+        Self {
+            scene,
+            mesh,
+            displacement: &state.displacement,
+            natural: FreeStrains::new(scene, mesh).at(state.parameter),
+            lengths: element_lengths(mesh, &spans),
+            spans,
+            layers: layers(&scene.material),
+        }
+    }
+
+    /// The components of a field at a point of the parameters (u, v); those beyond its number are 0.
+    pub fn value(&self, field: &Field, at: [f64; 2]) -> [f64; 3] {
+        let scalar = |value: f64| [value, 0.0, 0.0];
+        let tensor_of_strains = |[xx, yy, shear]: [f64; 3]| [xx, yy, 0.5 * shear];
+        let pair = |[one, two]: [f64; 2]| [one, two, 0.0];
+        match field.quantity {
+            Quantity::Displacement => {
+                let [to, from] = [self.displacement, &[]].map(|moved| mid_surface_point(self.mesh, moved, at).position);
+                [0, 1, 2].map(|c| to[c] - from[c])
+            }
+            Quantity::MembraneStrain => self.point(at).membrane,
+            Quantity::PrincipalMembraneStrain => pair(principal(tensor_of_strains(self.point(at).membrane))),
+            Quantity::BendingStrain => self.point(at).bending,
+            Quantity::PrincipalBendingStrain => pair(principal(tensor_of_strains(self.point(at).bending))),
+            Quantity::LargestBendingStrain => {
+                let [along, across] = self.bending_along_parameters(at);
+                scalar(along.max(across))
+            }
+            Quantity::MembraneForce => self.point(at).forces,
+            Quantity::PrincipalMembraneForce => pair(principal(self.point(at).forces)),
+            Quantity::BendingMoment => self.point(at).moments,
+            Quantity::PrincipalBendingMoment => pair(principal(self.point(at).moments)),
+            Quantity::EnergyDensity => scalar(self.point(at).energy),
+            Quantity::Indicator => {
+                let (strain, length) = (self.bending_along_parameters(at), self.lengths[self.element_at(at)]);
+                pair([strain[0] * length[0], strain[1] * length[1]])
+            }
+            Quantity::ElementSize => pair(self.lengths[self.element_at(at)]),
+            Quantity::Thickness => scalar(self.scene.material.thickness_mm()),
+            Quantity::Ply(ply) => {
+                let Some((heights, angle_deg)) = self.layers.get(ply) else { return [0.0; 3] };
+                let point = self.point(at);
+                let [bottom, top] = heights.map(|height| point.strains_at(height, *angle_deg));
+                [0, 1, 2].map(|i| if bottom[i].abs() > top[i].abs() { bottom[i] } else { top[i] })
+            }
+        }
+    }
+
+    /// Least and largest value of each component over some points, or `None` without a point.
+    pub fn range(&self, field: &Field, points: impl Iterator<Item = [f64; 2]>) -> Option<[[f64; 2]; 3]> {
+        let widened = |range: [[f64; 2]; 3], value: [f64; 3]| {
+            [0, 1, 2].map(|c| [range[c][0].min(value[c]), range[c][1].max(value[c])])
+        };
+        let ranges = points.map(|at| self.value(field, at).map(|value| [value; 2]));
+        ranges.reduce(|all, one| widened(widened(all, one.map(|range| range[0])), one.map(|range| range[1])))
+    }
+
+    /// Strains and resultants at a point.
+    fn point(&self, at: [f64; 2]) -> LocalPoint {
+        let undeformed = mid_surface_point(self.mesh, &[], at).derivatives;
+        let deformed = mid_surface_point(self.mesh, self.displacement, at).derivatives;
+        let moved = [0, 1, 2, 3, 4].map(|k| [0, 1, 2].map(|c| deformed[k][c] - undeformed[k][c]));
+        let free = self.natural.as_ref().map(|natural| &natural.strain);
+        local_point(&self.scene.material, undeformed, &moved, free)
+    }
+
+    /// |κ| per length along the parameter lines u and v.
+    fn bending_along_parameters(&self, at: [f64; 2]) -> [f64; 2] {
+        let [a1, a2, ..] = mid_surface_point(self.mesh, &[], at).derivatives;
+        let [k11, k22, twice_k12] = self.point(at).bending;
+        // The line of v leaves e₁ by the angle between A₁ and A₂.
+        let (s, c) = angle_between(a1, a2).sin_cos();
+        [k11.abs(), (c * c * k11 + s * s * k22 + c * s * twice_k12).abs()]
+    }
+
+    fn element_at(&self, at: [f64; 2]) -> usize {
+        let counts = [0, 1].map(|direction| self.spans[direction].count());
+        let place = [0, 1].map(|direction| {
+            let beyond = self.spans[direction].bounds.partition_point(|[_, to]| *to <= at[direction]);
+            beyond.min(counts[direction] - 1)
+        });
+        Grid::new(counts).index(place)
+    }
+}
+
+/// The angle between two vectors, radians.
+fn angle_between(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let cosine = (0..3).map(|c| a[c] * b[c]).sum::<f64>() / (norm(a) * norm(b));
+    cosine.clamp(-1.0, 1.0).acos()
+}
+
+/// Undeformed lengths of the elements through their middles, mm.
+fn element_lengths(mesh: &Mesh, spans: &[Spans; 2]) -> Vec<[f64; 2]> {
+    let rule = gauss_legendre(mesh.degree[0].max(mesh.degree[1]) + 1);
+    let elements = Grid::new([0, 1].map(|direction| spans[direction].count()));
+    (0..elements.len())
+        .map(|element| {
+            let place = elements.place(element);
+            let bounds = [0, 1].map(|direction| spans[direction].bounds[place[direction]]);
+            let middle = bounds.map(|[from, to]| 0.5 * (from + to));
+            [0, 1].map(|direction| {
+                let [from, to] = bounds[direction];
+                let speed = |[x, weight]: &[f64; 2]| {
+                    let mut at = middle;
+                    at[direction] = 0.5 * ((from + to) + x * (to - from));
+                    0.5 * (to - from) * weight * norm(mid_surface_point(mesh, &[], at).derivatives[direction])
+                };
+                rule.iter().map(speed).sum()
+            })
+        })
+        .collect()
+}
