@@ -11,6 +11,7 @@ mod connectivity;
 mod cured_plate;
 mod elastic_foundation;
 mod extreme;
+mod fields;
 mod foundation;
 mod free_strain;
 mod house;
