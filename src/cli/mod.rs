@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
+//! | `report` | runs as one page |
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
 //! | `calibrate` | the threshold at which a scene's mesh keeps an error |
@@ -36,6 +37,7 @@ mod probe_table;
 mod progress;
 mod recover;
 mod replay;
+mod report;
 mod resume;
 mod run;
 mod scene_file;
@@ -77,6 +79,7 @@ enum Command {
     Resume(resume::Arguments),
     Inspect(inspect::Arguments),
     Plot(plot::Arguments),
+    Report(report::Arguments),
     Replay(replay::Arguments),
     Bisect(bisect::Arguments),
     Stability(stability::Arguments),
@@ -99,7 +102,12 @@ impl Command {
         // Commands that compute without an argument for the number of threads.
         if matches!(
             self,
-            Command::Plot(_) | Command::Bisect(_) | Command::Stability(_) | Command::Recover(_) | Command::Converge(_)
+            Command::Plot(_)
+                | Command::Report(_)
+                | Command::Bisect(_)
+                | Command::Stability(_)
+                | Command::Recover(_)
+                | Command::Converge(_)
         ) {
             session::use_threads(None)?;
         }
@@ -108,6 +116,7 @@ impl Command {
             Command::Resume(arguments) => arguments.run().map(|()| 0),
             Command::Inspect(arguments) => arguments.run().map(|()| 0),
             Command::Plot(arguments) => arguments.run().map(|()| 0),
+            Command::Report(arguments) => arguments.run().map(|()| 0),
             Command::Replay(arguments) => arguments.run(),
             Command::Bisect(arguments) => arguments.run(),
             Command::Stability(arguments) => arguments.run().map(|()| 0),

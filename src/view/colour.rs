@@ -2,7 +2,7 @@
 //! (S. van der Walt and N. Smith, for matplotlib, 2015; CC0).
 
 /// Sixteen equidistant colours of the map; between them linear in sRGB, which is off by less than 2 of 255.
-const VIRIDIS: [u32; 16] = [
+pub(super) const VIRIDIS: [u32; 16] = [
     0x44_01_54, 0x48_1a_6c, 0x47_2f_7d, 0x41_44_87, 0x39_56_8c, 0x31_68_8e, 0x2a_78_8e, 0x23_88_8e, 0x1f_98_8b,
     0x22_a8_84, 0x35_b7_79, 0x54_c5_68, 0x7a_d1_51, 0xa5_db_36, 0xd2_e2_1b, 0xfd_e7_25,
 ];

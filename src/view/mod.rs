@@ -9,6 +9,7 @@
 //! | `plot` | curves |
 //! | `mesh_picture` | the mesh as a picture |
 //! | `mesh_history` | the mesh for viewers of logs |
+//! | `report` | runs as a page |
 //! | `vtu` | the mesh for ParaView |
 
 mod camera;
@@ -19,6 +20,7 @@ mod mesh_history;
 mod mesh_picture;
 #[cfg(feature = "pictures")]
 mod plot;
+mod report;
 mod samples;
 mod ticks;
 mod vtu;
@@ -30,5 +32,6 @@ pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};
 #[cfg(feature = "pictures")]
 pub use plot::{PlotError, load_probe_plot, moment_rotation_plot};
+pub use report::{FrameAt, ReportedRun, Shape, Told, chosen_frames, report_page};
 pub use samples::{SamplesError, SurfaceSamples};
 pub use vtu::vtu;

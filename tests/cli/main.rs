@@ -6,6 +6,7 @@ mod extremes;
 mod folded;
 mod pictures;
 mod progress;
+mod report;
 mod stability;
 mod stages;
 mod study;

@@ -1,0 +1,98 @@
+//! `foldline report`: runs as one page.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::{EXIT_CODES, Failure};
+use super::log_file::read_log;
+use super::output::{file_name, path_in_line, print, write_files};
+use crate::history::States;
+use crate::journal::Manifest;
+use crate::record::{Outcome, Record};
+use crate::scene::Parameter;
+use crate::view::{FrameAt, PlotError, ReportedRun, Shape, Told, chosen_frames, report_page};
+
+/// Write a page about runs that needs no network: curves with critical points, the deformed shell to be turned and played, the
+/// mesh, time, energies, scenes and hashes
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub(super) struct Arguments {
+    /// Logs to read (MCAP); several are drawn in one picture
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+    /// Page to write [default: the first log's name with .html]
+    #[arg(short, long, value_name = "FILE", value_parser = file_name())]
+    output: Option<PathBuf>,
+}
+
+impl Arguments {
+    /// Reads the logs, writes the page, and names it.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let Self { logs, output } = self;
+        let output = output.unwrap_or_else(|| logs[0].with_extension("html"));
+        let runs: Vec<ReportedRun> = logs.iter().map(|log| reported(log)).collect::<Result<_, _>>()?;
+        let names: Vec<String> = logs.iter().map(|log| name_of(log)).collect();
+        let page = report_page(&names.join(", "), &runs).map_err(|cause| PlotError::Drawing(cause.to_string()))?;
+        write_files(&[(output.clone(), page.into_bytes())])?;
+        print(&format!("{}\n", path_in_line(&output)))
+    }
+}
+
+/// What the page shows of a log.
+fn reported(path: &Path) -> Result<ReportedRun, Failure> {
+    let read = read_log(path)?.whole(path)?;
+    let records = read.records_of_scene(path)?;
+    let last = records.last().ok_or(PlotError::NoEquilibrium)?;
+    let settled = settled(&records);
+    if settled.is_empty() {
+        return Err(PlotError::NoEquilibrium.into());
+    }
+    let steps: Vec<u64> = settled.iter().map(|index| records[*index].report.step).collect();
+    let jumped = |step: u64| records.iter().any(|record| record.report.step == step && record.report.jumped);
+    let chosen = chosen_frames(&steps, |step| jumped(step) || jumped(step + 1));
+    let mut states = States::of(&read.log);
+    let mut frames = Vec::new();
+    for index in settled.into_iter().filter(|index| chosen.contains(&records[*index].report.step)) {
+        let wrong = |source| Failure::WrongLog { log: path.to_path_buf(), source: Box::new(source) };
+        let state = states.at(index).map_err(wrong)?;
+        let label = Parameter::of(&read.scene).shown_short(state.parameter);
+        frames.push(FrameAt { step: state.step, label, state });
+    }
+    let mut origin = vec![
+        ("log".to_owned(), path_in_line(path)),
+        ("scene hash".to_owned(), last.commit.scene_hash.to_string()),
+        ("last chain hash".to_owned(), last.commit.chain_hash.to_string()),
+    ];
+    origin.extend(read.log.manifests().iter().next_back().map(machine).into_iter().flatten());
+    let scene_text = read.log.manifests().iter().next_back().map_or_else(String::new, |made| made.scene_text.clone());
+    let told = Told { name: name_of(path), scene_text, origin };
+    Ok(ReportedRun::new(&read.scene, &records, told, Shape::new(&read.scene, &frames)))
+}
+
+/// Indices of the last equilibrium of every load step.
+fn settled(records: &[Record]) -> Vec<usize> {
+    let is_equilibrium =
+        |record: &Record| record.report.outcome == Outcome::Done && record.report.stage.finds_equilibrium();
+    let mut found: Vec<usize> = Vec::new();
+    for (index, record) in records.iter().enumerate().filter(|(_, record)| is_equilibrium(record)) {
+        match found.last_mut().filter(|last| records[**last].report.step == record.report.step) {
+            Some(last) => *last = index,
+            None => found.push(index),
+        }
+    }
+    found
+}
+
+fn machine(made: &Manifest) -> Vec<(String, String)> {
+    let row = |name: &str, value: String| (name.to_owned(), value);
+    vec![
+        row("program", format!("foldline {}, numerics {}", made.program_version, made.numerics)),
+        row("machine", format!("{} ({}), {} threads", made.host, made.cpu, made.threads)),
+        row("kernel", made.kernel.clone()),
+    ]
+}
+
+fn name_of(log: &Path) -> String {
+    log.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}

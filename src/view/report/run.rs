@@ -1,0 +1,143 @@
+//! What the page shows of a run.
+
+use serde::Serialize;
+
+use super::shape::Shape;
+use crate::record::{Parameter, Record};
+use crate::scene::{Parameter as Driven, Scene};
+use crate::study::{Summary, equilibrium_path};
+
+/// A run, as the page has it.
+#[derive(Clone, Debug, Serialize)]
+pub struct ReportedRun {
+    /// Its name.
+    name: String,
+    /// The summary, as the program prints it.
+    summary: String,
+    /// The text of its scene.
+    scene: String,
+    /// Hashes, program and machine: a name and a value each.
+    origin: Vec<(String, String)>,
+    /// Name of the parameter, with its unit.
+    parameter: &'static str,
+    /// Name of what is drawn over it, with its unit.
+    quantity: String,
+    points: Vec<Point>,
+    snaps: Vec<String>,
+    stages: Vec<Stage>,
+    shape: Option<Shape>,
+}
+
+/// What a log tells of itself.
+#[derive(Clone, Debug, Default)]
+pub struct Told {
+    /// Name of the log.
+    pub name: String,
+    /// The text of its scene.
+    pub scene_text: String,
+    /// Hashes, program and machine: a name and a value each.
+    pub origin: Vec<(String, String)>,
+}
+
+/// The last equilibrium of a load step, with the size of its mesh and the time until then.
+#[derive(Clone, Debug, Serialize)]
+struct Point {
+    step: u64,
+    at: f64,
+    value: Option<f64>,
+    energy: f64,
+    elements: [usize; 2],
+    unknowns: usize,
+    stable: bool,
+    jumped: bool,
+    critical: Option<String>,
+    wall_s: f64,
+    iterations: usize,
+}
+
+/// The work of one kind of stage.
+#[derive(Clone, Debug, Serialize)]
+struct Stage {
+    name: &'static str,
+    runs: usize,
+    iterations: usize,
+    factorizations: usize,
+    wall_s: f64,
+}
+
+impl ReportedRun {
+    /// Gathers what the page shows of the records of a run of `scene`.
+    pub fn new(scene: &Scene, records: &[Record], told: Told, shape: Option<Shape>) -> Self {
+        let summary = Summary::new(scene, records);
+        let turns = scene.end_rotation().is_some();
+        let quantity = match scene.probes.first() {
+            _ if turns => "moment of each end (N·mm)".to_owned(),
+            Some(probe) => {
+                let reading = records.iter().rev().find_map(|record| record.report.probes.first());
+                format!("{} ({})", probe.name, reading.map_or("", |reading| reading.unit.as_ref()))
+            }
+            None => "strain energy (N·mm)".to_owned(),
+        };
+        let stages = summary.work.iter().map(|work| Stage {
+            name: work.stage.name(),
+            runs: work.runs,
+            iterations: work.iterations,
+            factorizations: work.factorizations,
+            wall_s: work.wall_s,
+        });
+        let snaps = summary.snaps.iter().map(|snap| {
+            let released =
+                snap.energy_released_n_mm.map_or(String::new(), |energy| format!(", released {energy:.4} N·mm"));
+            let [from, to] = [snap.before, snap.after].map(|at| Driven::of(scene).shown_short(at));
+            format!("{from} to {to}: {:.3} → {:.3}{released}", snap.moment_before_n_mm, snap.moment_after_n_mm)
+        });
+        Self {
+            name: told.name,
+            summary: summary.to_string(),
+            scene: told.scene_text,
+            origin: told.origin,
+            parameter: match Driven::of(scene) {
+                Parameter::Rotation => "rotation of each end (°)",
+                Parameter::LoadFactor => "load factor",
+            },
+            quantity,
+            points: points(records, turns, scene.probes.is_empty()),
+            snaps: snaps.collect(),
+            stages: stages.collect(),
+            shape,
+        }
+    }
+}
+
+fn points(records: &[Record], turns: bool, unprobed: bool) -> Vec<Point> {
+    let spent_until = |step: u64| {
+        let until = records.iter().take_while(|record| record.report.step <= step);
+        until.fold((0.0, 0), |(wall, iterations), record| (wall + record.wall_s, iterations + record.report.iterations))
+    };
+    let unknowns_at = |step: u64| {
+        records.iter().rev().find(|record| record.report.step == step).map_or(0, |record| record.report.unknowns)
+    };
+    equilibrium_path(records)
+        .iter()
+        .map(|point| {
+            let (wall_s, iterations) = spent_until(point.step);
+            Point {
+                step: point.step,
+                at: point.parameter,
+                value: match (turns, unprobed) {
+                    (true, _) => Some(point.moment_n_mm),
+                    (false, true) => Some(point.strain_energy_n_mm),
+                    (false, false) => point.probe,
+                },
+                energy: point.strain_energy_n_mm,
+                elements: point.elements,
+                unknowns: unknowns_at(point.step),
+                stable: point.negative_pivots == 0,
+                jumped: point.jumped,
+                critical: point.passed.map(|passed| passed.critical.in_words().to_string()),
+                wall_s,
+                iterations,
+            }
+        })
+        .collect()
+}
