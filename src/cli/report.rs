@@ -30,6 +30,9 @@ impl Arguments {
     /// Reads the logs, writes the page, and names it.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { logs, output } = self;
+        if let Some(study) = logs.iter().find(|path| path.extension().is_some_and(|extension| extension == "toml")) {
+            return Err(Failure::StudyIsNoLog { study: study.clone() });
+        }
         let output = output.unwrap_or_else(|| logs[0].with_extension("html"));
         let runs: Vec<ReportedRun> = logs.iter().map(|log| reported(log)).collect::<Result<_, _>>()?;
         let names: Vec<String> = logs.iter().map(|log| name_of(log)).collect();

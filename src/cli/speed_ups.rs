@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::failure::Failure;
-use super::output::{eprint, path_in_line, print, print_json};
+use super::output::{eprint, path_in_line, print, print_json, refuse_what_is_there, write_files};
 use super::scene_file::{read_text, rendered};
 use super::session::watch_signals;
 use crate::scene::Scene;
@@ -14,6 +14,7 @@ use crate::study::{
     AccuracyRow, Archive, Errors, Measured, MeshPoint, Planned, Purpose, Role, SpeedUp, Structure, StudyError,
     StudyFile, TaskError, error_of_finer, is_comparable, speed_up,
 };
+use crate::view::study_page;
 
 /// Width of names of runs in tables.
 const NAME: usize = 22;
@@ -27,6 +28,8 @@ struct Running<'r> {
     json: bool,
     failed: usize,
     runs: usize,
+    /// What was found so far, as JSON has it.
+    rows: Vec<Value>,
 }
 
 /// A run with its errors against the reference.
@@ -37,12 +40,21 @@ struct Found {
 }
 
 /// Runs study files one after another, with settings laid over all their scenes. All of them are checked before the first run.
-pub(super) fn run(files: &[PathBuf], set: &[String], logs: &Path, threads: usize, json: bool) -> Result<(), Failure> {
+/// `page` is written at their end.
+pub(super) fn run(
+    files: &[PathBuf],
+    set: &[String],
+    logs: &Path,
+    threads: usize,
+    json: bool,
+    page: Option<&PathBuf>,
+) -> Result<(), Failure> {
+    refuse_what_is_there(page)?;
     let raised = watch_signals()?;
     let studies = files.iter().map(|file| planned(file, set)).collect::<Result<Vec<_>, _>>()?;
     let archive = Archive::open(logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
     let interrupted = || raised.load(Ordering::Relaxed);
-    let mut running = Running { archive, interrupted: &interrupted, json, failed: 0, runs: 0 };
+    let mut running = Running { archive, interrupted: &interrupted, json, failed: 0, runs: 0, rows: Vec::new() };
     for (study, planned) in &studies {
         if !json {
             print(&format!("{}\n", study.title))?;
@@ -50,6 +62,11 @@ pub(super) fn run(files: &[PathBuf], set: &[String], logs: &Path, threads: usize
         for (structure, planned) in study.structure.iter().zip(planned) {
             running.structure(study, structure, planned)?;
         }
+    }
+    if let Some(page) = page {
+        let titles: Vec<&str> = studies.iter().map(|(study, _)| &study.title[..]).collect();
+        write_files(&[(page.clone(), study_page(&titles.join("; "), &running.rows).into_bytes())])?;
+        eprint(&format!("the page of the study: {}", path_in_line(page)));
     }
     match running.failed {
         0 => Ok(()),
@@ -129,6 +146,15 @@ impl Running<'_> {
         measured.map(Some).map_err(|error| in_full(&error))
     }
 
+    /// Takes a row, and prints it where JSON is wanted; returns whether it was.
+    fn told(&mut self, row: Value) -> Result<bool, Failure> {
+        if self.json {
+            print_json(&row)?;
+        }
+        self.rows.push(row);
+        Ok(self.json)
+    }
+
     fn show_head(&self, structure: &Structure, quantity: &str) -> Result<(), Failure> {
         if self.json {
             return Ok(());
@@ -152,20 +178,26 @@ impl Running<'_> {
     }
 
     /// A row. Errors below those of the reference itself are not told apart.
-    fn show(&self, structure: &Structure, planned: &Planned, row: &AccuracyRow, own: Errors) -> Result<(), Failure> {
+    fn show(
+        &mut self,
+        structure: &Structure,
+        planned: &Planned,
+        row: &AccuracyRow,
+        own: Errors,
+    ) -> Result<(), Failure> {
         let timed = planned.role.purpose() == Purpose::Time;
-        if self.json {
-            let role = match planned.role {
-                Role::Reference => "reference",
-                Role::Coarser => "coarser-reference",
-                Role::Uniform(_) => "uniform",
-                Role::Adaptive(_) => "adaptive",
-            };
-            let hash = planned.scene.hash().to_string();
-            return print_json(&json!({
-                "structure": structure.name, "run": planned.label, "role": role, "scene": hash,
-                "degree": planned.scene.mesh.degree, "row": row,
-            }));
+        let role = match planned.role {
+            Role::Reference => "reference",
+            Role::Coarser => "coarser-reference",
+            Role::Uniform(_) => "uniform",
+            Role::Adaptive(_) => "adaptive",
+        };
+        let hash = planned.scene.hash().to_string();
+        if self.told(json!({
+            "structure": structure.name, "run": planned.label, "role": role, "scene": hash,
+            "degree": planned.scene.mesh.degree, "row": row,
+        }))? {
+            return Ok(());
         }
         let percent = |error: Option<f64>, own: Option<f64>| match (error, own) {
             _ if planned.role == Role::Reference => String::new(),
@@ -192,18 +224,18 @@ impl Running<'_> {
     }
 
     /// What the reference itself is off by.
-    fn show_own(&self, structure: &Structure, own: Errors) -> Result<(), Failure> {
-        if self.json {
-            return print_json(&json!({ "structure": structure.name, "error_of_reference": own }));
+    fn show_own(&mut self, structure: &Structure, own: Errors) -> Result<(), Failure> {
+        if self.told(json!({ "structure": structure.name, "error_of_reference": own }))? {
+            return Ok(());
         }
         let percent = |own: Option<f64>| own.map_or_else(String::new, |own| format!("{:.3} %", 100.0 * own));
         let (name, [before, behind]) = ("so that the reference is off by", own.map(percent));
         print(&format!("{name:<WIDTH_TO_ERRORS$} {before:>8} {:>7} {behind:>8}\n", ""))
     }
 
-    fn show_failure(&self, structure: &Structure, planned: &Planned, why: &str) -> Result<(), Failure> {
-        if self.json {
-            return print_json(&json!({ "structure": structure.name, "run": planned.label, "error": why }));
+    fn show_failure(&mut self, structure: &Structure, planned: &Planned, why: &str) -> Result<(), Failure> {
+        if self.told(json!({ "structure": structure.name, "run": planned.label, "error": why }))? {
+            return Ok(());
         }
         print(&format!("{:<NAME$} failed\n", planned.label))?;
         eprint(&format!("{}, {}: {why}", structure.name, planned.label));
@@ -211,7 +243,7 @@ impl Running<'_> {
     }
 
     fn show_speed_ups(
-        &self,
+        &mut self,
         study: &StudyFile,
         structure: &Structure,
         found: &[Found],
@@ -231,12 +263,11 @@ impl Running<'_> {
         for adaptive in found.iter().filter(|found| matches!(found.role, Role::Adaptive(_))) {
             let of_columns: Vec<Option<SpeedUp>> =
                 columns.iter().map(|column| speed_up(&adaptive.point, &families_of(column), own)).collect();
-            if self.json {
-                let named: serde_json::Map<_, _> =
-                    columns.iter().zip(&of_columns).map(|(name, found)| (name.to_string(), json!(found))).collect();
-                print_json(&json!({
-                    "structure": structure.name, "run": adaptive.label, "speed_up": named, "published": structure.published,
-                }))?;
+            let named: serde_json::Map<_, _> =
+                columns.iter().zip(&of_columns).map(|(name, found)| (name.to_string(), json!(found))).collect();
+            if self.told(json!({
+                "structure": structure.name, "run": adaptive.label, "speed_up": named, "published": structure.published,
+            }))? {
                 continue;
             }
             let shown = of_columns.iter().map(|found| format!(" {:>13}", in_words(found))).collect::<String>();

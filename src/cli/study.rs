@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{eprint, path_in_line, print, print_json};
+use super::output::{eprint, file_name, path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
 use super::speed_ups;
@@ -40,6 +40,9 @@ pub(super) struct Arguments {
     /// Print a JSON object for each run
     #[arg(long)]
     json: bool,
+    /// Write a page about the study files at the end: errors against run times, and tables
+    #[arg(long, value_name = "FILE", conflicts_with = "against", value_parser = file_name())]
+    report: Option<PathBuf>,
 }
 
 /// A setting with the values that it takes.
@@ -75,8 +78,8 @@ impl Arguments {
     pub(super) fn run(self) -> Result<(), Failure> {
         let threads = use_threads(self.threads.map(usize::from))?;
         let Some(against) = &self.against else {
-            let Self { scenes, set, logs, json, .. } = self;
-            return speed_ups::run(&scenes, &set, &logs, threads, json);
+            let Self { scenes, set, logs, json, report, .. } = self;
+            return speed_ups::run(&scenes, &set, &logs, threads, json, report.as_ref());
         };
         let cases = self.cases()?;
         let name = path_in_line(against);

@@ -32,6 +32,6 @@ pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};
 #[cfg(feature = "pictures")]
 pub use plot::{PlotError, load_probe_plot, moment_rotation_plot};
-pub use report::{FrameAt, ReportedRun, Shape, Told, chosen_frames, report_page};
+pub use report::{FrameAt, ReportedRun, Shape, Told, chosen_frames, report_page, study_page};
 pub use samples::{SamplesError, SurfaceSamples};
 pub use vtu::vtu;

@@ -44,6 +44,20 @@ fn place() -> Sandbox {
     place
 }
 
+/// The page holds the rows that the study prints; it is written last, and over nothing.
+#[test]
+fn the_page_of_a_study_holds_its_rows() {
+    let place = place();
+    let printed = place.foldline(&format!("{COMMAND} --report page.html")).ends(0).out;
+    let page = String::from_utf8(std::fs::read(place.file("page.html")).unwrap()).unwrap();
+    let (_, rest) = page.split_once("id=\"data\">").unwrap();
+    let held: Vec<Value> = serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap();
+    let rows: Vec<Value> = printed.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(held, rows);
+    place.foldline(&format!("{COMMAND} --report page.html")).ends(2).says(&["page.html exists"]);
+    place.foldline("report study.toml").ends(2).says(&["study.toml is no log", "--report"]);
+}
+
 /// The rows of a study without what differs between two runs of it.
 fn rows(text: &str) -> Vec<Value> {
     let timeless = |line: &str| {

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `run` | what the page shows of a run |
 //! | `shape` | the deformed shell over the load steps |
-//! | `page.html`, `page.css`, `page.js` | the page |
+//! | `page.html`, `page.js`, `study.html`, `study.js`, `page.css` | the page of runs, that of a study, the looks of both |
 //! | `vendor` | libraries that it is drawn with, and their licences |
 
 mod run;
@@ -14,11 +14,12 @@ mod shape;
 pub use run::{ReportedRun, Told};
 pub use shape::{FrameAt, Shape, chosen_frames};
 
+use serde_json::Value;
+
+use super::mesh_picture::escaped;
 use crate::printable::one_line;
 
-const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
 const CHARTS: &str = include_str!("vendor/chart.js");
 const SOLIDS: &str = include_str!("vendor/three.js");
 
@@ -27,20 +28,37 @@ const SOLIDS: &str = include_str!("vendor/three.js");
 /// # Errors
 /// Where a number of a run cannot be written as JSON.
 pub fn report_page(title: &str, runs: &[ReportedRun]) -> Result<String, serde_json::Error> {
+    let data = serde_json::to_string(runs)?;
+    Ok(filled(include_str!("page.html"), title, &data, include_str!("page.js")))
+}
+
+/// The page of a study: errors against run times, and tables. `rows` are what `foldline study --json` prints.
+pub fn study_page(title: &str, rows: &[Value]) -> String {
+    filled(include_str!("study.html"), title, &Value::from(rows).to_string(), include_str!("study.js"))
+}
+
+/// A page with its title, styles, libraries, data and script in their places.
+fn filled(page: &str, title: &str, data: &str, script: &str) -> String {
     // No text of a scene or a log can end the element that holds the data.
-    let data = serde_json::to_string(runs)?.replace('<', "\\u003c");
-    let title = super::mesh_picture::escaped(&one_line(title));
-    let parts = [("title", &title[..]), ("style", STYLE), ("charts", CHARTS), ("solids", SOLIDS), ("script", SCRIPT)];
-    let mut page = String::with_capacity(data.len() + CHARTS.len() + SOLIDS.len() + 40_000);
-    for piece in PAGE.split("{{") {
+    let data = data.replace('<', "\\u003c");
+    let title = escaped(&one_line(title));
+    let part = |name: &str| match name {
+        "title" => &title[..],
+        "style" => STYLE,
+        "charts" => CHARTS,
+        "solids" => SOLIDS,
+        "script" => script,
+        _ => &data[..],
+    };
+    let mut text = String::with_capacity(data.len() + CHARTS.len() + SOLIDS.len());
+    for piece in page.split("{{") {
         match piece.split_once("}}") {
-            None => page.push_str(piece),
+            None => text.push_str(piece),
             Some((name, rest)) => {
-                let part = parts.iter().find(|(known, _)| *known == name).map_or(&data[..], |(_, part)| part);
-                page.push_str(part);
-                page.push_str(rest);
+                text.push_str(part(name));
+                text.push_str(rest);
             }
         }
     }
-    Ok(page)
+    text
 }
