@@ -6,7 +6,7 @@ use plotters::coord::cartesian::Cartesian2d;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::coord::types::RangedCoordf64;
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
-use plotters::element::{Circle, DashedPathElement, PathElement, Text};
+use plotters::element::{Circle, Cross, DashedPathElement, PathElement, Text};
 use plotters::prelude::SVGBackend;
 use plotters::series::{DashedLineSeries, LineSeries};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -52,9 +52,11 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for PlotE
 const LARGEST: f64 = 1e30;
 const SHORTEST: f64 = 1e-12;
 
-const SIZE: (u32, u32) = (1000, 760);
-const UPPER_HEIGHT: u32 = 500;
-const LEFT: u32 = 70;
+/// Units of the drawing in a pixel: it is drawn in whole ones, and a curve in whole pixels wobbles.
+const PX: u32 = 20;
+const SIZE: (u32, u32) = (1000 * PX, 760 * PX);
+const UPPER_HEIGHT: u32 = 500 * PX;
+const LEFT: u32 = 70 * PX;
 const FONT: &str = "DejaVu Sans, Helvetica, Arial, sans-serif";
 
 const INK: RGBColor = RGBColor(0x1a, 0x1a, 0x1a);
@@ -86,7 +88,7 @@ pub fn moment_rotation_plot(scene: &Scene, records: &[Record], title: &str) -> R
         draw_elements(&lower, &path, end_deg)?;
         root.present()?;
     }
-    Ok(svg)
+    Ok(in_pixels(&svg, SIZE))
 }
 
 /// Refuses numbers that have no place on an axis.
@@ -123,30 +125,30 @@ fn draw_moment(
 
     let mut chart = ChartBuilder::on(area)
         .caption(one_line(title), text(19))
-        .margin(16)
-        .margin_right(28)
-        .x_label_area_size(28)
+        .margin(16 * PX)
+        .margin_right(28 * PX)
+        .x_label_area_size(28 * PX)
         .y_label_area_size(LEFT)
         .build_cartesian_2d(0.0..end_deg, 1.08 * lowest..1.08 * highest)?;
     draw_axes(&mut chart, None, "end moment M (N·mm)")?;
 
-    let dashes = DashedLineSeries::new(law.clone(), 7, 5, line(LAW, 2));
+    let dashes = DashedLineSeries::new(law.clone(), 7 * PX, 5 * PX, line(LAW, 2));
     chart
         .draw_series(dashes)?
         .label("Wuest 1954, uniform curvature")
-        .legend(|(x, y)| DashedPathElement::new([(x, y), (x + 22, y)], 7, 5, line(LAW, 2)));
+        .legend(|(x, y)| DashedPathElement::new([(x, y), (x + 22 * PX as i32, y)], 7 * PX, 5 * PX, line(LAW, 2)));
     if let Some(plateau) = spring.plateau() {
         let level = plateau.moment_n_mm;
         chart
             .draw_series(LineSeries::new([(0.0, level), (end_deg, level)], line(PLATEAU, 2)))?
             .label(format!("equal-energy plateau, {level:.2} N·mm"))
-            .legend(|(x, y)| PathElement::new(vec![(x, y), (x + 22, y)], line(PLATEAU, 2)));
+            .legend(|(x, y)| PathElement::new(vec![(x, y), (x + 22 * PX as i32, y)], line(PLATEAU, 2)));
     }
     draw_path(&mut chart, path, &measured)?;
     for snap in snaps(records) {
         let (from, to) = ((snap.before, snap.moment_before_n_mm), (snap.after, snap.moment_after_n_mm));
-        chart.draw_series(DashedLineSeries::new([from, to], 3, 4, line(SNAP, 1)))?;
-        chart.draw_series([from, to].map(|end| Circle::new(end, 4, line(SNAP, 2))))?;
+        chart.draw_series(DashedLineSeries::new([from, to], 3 * PX, 4 * PX, line(SNAP, 1)))?;
+        chart.draw_series([from, to].map(|end| Circle::new(end, 4 * PX, line(SNAP, 2))))?;
         // On the side of the jump that has room.
         let (side, shift) = if from.0 > 0.6 * end_deg { (HPos::Right, -0.012) } else { (HPos::Left, 0.012) };
         let style = text(14).color(&SNAP).pos(Pos::new(side, VPos::Center));
@@ -159,11 +161,11 @@ fn draw_moment(
     chart
         .configure_series_labels()
         .position(free_corner)
-        .margin(12)
-        .legend_area_size(34)
+        .margin(12 * PX)
+        .legend_area_size(34 * PX)
         .label_font(text(14))
         .background_style(WHITE.mix(0.9))
-        .border_style(GRID)
+        .border_style(line(GRID, 1))
         .draw()?;
     Ok(())
 }
@@ -181,9 +183,10 @@ fn draw_axes(chart: &mut Chart, along: Option<String>, upwards: &str) -> Result<
         .y_label_formatter(&|value| short(*value))
         .label_style(text(14))
         .axis_desc_style(text(15))
-        .axis_style(INK)
-        .bold_line_style(GRID)
-        .light_line_style(WHITE)
+        .axis_style(line(INK, 1))
+        .bold_line_style(line(GRID, 1))
+        .set_all_tick_mark_size(5 * PX)
+        .light_line_style(line(WHITE, 1))
         .draw()?;
     Ok(())
 }
@@ -210,23 +213,41 @@ fn draw_path(chart: &mut Chart, path: &[PathPoint], points: &[(f64, f64)]) -> Re
         if kind(from) {
             let series = chart.draw_series(LineSeries::new(stretch, line(MEASURED, 2)))?;
             if !std::mem::replace(&mut told[0], true) {
-                series.label("this run").legend(|(x, y)| PathElement::new([(x, y), (x + 22, y)], line(MEASURED, 2)));
+                series
+                    .label("this run")
+                    .legend(|(x, y)| PathElement::new([(x, y), (x + 22 * PX as i32, y)], line(MEASURED, 2)));
             }
         } else {
-            let series = chart.draw_series(DashedLineSeries::new(stretch, 5, 4, line(SNAP, 2)))?;
+            let series = chart.draw_series(DashedLineSeries::new(stretch, 5 * PX, 4 * PX, line(SNAP, 2)))?;
             if !std::mem::replace(&mut told[1], true) {
-                series
-                    .label("unstable equilibria")
-                    .legend(|(x, y)| DashedPathElement::new([(x, y), (x + 22, y)], 5, 4, line(SNAP, 2)));
+                series.label("unstable equilibria").legend(|(x, y)| {
+                    DashedPathElement::new([(x, y), (x + 22 * PX as i32, y)], 5 * PX, 4 * PX, line(SNAP, 2))
+                });
             }
         }
         from = to;
     }
     let dot = |(index, point): (usize, &(f64, f64))| {
         let colour = if stable(index) { MEASURED } else { SNAP };
-        Circle::new(*point, 2, colour.filled())
+        Circle::new(*point, 2 * PX, colour.filled())
     };
     chart.draw_series(points.iter().enumerate().skip(1).map(dot))?;
+    let passed = |limit_point: bool| {
+        let of_points = points.iter().skip(1).zip(path);
+        of_points.filter_map(move |(point, of_path)| {
+            of_path.passed.filter(|passed| passed.critical.limit_point == limit_point).map(|_| *point)
+        })
+    };
+    if passed(true).next().is_some() {
+        let ring = |at: (f64, f64)| Circle::new(at, 5 * PX, line(SNAP, 2));
+        let legend = |(x, y): (i32, i32)| Circle::new((x + 11 * PX as i32, y), 5 * PX, line(SNAP, 2));
+        chart.draw_series(passed(true).map(ring))?.label("limit point").legend(legend);
+    }
+    if passed(false).next().is_some() {
+        let cross = |at: (f64, f64)| Cross::new(at, 5 * PX, line(SNAP, 2));
+        let legend = |(x, y): (i32, i32)| Cross::new((x + 11 * PX as i32, y), 5 * PX, line(SNAP, 2));
+        chart.draw_series(passed(false).map(cross))?.label("bifurcation").legend(legend);
+    }
     Ok(())
 }
 
@@ -259,13 +280,13 @@ pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result
     };
     let mut svg = String::new();
     {
-        let root = SVGBackend::with_string(&mut svg, (SIZE.0, UPPER_HEIGHT + 40)).into_drawing_area();
+        let root = SVGBackend::with_string(&mut svg, (SIZE.0, UPPER_HEIGHT + 40 * PX)).into_drawing_area();
         root.fill(&WHITE)?;
         let mut chart = ChartBuilder::on(&root)
             .caption(one_line(title), text(19))
-            .margin(16)
-            .margin_right(28)
-            .x_label_area_size(48)
+            .margin(16 * PX)
+            .margin_right(28 * PX)
+            .x_label_area_size(48 * PX)
             .y_label_area_size(LEFT)
             .build_cartesian_2d(span(|point| point.0), span(|point| point.1))?;
         let along = format!("{} ({})", probe.name, reading.unit);
@@ -274,15 +295,15 @@ pub fn load_probe_plot(scene: &Scene, records: &[Record], title: &str) -> Result
         chart
             .configure_series_labels()
             .position(SeriesLabelPosition::UpperMiddle)
-            .margin(12)
-            .legend_area_size(34)
+            .margin(12 * PX)
+            .legend_area_size(34 * PX)
             .label_font(text(14))
             .background_style(WHITE.mix(0.9))
-            .border_style(GRID)
+            .border_style(line(GRID, 1))
             .draw()?;
         root.present()?;
     }
-    Ok(Some(svg))
+    Ok(Some(in_pixels(&svg, (SIZE.0, UPPER_HEIGHT + 40 * PX))))
 }
 
 fn draw_elements(area: &Area, path: &[PathPoint], end_deg: f64) -> Result<(), PlotError> {
@@ -290,10 +311,10 @@ fn draw_elements(area: &Area, path: &[PathPoint], end_deg: f64) -> Result<(), Pl
     let (low, high) = path.iter().map(height).fold((f64::MAX, 0.0f64), |(low, high), n| (low.min(n), high.max(n)));
     let (bottom, top) = ((low - 0.6).floor(), (high + 1.0).ceil());
     let mut chart = ChartBuilder::on(area)
-        .margin(16)
-        .margin_top(4)
-        .margin_right(28)
-        .x_label_area_size(48)
+        .margin(16 * PX)
+        .margin_top(4 * PX)
+        .margin_right(28 * PX)
+        .x_label_area_size(48 * PX)
         .y_label_area_size(LEFT)
         .build_cartesian_2d(0.0..end_deg, PowersOfTwo { bottom, top })?;
     chart
@@ -304,9 +325,10 @@ fn draw_elements(area: &Area, path: &[PathPoint], end_deg: f64) -> Result<(), Pl
         .y_label_formatter(&|value| short(value.exp2()))
         .label_style(text(14))
         .axis_desc_style(text(15))
-        .axis_style(INK)
-        .bold_line_style(GRID)
-        .light_line_style(WHITE)
+        .axis_style(line(INK, 1))
+        .bold_line_style(line(GRID, 1))
+        .set_all_tick_mark_size(5 * PX)
+        .light_line_style(line(WHITE, 1))
         .draw()?;
     // The mesh stays as it is until the step that refines it.
     let mut stairs: Vec<(f64, f64)> = path.first().map(|first| (0.0, height(first))).into_iter().collect();
@@ -360,11 +382,17 @@ impl Ranged for PowersOfTwo {
 }
 
 fn text(size: u32) -> TextStyle<'static> {
-    (FONT, size).into_font().color(&INK)
+    (FONT, size * PX).into_font().color(&INK)
 }
 
 fn line(colour: RGBColor, width: u32) -> ShapeStyle {
-    colour.stroke_width(width)
+    colour.stroke_width(width * PX)
+}
+
+/// A drawing with its size in pixels.
+fn in_pixels(svg: &str, (width, height): (u32, u32)) -> String {
+    let drawn = format!("width=\"{width}\" height=\"{height}\"");
+    svg.replacen(&drawn, &format!("width=\"{}\" height=\"{}\"", width / PX, height / PX), 1)
 }
 
 /// A number at an axis.
