@@ -34,6 +34,8 @@ pub(super) enum Failure {
     Write { path: PathBuf, source: io::Error },
     #[error("{} is no log: the page of a study is written by `foldline study {} --report page.html`", study.display(), study.display())]
     StudyIsNoLog { study: PathBuf },
+    #[error("there is no field `{name}`; there are: {known}")]
+    NoSuchField { name: String, known: String },
     #[error("{} exists and is not overwritten: remove it, or choose another place for what is written", path.display())]
     InTheWay { path: PathBuf },
     #[error("cannot write to standard output")]
@@ -127,6 +129,7 @@ impl Failure {
             | Failure::NotText { .. }
             | Failure::InTheWay { .. }
             | Failure::StudyIsNoLog { .. }
+            | Failure::NoSuchField { .. }
             | Failure::WrongScene { .. }
             | Failure::UntilBeyondScene { .. }
             | Failure::NoSuchStep { .. }

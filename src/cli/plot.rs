@@ -14,7 +14,10 @@ use crate::spline::Mesh;
 use crate::state::State;
 use crate::study::{TapeSpring, equilibria};
 use crate::units::rounded;
-use crate::view::{Picture, ViewDirection, deformed_surface, load_probe_plot, mesh_picture, moment_rotation_plot, vtu};
+use crate::view::{
+    Field, Picture, ViewDirection, coloured_surface, deformed_surface, fields_of, load_probe_plot, mesh_picture,
+    moment_rotation_plot, vtu,
+};
 
 /// Cells along a picture that look smooth.
 const SMOOTH: usize = 120;
@@ -35,12 +38,16 @@ pub(super) struct Arguments {
     /// Look at the mesh from this side: degrees about z from x towards y, degrees above the xy-plane
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = direction, allow_hyphen_values = true)]
     view: Option<ViewDirection>,
+    /// Colour the mesh by this field, such as bending_moment.11, energy_density or displacement (its length); a wrong name lists
+    /// all of them [default: the larger bending strain]
+    #[arg(long, value_name = "FIELD[.COMPONENT]")]
+    field: Option<String>,
 }
 
 impl Arguments {
     /// Reads the log, draws, and names the files.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Self { log, output, step, view } = self;
+        let Self { log, output, step, view, field } = self;
         let (mut gathered, mut shown) = (Gathered::default(), None);
         let read = read_through(&log, |portion| {
             let is_wanted = |report: &Report| step.is_none_or(|step| report.step == step);
@@ -75,7 +82,12 @@ impl Arguments {
             ..Picture::default()
         };
         // Everything is drawn before anything is written.
-        let files = curve(&read.scene, &records, &name)?.into_iter().chain(surface(&read.scene, &state, &picture)?);
+        let files = curve(&read.scene, &records, &name)?.into_iter().chain(surface(
+            &read.scene,
+            &state,
+            &picture,
+            field.as_deref(),
+        )?);
         let files: Vec<_> = files.map(|(file, text)| (folder.join(file), text.into_bytes())).collect();
         write_files(&files)?;
         print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
@@ -91,10 +103,44 @@ fn curve(scene: &Scene, records: &[Record], name: &str) -> Result<Option<(&'stat
 }
 
 /// The deformed surface as a picture and for ParaView.
-fn surface(scene: &Scene, state: &State, picture: &Picture) -> Result<[(&'static str, String); 2], Failure> {
+fn surface(
+    scene: &Scene,
+    state: &State,
+    picture: &Picture,
+    field: Option<&str>,
+) -> Result<[(&'static str, String); 2], Failure> {
     let State { mesh, displacement, .. } = state;
-    let samples = deformed_surface(scene, mesh, displacement, cells_per_element(mesh))?;
+    let samples = match field {
+        None => deformed_surface(scene, mesh, displacement, cells_per_element(mesh))?,
+        Some(name) => {
+            let (field, component) = named(scene, name)?;
+            coloured_surface(scene, state, &field, component, cells_per_element(mesh))?
+        }
+    };
     Ok([("mesh.svg", mesh_picture(&samples, picture)), ("mesh.vtu", vtu(&samples))])
+}
+
+/// The field of this name, with the component that is named behind a point.
+fn named(scene: &Scene, name: &str) -> Result<(Field, Option<usize>), Failure> {
+    let (of_field, of_component) = name.split_once('.').map_or((name, None), |(field, part)| (field, Some(part)));
+    let fields = fields_of(scene);
+    let found = fields.iter().find(|field| field.name == of_field).and_then(|field| match of_component {
+        Some(component) => Some((field.clone(), Some(field.components.iter().position(|known| *known == component)?))),
+        // One component is the value itself; of more the length is shown.
+        None => Some((field.clone(), (field.components.len() == 1).then_some(0))),
+    });
+    found.ok_or_else(|| Failure::NoSuchField {
+        name: name.to_owned(),
+        known: fields.iter().map(listed).collect::<Vec<_>>().join(", "),
+    })
+}
+
+/// A field with its components: `bending_moment.11/22/12`.
+fn listed(field: &Field) -> String {
+    match field.components {
+        [_] => field.name.clone(),
+        components => format!("{}.{}", field.name, components.join("/")),
+    }
 }
 
 /// Whether a report has no reading of the probe that is drawn, as where the run began without it.

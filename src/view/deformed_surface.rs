@@ -1,15 +1,27 @@
 //! The deformed shell as samples for pictures: the whole of it, whatever part is modelled.
 
+use super::fields::{Field, ShellFields};
 use super::samples::{SamplesError, SurfaceSamples, cells_of};
 use crate::scene::Scene;
 use crate::shell::{cross, dot, norm};
 use crate::spline::{Grid, Mesh, SurfacePoint, mid_surface_point};
+use crate::state::State;
 
 /// Points and values on a grid that follows the elements.
 struct SampleGrid {
     counts: [usize; 2],
     points: Vec<[f64; 3]>,
     values: Vec<f64>,
+}
+
+/// What the cells of a sampled surface show.
+struct Shown<'v> {
+    /// Value at a point of the parameters.
+    value: &'v dyn Fn([f64; 2]) -> f64,
+    /// Sign of the value at images in the planes of symmetry across the length and through the apex.
+    image: [f64; 2],
+    /// Its name, with its unit.
+    quantity: String,
 }
 
 /// Samples the shell of `scene` on `mesh`, displaced by `displacement` (mm, one vector for each control point), with
@@ -27,25 +39,56 @@ pub fn deformed_surface(
     displacement: &[[f64; 3]],
     cells_per_element: usize,
 ) -> Result<SurfaceSamples, SamplesError> {
+    let value = |at: [f64; 2]| bending_strain(mesh, displacement, at);
+    let shown = Shown { value: &value, image: [1.0; 2], quantity: "bending strain max|κ| (1/mm)".to_owned() };
+    sampled(scene, mesh, displacement, cells_per_element, shown)
+}
+
+/// The same with the values of a component of a field, or with the length of all of them.
+///
+/// # Errors
+/// Where a displacement is not finite.
+pub fn coloured_surface(
+    scene: &Scene,
+    state: &State,
+    field: &Field,
+    component: Option<usize>,
+    cells_per_element: usize,
+) -> Result<SurfaceSamples, SamplesError> {
+    let fields = ShellFields::new(scene, state);
+    let of = |value: [f64; 3]| component.map_or_else(|| norm(value), |index| value[index]);
+    let value = |at: [f64; 2]| of(fields.value(field, at));
+    let image = [0, 1].map(|direction| of(field.mirrored([1.0; 3], direction)).signum());
+    let shown = Shown { value: &value, image, quantity: field.title_of(component) };
+    sampled(scene, &state.mesh, &state.displacement, cells_per_element, shown)
+}
+
+fn sampled(
+    scene: &Scene,
+    mesh: &Mesh,
+    displacement: &[[f64; 3]],
+    cells_per_element: usize,
+    shown: Shown,
+) -> Result<SurfaceSamples, SamplesError> {
     assert_eq!(displacement.len(), mesh.control_points.len());
     let parts = cells_per_element.max(1);
     let [along, across] = [0, 1].map(|direction| divided(&mesh.knots[direction], parts));
     let at = |parameters| mid_surface_point(mesh, displacement, parameters).position;
     let points = along.iter().flat_map(|u| across.iter().map(|v| at([*u, *v]))).collect();
     let middle = |pair: &[f64]| 0.5 * (pair[0] + pair[1]);
-    let strain = |u: &[f64], v: &[f64]| bending_strain(mesh, displacement, [middle(u), middle(v)]);
-    let values = along.windows(2).flat_map(|u| across.windows(2).map(|v| strain(u, v)).collect::<Vec<_>>()).collect();
+    let value = |u: &[f64], v: &[f64]| (shown.value)([middle(u), middle(v)]);
+    let values = along.windows(2).flat_map(|u| across.windows(2).map(|v| value(u, v)).collect::<Vec<_>>()).collect();
     let mut grid = SampleGrid { counts: [along.len(), across.len()], points, values };
     let [cut_at_middle, cut_at_apex] = scene.symmetry.cuts();
     if cut_at_middle {
-        grid = grid.with_reflection_along();
+        grid = grid.with_reflection_along(shown.image[0]);
     }
     if cut_at_apex {
-        grid = grid.with_reflection_across();
+        grid = grid.with_reflection_across(shown.image[1]);
     }
     let lines = grid.knot_lines(parts);
     let SampleGrid { counts, points, values } = grid;
-    SurfaceSamples::new(counts, points, values, lines, "bending strain max|κ| (1/mm)")
+    SurfaceSamples::new(counts, points, values, lines, &shown.quantity)
 }
 
 /// Every element's parameters, divided into equal parts.
@@ -91,7 +134,7 @@ impl SampleGrid {
     }
 
     /// With its image beyond the last row, in the plane x = const. through that row.
-    fn with_reflection_along(self) -> Self {
+    fn with_reflection_along(self, sign: f64) -> Self {
         let n1 = self.counts[0];
         let last_row = self.line(0, n1 - 1);
         let count = last_row.len() as f64;
@@ -99,17 +142,21 @@ impl SampleGrid {
         let image = |[x, y, z]: [f64; 3]| [2.0 * plane - x, y, z];
         let rows = (0..n1 - 1).rev().flat_map(|i| self.line(0, i)).map(image);
         let points = self.points.iter().copied().chain(rows).collect();
-        let values = (0..n1 - 1).chain((0..n1 - 1).rev()).flat_map(|i| self.value_row(i)).collect();
+        let own = (0..n1 - 1).flat_map(|i| self.value_row(i));
+        let images = (0..n1 - 1).rev().flat_map(|i| self.value_row(i)).map(|value| sign * value);
+        let values = own.chain(images).collect();
         Self { counts: self.counts_doubled(0), points, values }
     }
 
     /// With its image before the first column, in the plane y = 0 through it.
-    fn with_reflection_across(self) -> Self {
+    fn with_reflection_across(self, sign: f64) -> Self {
         let n1 = self.counts[0];
         let image = |[x, y, z]: [f64; 3]| [x, -y, z];
         let widened = |i: usize| self.line(0, i).skip(1).rev().map(image).chain(self.line(0, i));
         let points = (0..n1).flat_map(widened).collect();
-        let values = (0..n1 - 1).flat_map(|i| self.value_row(i).rev().chain(self.value_row(i))).collect();
+        let values = (0..n1 - 1)
+            .flat_map(|i| self.value_row(i).rev().map(|value| sign * value).chain(self.value_row(i)))
+            .collect();
         Self { counts: self.counts_doubled(1), points, values }
     }
 

@@ -107,9 +107,11 @@ pub fn fields_of(scene: &Scene) -> Vec<Field> {
 }
 
 impl Field {
-    /// The name with the unit, as axes and colour bars have it.
-    pub fn title(&self) -> String {
+    /// The name of a component, or of the length of all of them, with the unit, as axes and colour bars have it.
+    pub fn title_of(&self, component: Option<usize>) -> String {
         let name = self.name.replace('_', " ");
+        let of_component = component.and_then(|index| self.components.get(index)).filter(|name| !name.is_empty());
+        let name = of_component.map_or(name.clone(), |component| format!("{name} {component}"));
         if self.unit.is_empty() { name } else { format!("{name} ({})", self.unit) }
     }
 

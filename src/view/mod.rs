@@ -26,7 +26,7 @@ mod ticks;
 mod vtu;
 
 pub use camera::ViewDirection;
-pub use deformed_surface::deformed_surface;
+pub use deformed_surface::{coloured_surface, deformed_surface};
 pub use fields::{Field, ShellFields, fields_of};
 pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};

@@ -108,7 +108,7 @@ impl Shape {
             line_counts: frame.line_counts,
         });
         let fields = offered.iter().zip(&ranges).map(|((field, component), range)| ShownField {
-            title: title(field, *component),
+            title: field.title_of(*component),
             means: field.means.to_owned(),
             range: *range,
         });
@@ -128,16 +128,6 @@ fn offered(scene: &Scene) -> Vec<(Field, Option<usize>)> {
         fields.iter().find(|field| field.name == name).map(|field| (field.clone(), component))
     };
     OFFERED.into_iter().filter_map(found).collect()
-}
-
-fn title(field: &Field, component: Option<usize>) -> String {
-    let of_component = component.and_then(|index| field.components.get(index)).filter(|name| !name.is_empty());
-    let unit = if field.unit.is_empty() { String::new() } else { format!(" ({})", field.unit) };
-    let name = field.name.replace('_', " ");
-    match of_component {
-        Some(component) => format!("{name} {component}{unit}"),
-        None => format!("{name}{unit}"),
-    }
 }
 
 /// Points, values and knot lines of a state.
