@@ -59,6 +59,12 @@ pub(super) enum Failure {
     Samples(#[from] SamplesError),
     #[error("no help on `{topic}`; there is help on {}{}", known.join(", "), did_you_mean(topic, known))]
     NoSuchTopic { topic: String, known: Vec<String> },
+    #[error("no field `{field}`; there are {}{}", known.join(", "), did_you_mean(field, known))]
+    NoSuchField { field: String, known: Vec<String> },
+    #[error(
+        "{} is one file, and {steps} load steps are chosen: name a folder, or one step with --steps", file.display()
+    )]
+    StepsInOneFile { file: PathBuf, steps: usize },
     #[error("not one thread can be made")]
     Threads { source: Box<dyn std::error::Error + Send + Sync> },
     #[error("cannot watch for signals")]
@@ -135,6 +141,8 @@ impl Failure {
             | Failure::VariedTwice { .. }
             | Failure::WrongStudy { .. }
             | Failure::NoSuchTopic { .. }
+            | Failure::NoSuchField { .. }
+            | Failure::StepsInOneFile { .. }
             | Failure::NoSuchScene { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,

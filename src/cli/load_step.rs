@@ -65,7 +65,10 @@ impl LoadStep {
             events.push(format!("refined from {} × {}", self.elements_before[0], self.elements_before[1]));
         }
         if let Some(parameter) = self.returned_from {
-            events.push(format!("back from {}, before which this mesh jumps", self.report.driven_by.shown_short(parameter)));
+            events.push(format!(
+                "back from {}, before which this mesh jumps",
+                self.report.driven_by.shown_short(parameter)
+            ));
         }
         if self.report.negative_pivots > 0 {
             events.push(format!("not stable ({})", count(self.report.negative_pivots as usize, "negative pivot")));

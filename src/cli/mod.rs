@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
+//! | `export`, `export_choice` | states in the formats of other programs; which of them, and of what |
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
 //! | `calibrate` | the threshold at which a scene's mesh keeps an error |
@@ -23,6 +24,8 @@ mod bench;
 mod bisect;
 mod calibrate;
 mod converge;
+mod export;
+mod export_choice;
 mod extremes;
 mod failure;
 mod help;
@@ -77,6 +80,7 @@ enum Command {
     Resume(resume::Arguments),
     Inspect(inspect::Arguments),
     Plot(plot::Arguments),
+    Export(export::Arguments),
     Replay(replay::Arguments),
     Bisect(bisect::Arguments),
     Stability(stability::Arguments),
@@ -99,7 +103,12 @@ impl Command {
         // Commands that compute without an argument for the number of threads.
         if matches!(
             self,
-            Command::Plot(_) | Command::Bisect(_) | Command::Stability(_) | Command::Recover(_) | Command::Converge(_)
+            Command::Plot(_)
+                | Command::Export(_)
+                | Command::Bisect(_)
+                | Command::Stability(_)
+                | Command::Recover(_)
+                | Command::Converge(_)
         ) {
             session::use_threads(None)?;
         }
@@ -108,6 +117,7 @@ impl Command {
             Command::Resume(arguments) => arguments.run().map(|()| 0),
             Command::Inspect(arguments) => arguments.run().map(|()| 0),
             Command::Plot(arguments) => arguments.run().map(|()| 0),
+            Command::Export(arguments) => arguments.run().map(|()| 0),
             Command::Replay(arguments) => arguments.run(),
             Command::Bisect(arguments) => arguments.run(),
             Command::Stability(arguments) => arguments.run().map(|()| 0),

@@ -76,7 +76,8 @@ impl<'a> Equilibrium<'a> {
         near: &[[f64; 3]],
         observer: Observer,
     ) -> Result<Solved, SolveError> {
-        let start = Configuration { displacement: near, parameter: to, ..from }.free(&self.work.discretization.unknowns);
+        let start =
+            Configuration { displacement: near, parameter: to, ..from }.free(&self.work.discretization.unknowns);
         self.work.factorize_at(from)?;
         let before = SolveStart::at(self.work, from);
         self.minimize(start, None, from, to, &before, observer)

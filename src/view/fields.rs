@@ -59,14 +59,26 @@ const FIELDS: [Row; 14] = [
     ("membrane_strain_principal", "", PRINCIPAL, "principal membrane strains", Quantity::PrincipalMembraneStrain),
     ("bending_strain", "1/mm", TENSOR, "changes of curvature κ₁₁, κ₂₂, 2κ₁₂", Quantity::BendingStrain),
     ("bending_strain_principal", "1/mm", PRINCIPAL, "principal changes of curvature", Quantity::PrincipalBendingStrain),
-    ("bending_strain_max", "1/mm", SCALAR, "the larger of |κ₁₁| along u and |κ₂₂| along v", Quantity::LargestBendingStrain),
+    (
+        "bending_strain_max",
+        "1/mm",
+        SCALAR,
+        "the larger of |κ₁₁| along u and |κ₂₂| along v",
+        Quantity::LargestBendingStrain,
+    ),
     ("membrane_force", "N/mm", TENSOR, "membrane forces n₁₁, n₂₂, n₁₂", Quantity::MembraneForce),
     ("membrane_force_principal", "N/mm", PRINCIPAL, "principal membrane forces", Quantity::PrincipalMembraneForce),
     ("bending_moment", "N·mm/mm", TENSOR, "bending moments m₁₁, m₂₂, m₁₂", Quantity::BendingMoment),
     ("bending_moment_principal", "N·mm/mm", PRINCIPAL, "principal bending moments", Quantity::PrincipalBendingMoment),
     ("energy_density", "N·mm/mm²", SCALAR, "strain energy per undeformed area", Quantity::EnergyDensity),
     ("indicator", "", ALONG_AND_ACROSS, "refinement indicators |κ| h along u and v", Quantity::Indicator),
-    ("element_size", "mm", ALONG_AND_ACROSS, "undeformed lengths of the element through its middle", Quantity::ElementSize),
+    (
+        "element_size",
+        "mm",
+        ALONG_AND_ACROSS,
+        "undeformed lengths of the element through its middle",
+        Quantity::ElementSize,
+    ),
     ("thickness", "mm", SCALAR, "thickness of the shell", Quantity::Thickness),
 ];
 

@@ -181,7 +181,9 @@ fn read_scene(name: &str) -> (Scene, Manifest) {
 #[test]
 #[ignore = "writes to checkpoints/golden"]
 fn write_golden_logs_of_other_courses() {
-    for (what, last) in [("turning", None), ("path", Some(Stage::SwitchBranch)), ("tolerance", Some(Stage::CoarsenKnots))] {
+    for (what, last) in
+        [("turning", None), ("path", Some(Stage::SwitchBranch)), ("tolerance", Some(Stage::CoarsenKnots))]
+    {
         if path_of(what).exists() {
             continue;
         }

@@ -1,0 +1,24 @@
+//! States in the formats of other programs.
+//!
+//! | file | what |
+//! |---|---|
+//! | `whole_shell` | the whole shell of a state, whatever part is modelled |
+//! | `instant` | the numbers that name a state |
+//! | `bezier` | its elements as Bézier patches |
+//! | `xml_array` | arrays of VTK's XML files |
+//! | `vtu`, `knot_lines`, `pvd` | surface, knot lines and their series for ParaView |
+
+mod bezier;
+mod instant;
+mod knot_lines;
+mod pvd;
+mod vtu;
+mod whole_shell;
+mod xml_array;
+
+pub use instant::Instant;
+pub use knot_lines::knot_lines_vtu;
+pub use pvd::{pvd, time_steps};
+pub use vtu::surface_vtu;
+pub use whole_shell::WholeShell;
+pub(super) use xml_array::XmlArray;

@@ -1,0 +1,25 @@
+//! A series of files for ParaView (`.pvd`), with the time of each.
+
+use std::fmt::Write as _;
+
+use super::super::mesh_picture::escaped;
+use super::instant::Instant;
+
+/// Times of a series: the parameter of each instant, where it ascends; else the load steps, as ParaView sorts by time, and
+/// a path that turns back would play in another order than it was followed.
+pub fn time_steps(instants: &[Instant]) -> Vec<f64> {
+    let ascends = instants.windows(2).all(|pair| pair[0].parameter < pair[1].parameter);
+    instants.iter().map(|instant| if ascends { instant.parameter } else { instant.step as f64 }).collect()
+}
+
+/// Formats the text of a `.pvd` file of these files and times.
+pub fn pvd<'f>(files: impl IntoIterator<Item = (&'f str, f64)>) -> String {
+    let mut xml = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
+    for (file, time) in files {
+        let _ = writeln!(xml, "<DataSet timestep=\"{time}\" part=\"0\" file=\"{}\"/>", escaped(file));
+    }
+    xml.push_str("</Collection>\n</VTKFile>\n");
+    xml
+}
