@@ -13,9 +13,19 @@ use crate::view::{Field, fields_of};
 /// What states are written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
-    /// ParaView: the surface as rational Bézier cells with all fields, and knot lines, one file each a load step; a .pvd for the
-    /// series of either
+    /// ParaView: the surface as rational Bézier cells with all fields, and its knot lines, a file each for every load step, and a
+    /// .pvd for the series of either
     Vtu,
+    /// A table of positions and fields at points of every element
+    Csv,
+    /// The same as records, with units and meanings
+    Json,
+    /// Knots, control points and displacements as arrays for numpy, one file for load steps that share a mesh
+    Npz,
+    /// The deformed surface as triangles (binary STL)
+    Stl,
+    /// The deformed surface as NURBS for CAD (STEP AP214)
+    Step,
 }
 
 impl Format {
@@ -23,12 +33,22 @@ impl Format {
     pub(super) fn extension(self) -> &'static str {
         match self {
             Format::Vtu => "vtu",
+            Format::Csv => "csv",
+            Format::Json => "json",
+            Format::Npz => "npz",
+            Format::Stl => "stl",
+            Format::Step => "step",
         }
     }
 
     /// Whether it writes all load steps where none are chosen, rather than the last one.
     fn is_of_all_steps(self) -> bool {
-        matches!(self, Format::Vtu)
+        matches!(self, Format::Vtu | Format::Npz)
+    }
+
+    /// Whether several load steps may go into one file.
+    pub(super) fn holds_many_steps(self) -> bool {
+        self == Format::Npz
     }
 }
 
@@ -44,7 +64,7 @@ impl std::str::FromStr for StepRange {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let number = |text: &str| text.trim().parse::<u64>().map_err(|_| "load steps are wanted, such as 3,7,20-30");
-        let (first, last) = text.split_once('-').unwrap_or((text, text));
+        let (first, last) = text.split_once('-').or_else(|| text.split_once("..")).unwrap_or((text, text));
         let (first, last) = (number(first)?, number(last)?);
         if first > last {
             Err("the first load step of a range is beyond its last one")
@@ -150,6 +170,16 @@ impl Target {
         }
     }
 
+    /// The file of load steps from a first to a last one.
+    pub(super) fn of_steps(&self, first: u64, last: u64, format: Format) -> PathBuf {
+        match self {
+            Self::Folder(folder, name) if first < last => {
+                folder.join(format!("{name}-{first:05}-{last:05}.{}", format.extension()))
+            }
+            _ => self.of_step(first, format),
+        }
+    }
+
     /// The file of a load step.
     pub(super) fn of_step(&self, step: u64, format: Format) -> PathBuf {
         match self {
@@ -167,6 +197,8 @@ mod tests {
     fn steps_are_numbers_and_ranges() {
         assert_eq!("3".parse(), Ok(StepRange { first: 3, last: 3 }));
         assert_eq!("20-30".parse(), Ok(StepRange { first: 20, last: 30 }));
+        // As `thin` has them.
+        assert_eq!("20..30".parse(), Ok(StepRange { first: 20, last: 30 }));
         for wrong in ["", "-3", "a", "3-", "30-20"] {
             assert!(wrong.parse::<StepRange>().is_err(), "{wrong}");
         }

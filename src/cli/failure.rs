@@ -65,6 +65,10 @@ pub(super) enum Failure {
         "{} is one file, and {steps} load steps are chosen: name a folder, or one step with --steps", file.display()
     )]
     StepsInOneFile { file: PathBuf, steps: usize },
+    #[error(
+        "{} is one file, and the load steps lie on {meshes} meshes: name a folder, or steps on one mesh with --steps", file.display()
+    )]
+    MeshesInOneFile { file: PathBuf, meshes: usize },
     #[error("not one thread can be made")]
     Threads { source: Box<dyn std::error::Error + Send + Sync> },
     #[error("cannot watch for signals")]
@@ -143,6 +147,7 @@ impl Failure {
             | Failure::NoSuchTopic { .. }
             | Failure::NoSuchField { .. }
             | Failure::StepsInOneFile { .. }
+            | Failure::MeshesInOneFile { .. }
             | Failure::NoSuchScene { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,

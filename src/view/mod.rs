@@ -27,7 +27,9 @@ mod vtu;
 
 pub use camera::ViewDirection;
 pub use deformed_surface::deformed_surface;
-pub use export::{Instant, WholeShell, knot_lines_vtu, pvd, surface_vtu, time_steps};
+pub use export::{
+    Instant, StatesOnMesh, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl, surface_vtu, time_steps,
+};
 pub use fields::{Field, ShellFields, fields_of};
 pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};

@@ -30,7 +30,7 @@ pub fn knot_lines_vtu(shell: &WholeShell, instant: &Instant) -> String {
             }
         }
     }
-    let mut xml = head(instant);
+    let mut xml = head(instant, []);
     let _ = writeln!(xml, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">", controls.len(), cells.len());
     xml.push_str("<Points>\n");
     let points = controls.iter().flat_map(|k| patches.undeformed.point(*k));

@@ -7,18 +7,29 @@
 //! | `bezier` | its elements as Bézier patches |
 //! | `xml_array` | arrays of VTK's XML files |
 //! | `vtu`, `knot_lines`, `pvd` | surface, knot lines and their series for ParaView |
+//! | `table` | fields at points: CSV and JSON |
+//! | `npz` | states as arrays for numpy |
+//! | `stl`, `step` | the deformed surface: triangles, and NURBS for CAD |
 
 mod bezier;
 mod instant;
 mod knot_lines;
+mod npz;
 mod pvd;
+mod step;
+mod stl;
+mod table;
 mod vtu;
 mod whole_shell;
 mod xml_array;
 
 pub use instant::Instant;
 pub use knot_lines::knot_lines_vtu;
+pub use npz::{StatesOnMesh, npz};
 pub use pvd::{pvd, time_steps};
+pub use step::step;
+pub use stl::stl;
+pub use table::{csv, json};
 pub use vtu::surface_vtu;
 pub use whole_shell::WholeShell;
 pub(super) use xml_array::XmlArray;

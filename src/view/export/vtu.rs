@@ -4,8 +4,8 @@
 //! the cell array `HigherOrderDegrees` and the point array `RationalWeights`. Points are those of the undeformed surface, and
 //! `displacement` has the displacements of the control points: "Warp by Vector" with scale 1 makes exactly the deformed surface,
 //! since both are sums of the same rational functions. Other fields are coefficients of patches that take the field's values at
-//! (p + 1)(q + 1) uniform points of each cell. Coefficients may lie beyond all values; those are held to the range of the values,
-//! so that colour bars have it, and the patch is a little flatter there.
+//! (p + 1)(q + 1) uniform points of each cell. Coefficients may lie beyond all values of the surface, where a field has an extreme inside
+//! a cell; so the range of the values stands beside them, as the field array `NAME_range` (a row for each component).
 
 use std::fmt::Write as _;
 
@@ -37,7 +37,14 @@ pub fn surface_vtu(shell: &WholeShell, fields: &[Field], instant: &Instant) -> S
         })
         .collect();
 
-    let mut xml = head(instant);
+    let shown = fields.iter().filter(|field| field.name != DISPLACEMENT);
+    let shown: Vec<OnCells> = shown.map(|field| OnCells::of(shell, &patches, field)).collect();
+    let ranges = shown.iter().map(|OnCells { field, range, .. }| {
+        XmlArray::of_numbers(&format!("{}_range", field.name), range.iter().flatten().copied())
+            .of_components(&["least", "largest"])
+            .tuples(range.len())
+    });
+    let mut xml = head(instant, ranges);
     let _ = writeln!(xml, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">", controls.len());
     xml.push_str("<Points>\n");
     let points = controls.iter().flat_map(|k| patches.undeformed.point(*k));
@@ -50,8 +57,7 @@ pub fn surface_vtu(shell: &WholeShell, fields: &[Field], instant: &Instant) -> S
     XmlArray::of_numbers("HigherOrderDegrees", degrees).of_components(&["u", "v", "w"]).write(&mut xml);
     xml.push_str("</CellData>\n<PointData Vectors=\"displacement\" RationalWeights=\"RationalWeights\">\n");
     write_weights_and_displacement(&mut xml, &patches, &controls);
-    for field in fields.iter().filter(|field| field.name != DISPLACEMENT) {
-        let coefficients = coefficients(shell, &patches, field);
+    for OnCells { field, coefficients, .. } in shown {
         let components = field.components.len();
         let of_cell = |cell: &Vec<[f64; 3]>| order.iter().map(|k| cell[*k]).collect::<Vec<_>>();
         let numbers = coefficients.iter().flat_map(of_cell).flat_map(|value| value.into_iter().take(components));
@@ -61,26 +67,34 @@ pub fn surface_vtu(shell: &WholeShell, fields: &[Field], instant: &Instant) -> S
     xml
 }
 
-/// Coefficients of a field for each cell.
-fn coefficients(shell: &WholeShell, patches: &BezierPatches, field: &Field) -> Vec<Vec<[f64; 3]>> {
-    let at_nodes = |element: usize| {
-        let bounds = patches.bounds(element);
-        patches.nodes(element).map(|at| shell.value_in(field, bounds, at)).collect::<Vec<_>>()
-    };
-    let values: Vec<Vec<[f64; 3]>> = (0..patches.elements().len()).into_par_iter().map(at_nodes).collect();
-    let ends = |nothing: f64, end: fn(f64, f64) -> f64| {
-        values.iter().flatten().fold([nothing; 3], |so_far, value| [0, 1, 2].map(|c| end(so_far[c], value[c])))
-    };
-    let (least, largest) = (ends(f64::INFINITY, f64::min), ends(f64::NEG_INFINITY, f64::max));
-    let within = |value: [f64; 3]| [0, 1, 2].map(|c| value[c].max(least[c]).min(largest[c]));
-    let of_cell = |(element, values): (usize, &Vec<[f64; 3]>)| {
-        patches.interpolating(element, values).into_iter().map(within).collect()
-    };
-    values.iter().enumerate().map(of_cell).collect()
+/// A field on the cells.
+struct OnCells<'f> {
+    field: &'f Field,
+    /// Coefficients of each cell, the second direction fastest.
+    coefficients: Vec<Vec<[f64; 3]>>,
+    /// Least and largest value of each component at the nodes.
+    range: Vec<[f64; 2]>,
 }
 
-/// The beginning of a file, up to its piece.
-pub(super) fn head(instant: &Instant) -> String {
+impl<'f> OnCells<'f> {
+    fn of(shell: &WholeShell, patches: &BezierPatches, field: &'f Field) -> Self {
+        let at_nodes = |element: usize| {
+            let bounds = patches.bounds(element);
+            patches.nodes(element).map(|at| shell.value_in(field, bounds, at)).collect::<Vec<_>>()
+        };
+        let values: Vec<Vec<[f64; 3]>> = (0..patches.elements().len()).into_par_iter().map(at_nodes).collect();
+        let range = |component: usize| {
+            let values = values.iter().flatten().map(|value| value[component]);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
+        };
+        let coefficients =
+            values.iter().enumerate().map(|(element, values)| patches.interpolating(element, values)).collect();
+        Self { field, coefficients, range: (0..field.components.len()).map(range).collect() }
+    }
+}
+
+/// The beginning of a file, up to its piece, with further field arrays.
+pub(super) fn head<'a>(instant: &Instant, further: impl IntoIterator<Item = XmlArray<'a>>) -> String {
     let mut xml = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n",
@@ -89,6 +103,7 @@ pub(super) fn head(instant: &Instant) -> String {
         XmlArray::of_numbers(name, [value].into_iter()).tuples(1).write(&mut xml);
     }
     XmlArray::of_text("state_hash", &instant.state_hash.to_string()).write(&mut xml);
+    further.into_iter().for_each(|array| array.write(&mut xml));
     xml.push_str("</FieldData>\n");
     xml
 }

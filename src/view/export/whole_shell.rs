@@ -10,7 +10,7 @@ use crate::state::State;
 use super::super::fields::{Field, ShellFields};
 
 /// Share of an element by which its border is evaluated inside it.
-const INSIDE: f64 = 1e-9;
+const INSIDE: f64 = 1e-10;
 
 /// The whole shell of a state.
 #[derive(Debug)]
