@@ -61,11 +61,12 @@ fn a_table_has_the_whole_shell() {
     assert!(y0.iter().zip(&z0).all(|(y, z)| (y.hypot(*z) - 10.0).abs() < 1e-12));
     assert!(x0.iter().all(|x| (-1e-9..=300.0 + 1e-9).contains(x)));
     assert!((y0.iter().fold(0.0, |most: f64, y| most.max(y.abs())) - 10.0 * 55f64.to_radians().sin()).abs() < 1e-12);
-    // Images are in the plane where the model ends, and displacements with them.
+    // Fields are those of the element, a touch inside it.
     let [x, u] = ["x_mm", "displacement_x"].map(|name| column(&csv, name));
-    assert!((0..x.len()).all(|k| (x[k] - x0[k] - u[k]).abs() < 1e-12));
+    assert!((0..x.len()).all(|k| (x[k] - x0[k] - u[k]).abs() < 1e-9));
+    // Images are beyond the planes where the model ends, and displacements with them.
     let v = column(&csv, "v");
-    assert!(column(&csv, "u").iter().zip(&u).all(|(at, u)| *at != 0.5 || u.abs() < 1e-12));
+    assert!(column(&csv, "u").iter().zip(&u).all(|(at, u)| *at != 0.5 || u.abs() < 1e-9));
     assert!(y0.iter().zip(&v).all(|(y, v)| *v != 0.5 || y.abs() < 1e-12));
     assert!(y0.iter().zip(&v).all(|(y, v)| (v - 0.5) * y >= 0.0));
 }
@@ -93,7 +94,7 @@ fn arrays_are_written_a_file_a_mesh() {
     // Stored, not compressed: arrays can be found in the archive as they are.
     assert!(bytes.starts_with(b"PK\x03\x04"));
     let has = |text: &str| bytes.windows(text.len()).any(|window| window == text.as_bytes());
-    assert!(has("control_points.npy") && has("'shape': (7, 7, 4,)"), "{}", String::from_utf8_lossy(&bytes));
+    assert!(has("control_points.npy") && has("'shape': (9, 9, 4,)"));
     let said = place.foldline("export run.mcap --to npz -o all.npz").ends(2);
     said.says(&["the load steps lie on", "--steps"]);
 }

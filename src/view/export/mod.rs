@@ -6,20 +6,22 @@
 //! | `instant` | the numbers that name a state |
 //! | `bezier` | its elements as Bézier patches |
 //! | `xml_array` | arrays of VTK's XML files |
-//! | `vtu`, `knot_lines`, `pvd` | surface, knot lines and their series for ParaView |
+//! | `surface`, `knot_lines`, `bezier_grid` | surface and knot lines for ParaView; what both have in common |
+//! | `pvd` | their series |
 //! | `table` | fields at points: CSV and JSON |
 //! | `npz` | states as arrays for numpy |
 //! | `stl`, `step` | the deformed surface: triangles, and NURBS for CAD |
 
 mod bezier;
+mod bezier_grid;
 mod instant;
 mod knot_lines;
 mod npz;
 mod pvd;
 mod step;
 mod stl;
+mod surface;
 mod table;
-mod vtu;
 mod whole_shell;
 mod xml_array;
 
@@ -29,7 +31,7 @@ pub use npz::{StatesOnMesh, npz};
 pub use pvd::{pvd, time_steps};
 pub use step::step;
 pub use stl::stl;
+pub use surface::surface_vtu;
 pub use table::{csv, json};
-pub use vtu::surface_vtu;
 pub use whole_shell::WholeShell;
 pub(super) use xml_array::XmlArray;

@@ -6,10 +6,11 @@ use std::fmt::Write as _;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::super::fields::Field;
 use super::instant::Instant;
 use super::whole_shell::WholeShell;
 use crate::spline::{Grid, Spans, mid_surface_point};
+use crate::units::unsigned_zero;
+use crate::view::fields::Field;
 
 /// A point of an element, with the values of fields there.
 struct Row {
@@ -35,7 +36,10 @@ fn rows(shell: &WholeShell, fields: &[Field], points: usize) -> Vec<Row> {
                 let [from, to] = bounds[direction];
                 from + (to - from) * share[direction]
             });
-            let value = |field: &Field| shell.value_in(field, bounds, parameters)[..field.components.len()].to_vec();
+            let value = |field: &Field| {
+                let value = shell.value_in(field, bounds, parameters);
+                value[..field.components.len()].iter().copied().map(unsigned_zero).collect()
+            };
             let [undeformed_mm, deformed_mm] =
                 [mesh, shell.deformed()].map(|mesh| mid_surface_point(mesh, &[], parameters).position);
             let values = fields.iter().map(value).collect();

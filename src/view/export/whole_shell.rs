@@ -6,8 +6,7 @@
 use crate::scene::Scene;
 use crate::spline::{Grid, Mesh};
 use crate::state::State;
-
-use super::super::fields::{Field, ShellFields};
+use crate::view::fields::{Field, ShellFields};
 
 /// Share of an element by which its border is evaluated inside it.
 const INSIDE: f64 = 1e-10;

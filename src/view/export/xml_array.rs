@@ -5,15 +5,15 @@ use std::fmt::Write as _;
 
 /// One array, to be formatted as an element of XML.
 #[derive(Debug)]
-pub(in crate::view) struct XmlArray<'a> {
+pub(in crate::view) struct XmlArray {
     kind: &'static str,
     attributes: String,
-    unit: &'a str,
+    unit: &'static str,
     /// A 64-bit length and as many bytes.
     framed: Vec<u8>,
 }
 
-impl<'a> XmlArray<'a> {
+impl XmlArray {
     /// An array of the type `kind` with its bytes.
     pub(in crate::view) fn of_bytes(kind: &'static str, name: &str, bytes: impl Iterator<Item = u8>) -> Self {
         let mut framed = vec![0; 8];
@@ -54,7 +54,7 @@ impl<'a> XmlArray<'a> {
     }
 
     /// The same array with the unit of its numbers.
-    pub(in crate::view) fn in_unit(self, unit: &'a str) -> Self {
+    pub(in crate::view) fn in_unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
