@@ -9,7 +9,6 @@ use serde::Serialize;
 use super::instant::Instant;
 use super::whole_shell::WholeShell;
 use crate::spline::{Grid, Spans, mid_surface_point};
-use crate::units::unsigned_zero;
 use crate::view::fields::Field;
 
 /// A point of an element, with the values of fields there.
@@ -38,7 +37,8 @@ fn rows(shell: &WholeShell, fields: &[Field], points: usize) -> Vec<Row> {
             });
             let value = |field: &Field| {
                 let value = shell.value_in(field, bounds, parameters);
-                value[..field.components.len()].iter().copied().map(unsigned_zero).collect()
+                // A zero without a sign.
+                value[..field.components.len()].iter().copied().map(|number| number + 0.0).collect()
             };
             let [undeformed_mm, deformed_mm] =
                 [mesh, shell.deformed()].map(|mesh| mid_surface_point(mesh, &[], parameters).position);
