@@ -23,3 +23,25 @@ pub fn pvd<'f>(files: impl IntoIterator<Item = (&'f str, f64)>) -> String {
     xml.push_str("</Collection>\n</VTKFile>\n");
     xml
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Parameter;
+    use crate::state::Hash;
+
+    #[test]
+    fn a_path_that_turns_back_is_played_by_load_step() {
+        let instant = |(step, parameter): (usize, &f64)| Instant {
+            step: step as u64 + 1,
+            driven_by: Parameter::LoadFactor,
+            parameter: *parameter,
+            moment_n_mm: 0.0,
+            strain_energy_n_mm: 0.0,
+            state_hash: Hash::from_bytes([0; 32]),
+        };
+        let times = |parameters: &[f64]| time_steps(&parameters.iter().enumerate().map(instant).collect::<Vec<_>>());
+        assert_eq!(times(&[0.1, 0.2, 0.4]), [0.1, 0.2, 0.4]);
+        assert_eq!(times(&[0.1, 0.2, 0.15]), [1.0, 2.0, 3.0]);
+    }
+}
