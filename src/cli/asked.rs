@@ -6,7 +6,7 @@ use super::failure::Failure;
 use super::log_file::{end_scene, older_scene, say_warnings, unreadable};
 use crate::history::stages_of_step;
 use crate::journal::{AskedLog, LongLog, LongLogError};
-use crate::record::Record;
+use crate::record::{Outcome, Record};
 use crate::scene::Scene;
 
 /// A log, with the scene that its last stretch was run with.
@@ -54,6 +54,17 @@ impl Asked {
         Ok(found)
     }
 
+    /// The last equilibrium of each load step.
+    pub(super) fn ends(&self) -> Result<Ends, Failure> {
+        let every: Vec<usize> = (0..self.log.commits()).collect();
+        let mut ends = Ends::default();
+        for part in self.log.parts(&every) {
+            let (log, indices) = part.map_err(self.changed())?;
+            indices.iter().filter_map(|index| log.entry(*index)).for_each(|entry| ends.take(&entry.record));
+        }
+        Ok(ends)
+    }
+
     /// First and last load step.
     pub(super) fn steps(&self) -> Option<(u64, u64)> {
         let step_of = |ordinal: usize| self.log.record(ordinal).ok().map(|record| record.report.step);
@@ -64,4 +75,32 @@ impl Asked {
     pub(super) fn changed(&self) -> impl Fn(LongLogError) -> Failure {
         |source| Failure::WrongLog { log: self.path.clone(), source: Box::new(source) }
     }
+}
+
+/// The last equilibrium of each load step.
+#[derive(Default)]
+pub(super) struct Ends {
+    pub(super) records: Vec<Record>,
+}
+
+impl Ends {
+    /// Takes the stage that follows.
+    pub(super) fn take(&mut self, record: &Record) {
+        let Record { report, .. } = record;
+        if report.outcome != Outcome::Done || !report.stage.finds_equilibrium() {
+            return;
+        }
+        self.records.pop_if(|last| last.report.step == report.step);
+        self.records.push(record.clone());
+    }
+
+    /// Ordinals of their stages.
+    pub(super) fn stages(&self) -> Vec<usize> {
+        self.records.iter().map(ordinal).collect()
+    }
+}
+
+/// Ordinal of a stage in its log.
+pub(super) fn ordinal(record: &Record) -> usize {
+    record.commit.ordinal as usize
 }

@@ -34,8 +34,6 @@ pub(super) enum Failure {
     Write { path: PathBuf, source: io::Error },
     #[error("{} is no log: the page of a study is written by `foldline study {} --report page.html`", study.display(), study.display())]
     StudyIsNoLog { study: PathBuf },
-    #[error("there is no field `{name}`; there are: {known}")]
-    NoSuchField { name: String, known: String },
     #[error("{} exists and is not overwritten: remove it, or choose another place for what is written", path.display())]
     InTheWay { path: PathBuf },
     #[error("cannot write to standard output")]
@@ -63,6 +61,16 @@ pub(super) enum Failure {
     Samples(#[from] SamplesError),
     #[error("no help on `{topic}`; there is help on {}{}", known.join(", "), did_you_mean(topic, known))]
     NoSuchTopic { topic: String, known: Vec<String> },
+    #[error("no field `{field}`; there are {}{}", known.join(", "), did_you_mean(field, known))]
+    NoSuchField { field: String, known: Vec<String> },
+    #[error(
+        "{} is one file, and {steps} load steps are chosen: name a folder, or one step with --steps", file.display()
+    )]
+    StepsInOneFile { file: PathBuf, steps: usize },
+    #[error(
+        "{} is one file, and the load steps lie on {meshes} meshes: name a folder, or steps on one mesh with --steps", file.display()
+    )]
+    MeshesInOneFile { file: PathBuf, meshes: usize },
     #[error("not one thread can be made")]
     Threads { source: Box<dyn std::error::Error + Send + Sync> },
     #[error("cannot watch for signals")]
@@ -129,7 +137,6 @@ impl Failure {
             | Failure::NotText { .. }
             | Failure::InTheWay { .. }
             | Failure::StudyIsNoLog { .. }
-            | Failure::NoSuchField { .. }
             | Failure::WrongScene { .. }
             | Failure::UntilBeyondScene { .. }
             | Failure::NoSuchStep { .. }
@@ -141,6 +148,9 @@ impl Failure {
             | Failure::VariedTwice { .. }
             | Failure::WrongStudy { .. }
             | Failure::NoSuchTopic { .. }
+            | Failure::NoSuchField { .. }
+            | Failure::StepsInOneFile { .. }
+            | Failure::MeshesInOneFile { .. }
             | Failure::NoSuchScene { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,

@@ -8,6 +8,7 @@
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
 //! | `report` | runs as one page |
+//! | `export`, `export_choice` | states in the formats of other programs; which of them, and of what |
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
 //! | `calibrate` | the threshold at which a scene's mesh keeps an error |
@@ -24,6 +25,8 @@ mod bench;
 mod bisect;
 mod calibrate;
 mod converge;
+mod export;
+mod export_choice;
 mod extremes;
 mod failure;
 mod help;
@@ -80,6 +83,7 @@ enum Command {
     Inspect(inspect::Arguments),
     Plot(plot::Arguments),
     Report(report::Arguments),
+    Export(export::Arguments),
     Replay(replay::Arguments),
     Bisect(bisect::Arguments),
     Stability(stability::Arguments),
@@ -104,6 +108,7 @@ impl Command {
             self,
             Command::Plot(_)
                 | Command::Report(_)
+                | Command::Export(_)
                 | Command::Bisect(_)
                 | Command::Stability(_)
                 | Command::Recover(_)
@@ -117,6 +122,7 @@ impl Command {
             Command::Inspect(arguments) => arguments.run().map(|()| 0),
             Command::Plot(arguments) => arguments.run().map(|()| 0),
             Command::Report(arguments) => arguments.run().map(|()| 0),
+            Command::Export(arguments) => arguments.run().map(|()| 0),
             Command::Replay(arguments) => arguments.run(),
             Command::Bisect(arguments) => arguments.run(),
             Command::Stability(arguments) => arguments.run().map(|()| 0),

@@ -129,10 +129,7 @@ fn named(scene: &Scene, name: &str) -> Result<(Field, Option<usize>), Failure> {
         // One component is the value itself; of more the length is shown.
         None => Some((field.clone(), (field.components.len() == 1).then_some(0))),
     });
-    found.ok_or_else(|| Failure::NoSuchField {
-        name: name.to_owned(),
-        known: fields.iter().map(listed).collect::<Vec<_>>().join(", "),
-    })
+    found.ok_or_else(|| Failure::NoSuchField { field: name.to_owned(), known: fields.iter().map(listed).collect() })
 }
 
 /// A field with its components: `bending_moment.11/22/12`.

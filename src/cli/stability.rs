@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::asked::Asked;
+use super::asked::{Asked, Ends};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::scene_at;
 use super::output::{file_name, path_in_line, print, refuse_what_is_there, write_files};
 use super::plot::cells_per_element;
 use crate::history::{StabilityReport, States, stability_at};
-use crate::record::{Outcome, Record};
+use crate::record::Record;
 use crate::scene::Scene;
 use crate::shell::{add, norm, scaled, sub};
 use crate::units::{count, place, unsigned_zero};
@@ -44,7 +44,7 @@ impl Arguments {
         let mut ends = Ends::default();
         asked.stages_of_step(step)?.iter().for_each(|record| ends.take(record));
         let no_end = || Failure::NoSuchStep { log: self.log.clone(), step, known: asked.steps() };
-        let index = ends.stages.pop().ok_or_else(no_end)?;
+        let index = ends.stages().pop().ok_or_else(no_end)?;
         let record = asked.log.record(index).map_err(asked.changed())?;
         let log = asked.log.part(index..index + 1).map_err(asked.changed())?;
         let (report, scene) = self.report(&mut States::of(&log), index)?;
@@ -56,14 +56,9 @@ impl Arguments {
     }
 
     fn all(&self, asked: &Asked) -> Result<(), Failure> {
-        let every: Vec<usize> = (0..asked.log.commits()).collect();
-        let mut ends = Ends::default();
-        for part in asked.log.parts(&every) {
-            let (log, indices) = part.map_err(asked.changed())?;
-            indices.iter().filter_map(|index| log.entry(*index)).for_each(|entry| ends.take(&entry.record));
-        }
+        let ends = asked.ends()?;
         print(HEAD)?;
-        for part in asked.log.parts(&ends.stages) {
+        for part in asked.log.parts(&ends.stages()) {
             let (log, indices) = part.map_err(asked.changed())?;
             let mut states = States::of(&log);
             for (index, entry) in indices.iter().filter_map(|index| Some((*index, log.entry(*index)?))) {
@@ -78,27 +73,6 @@ impl Arguments {
         let scene = scene_at(states.log(), &self.log, index, &[])?;
         let failed = |source| Failure::Stability { log: self.log.clone(), index, source: Box::new(source) };
         Ok((stability_at(states, index, &scene).map_err(failed)?, scene))
-    }
-}
-
-/// The last equilibrium of each load step.
-#[derive(Default)]
-struct Ends {
-    stages: Vec<usize>,
-    /// The load step of the last of them.
-    step: Option<u64>,
-}
-
-impl Ends {
-    /// Takes the stage that follows.
-    fn take(&mut self, Record { report, commit, .. }: &Record) {
-        if report.outcome != Outcome::Done || !report.stage.finds_equilibrium() {
-            return;
-        }
-        if self.step.replace(report.step) == Some(report.step) {
-            self.stages.pop();
-        }
-        self.stages.push(commit.ordinal as usize);
     }
 }
 

@@ -10,11 +10,13 @@
 //! | `mesh_picture` | the mesh as a picture |
 //! | `mesh_history` | the mesh for viewers of logs |
 //! | `report` | runs as a page |
-//! | `vtu` | the mesh for ParaView |
+//! | `vtu` | the mesh as drawn, for ParaView |
+//! | `export/` | states in the formats of other programs |
 
 mod camera;
 mod colour;
 mod deformed_surface;
+mod export;
 mod fields;
 mod mesh_history;
 mod mesh_picture;
@@ -27,6 +29,9 @@ mod vtu;
 
 pub use camera::ViewDirection;
 pub use deformed_surface::{coloured_surface, deformed_surface};
+pub use export::{
+    Instant, StatesOnMesh, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl, surface_vtu, time_steps,
+};
 pub use fields::{Field, ShellFields, fields_of};
 pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};

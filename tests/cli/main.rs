@@ -2,6 +2,7 @@
 
 mod binary;
 mod calibrate;
+mod export;
 mod extremes;
 mod folded;
 mod pictures;

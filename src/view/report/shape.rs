@@ -8,8 +8,8 @@ use crate::shell::norm;
 use crate::spline::{Mesh, Spans, mid_surface_point};
 use crate::state::State;
 use crate::view::colour::VIRIDIS;
+use crate::view::export::base64;
 use crate::view::fields::{Field, ShellFields, fields_of};
-use crate::view::vtu::base64;
 
 /// Most points of the whole shell in a frame.
 const MOST_POINTS: usize = 4000;

@@ -1,0 +1,198 @@
+//! `foldline export`: states of a log in the formats of other programs.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::TypedValueParser;
+
+use super::asked::{Asked, ordinal};
+use super::export_choice::{Format, StepRange, Steps, Target, chosen_fields, list_of_fields};
+use super::failure::{EXIT_CODES, Failure};
+use super::log_file::scene_at;
+use super::output::{file_name, path_in_line, print, refuse_what_is_there, write_files};
+use crate::history::States;
+use crate::record::{Parameter, Record};
+use crate::scene::Scene;
+use crate::state::State;
+use crate::units::rounded;
+use crate::view::{
+    Instant, StatesOnMesh, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl, surface_vtu, time_steps,
+};
+
+/// Write the states of a log for other programs: ParaView, tables, numpy, CAD
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub(super) struct Arguments {
+    /// Log to read (MCAP)
+    log: PathBuf,
+    /// What to write
+    #[arg(long, value_name = "FORMAT", required_unless_present = "list_fields")]
+    to: Option<Format>,
+    /// Folder for the files, or one file where this ends in .FORMAT [default: the log's name without .mcap]
+    #[arg(short, long, value_name = "DIR|FILE", value_parser = file_name())]
+    output: Option<PathBuf>,
+    /// Every N-th load step, and the last [default: all for vtu and npz, the last one for the rest]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    every: Option<u64>,
+    /// These load steps, such as 3,7,20-30
+    #[arg(long, value_name = "LIST", value_delimiter = ',', conflicts_with = "every")]
+    steps: Vec<StepRange>,
+    /// These fields [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    fields: Vec<String>,
+    /// Points along each side of an element, for csv, json and stl
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = points())]
+    points: usize,
+    /// Only print which fields there are, with units and meanings
+    #[arg(long)]
+    list_fields: bool,
+}
+
+impl Arguments {
+    /// Writes the files, and names them.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let Self { log, to, output, every, steps, fields, points, list_fields } = self;
+        let asked = Asked::open(&log)?;
+        let (Some(format), false) = (to, list_fields) else { return print(&list_of_fields(&asked.scene)) };
+        chosen_fields(&asked.scene, &fields)?;
+        let steps = match every {
+            Some(n) => Steps::Every(n),
+            None if steps.is_empty() => Steps::Unsaid,
+            None => Steps::Chosen(steps),
+        };
+        let ends = steps.of(asked.ends()?, format, &log)?;
+        let target = Target::of(output, &log, format);
+        if let (Target::File(file), true) = (&target, ends.len() > 1 && !format.holds_many_steps()) {
+            return Err(Failure::StepsInOneFile { file: file.clone(), steps: ends.len() });
+        }
+        let export = Export { asked, log: &log, format, fields: &fields, points, target };
+        if format == Format::Npz { export.write_arrays(&ends) } else { export.write_states(&ends) }
+    }
+}
+
+/// What is written, and where.
+struct Export<'a> {
+    asked: Asked,
+    log: &'a Path,
+    format: Format,
+    fields: &'a [String],
+    points: usize,
+    target: Target,
+}
+
+impl Export<'_> {
+    /// Writes the states of these stages, a file or two each.
+    fn write_states(&self, ends: &[Record]) -> Result<(), Failure> {
+        // Nothing is computed for a place where something is in the way.
+        let files = ends.iter().flat_map(|end| self.files_of(end)).chain(self.series_files());
+        refuse_what_is_there(&files.collect::<Vec<_>>())?;
+        self.each_state(ends, |scene, state, record| {
+            let contents = self.contents(&WholeShell::new(scene, state), scene, &Instant::of(record))?;
+            write(&self.files_of(record).into_iter().zip(contents).collect::<Vec<_>>())
+        })?;
+        let times = time_steps(&ends.iter().map(Instant::of).collect::<Vec<_>>());
+        let series = self.series_files().into_iter().enumerate().map(|(kind, path)| {
+            let name = |end| self.files_of(end)[kind].file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let names: Vec<String> = ends.iter().map(name).collect();
+            (path, pvd(names.iter().map(|name| &name[..]).zip(times.iter().copied())).into_bytes())
+        });
+        write(&series.collect::<Vec<_>>())
+    }
+
+    /// Writes the states of these stages as arrays: a file for all that follow each other on one mesh.
+    fn write_arrays(&self, ends: &[Record]) -> Result<(), Failure> {
+        let mut groups: Vec<StatesOnMesh> = Vec::new();
+        self.each_state(ends, |scene, state, record| {
+            let shell = WholeShell::new(scene, state);
+            let state = (Instant::of(record), shell.displacement().collect());
+            match groups.last_mut().filter(|group| group.mesh == *shell.undeformed()) {
+                Some(group) => group.states.push(state),
+                None => groups.push(StatesOnMesh { mesh: shell.undeformed().clone(), states: vec![state] }),
+            }
+            Ok(())
+        })?;
+        if let (Target::File(file), true) = (&self.target, groups.len() > 1) {
+            return Err(Failure::MeshesInOneFile { file: file.clone(), meshes: groups.len() });
+        }
+        let file = |group: &StatesOnMesh| {
+            let [first, last] =
+                [group.states.first(), group.states.last()].map(|state| state.map_or(0, |(at, _)| at.step));
+            let path = self.target.of_steps(first, last, self.format);
+            let bytes = npz(group).map_err(|source| Failure::Write { path: path.clone(), source: source.into() })?;
+            Ok((path, bytes))
+        };
+        write(&groups.iter().map(file).collect::<Result<Vec<_>, Failure>>()?)
+    }
+
+    /// The contents of the files of a state.
+    fn contents(&self, shell: &WholeShell, scene: &Scene, instant: &Instant) -> Result<Vec<Vec<u8>>, Failure> {
+        let fields = chosen_fields(scene, self.fields)?;
+        let title = || {
+            let name = self.log.file_stem().unwrap_or_default().to_string_lossy();
+            let at = match instant.driven_by {
+                Parameter::Rotation => format!("{} degrees", rounded(instant.parameter)),
+                Parameter::LoadFactor => instant.driven_by.shown_short(instant.parameter),
+            };
+            format!("{name}, load step {}, {at}", instant.step)
+        };
+        Ok(match self.format {
+            Format::Vtu => {
+                [surface_vtu(shell, &fields, instant), knot_lines_vtu(shell, instant)].map(String::into_bytes).into()
+            }
+            Format::Csv => vec![csv(shell, &fields, self.points).into_bytes()],
+            Format::Json => vec![json(shell, &fields, self.points, instant).into_bytes()],
+            Format::Stl => vec![stl(shell.deformed(), self.points, &title())],
+            Format::Step => vec![step(shell.deformed(), &title()).into_bytes()],
+            // Its states are not written one by one.
+            Format::Npz => vec![],
+        })
+    }
+
+    /// The files of the state of a stage.
+    fn files_of(&self, end: &Record) -> Vec<PathBuf> {
+        let step = end.report.step;
+        match self.format {
+            Format::Vtu => [&self.target, &self.target.of_knot_lines()].map(|to| to.of_step(step, self.format)).into(),
+            _ => vec![self.target.of_step(step, self.format)],
+        }
+    }
+
+    /// The files that make one series of the files of all steps.
+    fn series_files(&self) -> Vec<PathBuf> {
+        match self.format {
+            Format::Vtu => [&self.target, &self.target.of_knot_lines()].map(Target::of_series).into(),
+            _ => vec![],
+        }
+    }
+
+    /// Shows the state that each of some stages made to `see`, with the scene and the record of the stage.
+    fn each_state(
+        &self,
+        ends: &[Record],
+        mut see: impl FnMut(&Scene, &State, &Record) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let stages: Vec<usize> = ends.iter().map(ordinal).collect();
+        let mut ends = ends.iter();
+        for part in self.asked.log.parts(&stages) {
+            let (log, indices) = part.map_err(self.asked.changed())?;
+            let mut states = States::of(&log);
+            for (index, end) in indices.iter().zip(ends.by_ref()) {
+                let unusable = |source| Failure::WrongLog { log: self.log.to_path_buf(), source: Box::new(source) };
+                let state = states.at(*index).map_err(unusable)?;
+                see(&scene_at(&log, self.log, *index, &[])?, &state, end)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A number of points that has both ends of a side.
+fn points() -> impl TypedValueParser<Value = usize> {
+    clap::value_parser!(u64).range(2..=100).map(|points| points as usize)
+}
+
+/// Writes files, and names them.
+fn write(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+    write_files(files)?;
+    print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
+}

@@ -1,0 +1,78 @@
+//! Grids of rational Bézier cells as XML of VTK: what surface and knot lines have in common.
+
+use std::fmt::Write as _;
+
+use super::bezier::BezierPatches;
+use super::instant::Instant;
+use super::xml_array::XmlArray;
+
+/// The point array that warps a grid.
+pub(super) const DISPLACEMENT: &str = "displacement";
+
+/// Cells of one type, each with points of its own.
+pub(super) struct BezierGrid<'a> {
+    pub(super) patches: &'a BezierPatches,
+    /// VTK's type of the cells.
+    pub(super) kind: u8,
+    /// Degrees of each cell along its parameters; 0 for one that it has not.
+    pub(super) degrees: Vec<[usize; 2]>,
+    /// Control points of one cell after another, in VTK's order.
+    pub(super) controls: Vec<usize>,
+}
+
+impl BezierGrid<'_> {
+    /// Formats the text of a `.vtu` file, with the numbers of the instant and further field arrays, and with weights,
+    /// displacements and further point arrays.
+    pub(super) fn vtu(
+        self,
+        instant: &Instant,
+        field_arrays: impl Iterator<Item = XmlArray>,
+        point_arrays: impl Iterator<Item = XmlArray>,
+    ) -> String {
+        let mut xml = String::from(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+             header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n",
+        );
+        for (name, value) in instant.numbers() {
+            XmlArray::of_numbers(name, [value].into_iter()).tuples(1).write(&mut xml);
+        }
+        XmlArray::of_text("state_hash", &instant.state_hash.to_string()).write(&mut xml);
+        field_arrays.for_each(|array| array.write(&mut xml));
+        xml.push_str("</FieldData>\n");
+        let (points, cells) = (self.controls.len(), self.degrees.len());
+        // Writing to a string does not fail.
+        let _ = writeln!(xml, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<Points>");
+        self.vectors("points", |k| self.patches.undeformed.point(k)).write(&mut xml);
+        xml.push_str("</Points>\n");
+        self.write_cells(&mut xml);
+        xml.push_str("<PointData Vectors=\"displacement\" RationalWeights=\"RationalWeights\">\n");
+        let weights = self.controls.iter().map(|k| self.patches.undeformed.control_points[*k][3]);
+        XmlArray::of_numbers("RationalWeights", weights).write(&mut xml);
+        self.vectors(DISPLACEMENT, |k| self.patches.displacement[k]).write(&mut xml);
+        point_arrays.for_each(|array| array.write(&mut xml));
+        xml.push_str("</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+        xml
+    }
+
+    /// A vector in mm at each control point.
+    fn vectors(&self, name: &str, at: impl Fn(usize) -> [f64; 3]) -> XmlArray {
+        XmlArray::of_numbers(name, self.controls.iter().flat_map(|k| at(*k)))
+            .of_components(&["x", "y", "z"])
+            .in_unit("mm")
+    }
+
+    fn write_cells(&self, xml: &mut String) {
+        let ends = self.degrees.iter().scan(0, |end, [p, q]| {
+            *end += (p + 1) * (q + 1);
+            Some(*end)
+        });
+        xml.push_str("<Cells>\n");
+        XmlArray::of_indices("connectivity", 0..self.controls.len()).write(xml);
+        XmlArray::of_indices("offsets", ends).write(xml);
+        XmlArray::of_bytes("UInt8", "types", self.degrees.iter().map(|_| self.kind)).write(xml);
+        xml.push_str("</Cells>\n<CellData HigherOrderDegrees=\"HigherOrderDegrees\">\n");
+        let degrees = self.degrees.iter().flat_map(|[p, q]| [*p as f64, *q as f64, 0.0]);
+        XmlArray::of_numbers("HigherOrderDegrees", degrees).of_components(&["u", "v", "w"]).write(xml);
+        xml.push_str("</CellData>\n");
+    }
+}

@@ -1,0 +1,109 @@
+//! The shell for ParaView: an unstructured grid of rational Bézier cells, which are the NURBS surface itself.
+//!
+//! Format: VTK File Formats, "UnstructuredGrid"; cells of type `VTK_BEZIER_QUADRILATERAL`, whose degrees and weights VTK finds in
+//! the cell array `HigherOrderDegrees` and the point array `RationalWeights`. Points are those of the undeformed surface, and
+//! `displacement` has the displacements of the control points: "Warp by Vector" with scale 1 makes exactly the deformed surface,
+//! since both are sums of the same rational functions. Other fields are coefficients of patches that take the field's values at
+//! (p + 1)(q + 1) uniform points of each cell. Coefficients may lie beyond all values of the surface, where a field has an extreme inside
+//! a cell; so the range of the values stands beside them, as the field array `NAME_range` (a row for each component).
+
+use rayon::prelude::*;
+
+use super::bezier::BezierPatches;
+use super::bezier_grid::{BezierGrid, DISPLACEMENT};
+use super::instant::Instant;
+use super::whole_shell::WholeShell;
+use super::xml_array::XmlArray;
+use crate::view::fields::Field;
+
+/// VTK's type of the cells.
+const BEZIER_QUADRILATERAL: u8 = 77;
+
+/// Formats the shell as the text of a `.vtu` file, with `displacement` and these fields as point arrays, and the numbers of the
+/// instant as field arrays.
+pub fn surface_vtu(shell: &WholeShell, fields: &[Field], instant: &Instant) -> String {
+    let patches = BezierPatches::of(shell);
+    let (order, cells) = (vtk_order(patches.undeformed.degree), patches.elements().len());
+    let in_order = |element| {
+        let controls: Vec<usize> = patches.of_element(element).collect();
+        order.iter().map(|k| controls[*k]).collect::<Vec<_>>()
+    };
+    // Every cell has points of its own: fields may jump between elements.
+    let controls = (0..cells).flat_map(in_order).collect();
+    let degrees = vec![patches.undeformed.degree; cells];
+    let shown = fields.iter().filter(|field| field.name != DISPLACEMENT);
+    let shown: Vec<OnCells> = shown.map(|field| OnCells::of(shell, &patches, field)).collect();
+    BezierGrid { patches: &patches, kind: BEZIER_QUADRILATERAL, degrees, controls }.vtu(
+        instant,
+        shown.iter().map(OnCells::range_array),
+        shown.iter().map(|on_cells| on_cells.array(&order)),
+    )
+}
+
+/// A field on the cells.
+struct OnCells<'f> {
+    field: &'f Field,
+    /// Coefficients of each cell, the second direction fastest.
+    coefficients: Vec<Vec<[f64; 3]>>,
+    /// Least and largest value of each component at the nodes.
+    range: Vec<[f64; 2]>,
+}
+
+impl<'f> OnCells<'f> {
+    fn of(shell: &WholeShell, patches: &BezierPatches, field: &'f Field) -> Self {
+        let at_nodes = |element: usize| {
+            let bounds = patches.bounds(element);
+            patches.nodes(element).map(|at| shell.value_in(field, bounds, at)).collect::<Vec<_>>()
+        };
+        let values: Vec<Vec<[f64; 3]>> = (0..patches.elements().len()).into_par_iter().map(at_nodes).collect();
+        let range = |component: usize| {
+            let values = values.iter().flatten().map(|value| value[component]);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
+        };
+        let coefficients =
+            values.iter().enumerate().map(|(element, values)| patches.interpolating(element, values)).collect();
+        Self { field, coefficients, range: (0..field.components.len()).map(range).collect() }
+    }
+
+    /// The range, a row for each component.
+    fn range_array(&self) -> XmlArray {
+        XmlArray::of_numbers(&format!("{}_range", self.field.name), self.range.iter().flatten().copied())
+            .of_components(&["least", "largest"])
+            .tuples(self.range.len())
+    }
+
+    /// The coefficients, with those of a cell in this order.
+    fn array(&self, order: &[usize]) -> XmlArray {
+        let Field { name, components, unit, .. } = self.field;
+        let in_order = self.coefficients.iter().flat_map(|cell| order.iter().map(|k| cell[*k]));
+        let numbers = in_order.flat_map(|value| value.into_iter().take(components.len()));
+        XmlArray::of_numbers(name, numbers).of_components(components).in_unit(unit)
+    }
+}
+
+/// Control points of a patch (second direction fastest) in the order of `vtkHigherOrderQuadrilateral`: corners around the cell,
+/// then the inner points of its edges v = 0, u = 1, v = 1, u = 0, each with its parameter, then the inside with u fastest.
+fn vtk_order([p, q]: [usize; 2]) -> Vec<usize> {
+    let corners = [[0, 0], [p, 0], [p, q], [0, q]].into_iter();
+    let edges = (1..p)
+        .map(|i| [i, 0])
+        .chain((1..q).map(|j| [p, j]))
+        .chain((1..p).map(|i| [i, q]))
+        .chain((1..q).map(|j| [0, j]));
+    let inside = (1..q).flat_map(|j| (1..p).map(move |i| [i, j]));
+    corners.chain(edges).chain(inside).map(|[i, j]| i * (q + 1) + j).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::vtk_order;
+
+    #[test]
+    fn points_of_a_cell_in_the_order_of_vtk() {
+        // 2 by 3: i (q + 1) + j.
+        assert_eq!(vtk_order([2, 3]), [0, 8, 11, 3, 4, 9, 10, 7, 1, 2, 5, 6]);
+        let mut all = vtk_order([5, 2]);
+        all.sort_unstable();
+        assert!(all.into_iter().eq(0..18));
+    }
+}
