@@ -10,7 +10,7 @@
 //! | `mesh_picture` | the mesh as a picture |
 //! | `mesh_history` | the mesh for viewers of logs |
 //! | `vtu` | the mesh as drawn, for ParaView |
-//! | `export/` | states in the formats of other programs |
+//! | `export` | states in the formats of other programs |
 
 mod camera;
 mod colour;
