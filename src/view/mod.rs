@@ -11,7 +11,7 @@
 //! | `mesh_history` | the mesh for viewers of logs |
 //! | `report` | runs as a page |
 //! | `vtu` | the mesh as drawn, for ParaView |
-//! | `export/` | states in the formats of other programs |
+//! | `export` | states in the formats of other programs |
 
 mod camera;
 mod colour;

@@ -29,8 +29,8 @@ impl<'a> WholeShell<'a> {
         let cuts = scene.symmetry.cuts();
         if cuts[0] {
             let grid = model.grid();
-            let row = grid.line(0, grid.counts[0] - 1);
-            let plane = row.map(|control| model.point(control)[0]).sum::<f64>() / grid.counts[1] as f64;
+            let row: Vec<f64> = grid.line(0, grid.counts[0] - 1).map(|control| model.point(control)[0]).collect();
+            let plane = row.iter().sum::<f64>() / row.len() as f64;
             let image = |[x, y, z, w]: [f64; 4]| [2.0 * plane * w - x, y, z, w];
             [undeformed, deformed] = [undeformed, deformed].map(|mesh| with_image(&mesh, 0, Image::After, image));
         }
