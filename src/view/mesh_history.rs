@@ -1,6 +1,7 @@
 //! The deformed mesh after every equilibrium as `foxglove.SceneUpdate` messages, for the 3D panel of a viewer: the
-//! surface coloured by bending strain, knot lines on top. Written as JSON with a schema, which Foxglove takes as well as
-//! protobuf and any other reader can read without generated code.
+//! surface coloured by bending strain, knot lines on top, and the range of the colours in words. Written as JSON, which any
+//! reader can read without generated code, with the official schema, `scene_update.schema.json` (npm package `@foxglove/schemas`
+//! 2.1.0, MIT licence).
 
 use std::sync::Arc;
 
@@ -16,6 +17,7 @@ use crate::state::State;
 
 /// Topic of the messages with deformed meshes.
 pub const MESH_HISTORY_TOPIC: &str = "/foldline/scene";
+const SCHEMA: &[u8] = include_bytes!("scene_update.schema.json");
 /// Cells of a picture for each element, each way.
 const CELLS_PER_ELEMENT: usize = 2;
 /// Bending strain at the bright end of the colours, in units of 1/R: a fold has 1.
@@ -31,18 +33,12 @@ pub struct MeshHistory {
 impl MeshHistory {
     /// Creates the source of messages for a run of this scene.
     pub fn new(scene: &Scene) -> Self {
-        let list = |what: &str| json!({"type": "array", "items": {"type": "object"}, "description": what});
-        let schema = json!({
-            "title": "foxglove.SceneUpdate",
-            "type": "object",
-            "properties": {"deletions": list("Entities to delete"), "entities": list("Entities to add or replace")},
-        });
         let topic = ViewerTopic {
             topic: MESH_HISTORY_TOPIC.to_string(),
             message_encoding: "json".to_string(),
             schema_name: "foxglove.SceneUpdate".to_string(),
             schema_encoding: "jsonschema".to_string(),
-            schema: schema.to_string().into_bytes(),
+            schema: SCHEMA.to_vec(),
         };
         Self { scene: scene.clone(), topic: Arc::new(topic) }
     }
@@ -80,15 +76,33 @@ fn scene_update(samples: &SurfaceSamples, scene: &Scene) -> Value {
         })
         .collect();
     let indices: Vec<usize> = samples.cells().flat_map(|[a, b, c, d]| [a, b, c, a, c, d]).collect();
-    let lines: Vec<Value> = samples
-        .knot_lines
-        .iter()
-        .flat_map(|line| line.windows(2).flat_map(|pair| [point(pair[0]), point(pair[1])]))
-        .collect();
     let pose =
         json!({"position": {"x": 0.0, "y": 0.0, "z": 0.0}, "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}});
     let black = json!({"r": 0.0, "g": 0.0, "b": 0.0, "a": 0.6});
     let none: [Value; 0] = [];
+    // Type 0: a line through all points.
+    let line = |line: &Vec<[f64; 3]>| {
+        json!({
+            "type": 0,
+            "pose": pose,
+            "thickness": 1.0,
+            "scale_invariant": true,
+            "points": line.iter().map(|p| point(*p)).collect::<Vec<_>>(),
+            "color": black,
+            "colors": none,
+            "indices": none,
+        })
+    };
+    let lines: Vec<Value> = samples.knot_lines.iter().map(line).collect();
+    let corner = [0, 1, 2].map(|c| samples.points.iter().map(|p| p[c]).fold(f64::MIN, f64::max));
+    let legend = json!({
+        "pose": {"position": point(corner), "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}},
+        "billboard": true,
+        "font_size": 14.0,
+        "scale_invariant": true,
+        "color": {"r": 0.5, "g": 0.5, "b": 0.5, "a": 1.0},
+        "text": format!("{}: 0 to {:.3e}", samples.quantity, BRIGHTEST / radius_mm),
+    });
     json!({
         "deletions": none,
         "entities": [{
@@ -98,7 +112,7 @@ fn scene_update(samples: &SurfaceSamples, scene: &Scene) -> Value {
             "lifetime": {"sec": 0, "nsec": 0},
             "frame_locked": false,
             "metadata": [{"key": "colour", "value": samples.quantity}, {"key": "unit of length", "value": "mm"}],
-            "arrows": none, "cubes": none, "spheres": none, "cylinders": none, "texts": none, "models": none,
+            "arrows": none, "cubes": none, "spheres": none, "cylinders": none, "texts": [legend], "models": none,
             "triangles": [{
                 "pose": pose,
                 "points": samples.points.iter().map(|p| point(*p)).collect::<Vec<_>>(),
@@ -106,17 +120,7 @@ fn scene_update(samples: &SurfaceSamples, scene: &Scene) -> Value {
                 "colors": colours,
                 "indices": indices,
             }],
-            // Type 2: every two points are a line.
-            "lines": [{
-                "type": 2,
-                "pose": pose,
-                "thickness": 1.0,
-                "scale_invariant": true,
-                "points": lines,
-                "color": black,
-                "colors": none,
-                "indices": none,
-            }],
+            "lines": lines,
         }],
     })
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use foldline::adapt::{Coarsened, DirectionalError, Enriched, project_displacements};
 use foldline::model::starting_mesh;
 use foldline::record::Record;
-use foldline::scene::{Adapt, Indicator, LengthLimit, Scene, Splitting, Stage};
+use foldline::scene::{Adapt, Indicator, LengthLimit, Scene, Splitting, Stage, parse};
 use foldline::state::State;
 use foldline::study::{equilibrium_path, snaps};
 
@@ -112,7 +112,8 @@ fn knots_leave_a_fold_that_has_grown() {
 /// jump where independent solvers have it. What the coarse mesh found beyond is no part of the path.
 #[test]
 fn a_jump_on_refining_is_located_on_the_finer_mesh() {
-    let mut bending = by_error(quarter([3, 3], [4, 4], 12.0, 2.0), 0.3);
+    let mut bending = parse(include_str!("../restart/tolerance.toml"), "tolerance.toml").unwrap();
+    bending.load.set_target(12.0);
     bending.solver.snap_tolerance_deg = Some(0.02);
     let records: Vec<Record> = run(bending).into_iter().map(|(_, record)| record).collect();
     let returned = records.iter().position(|record| record.report.returned_from().is_some()).expect("it returns");
