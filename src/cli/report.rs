@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::asked::{Ends, ordinal};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
 use super::output::{file_name, path_in_line, print, write_files};
 use crate::history::States;
 use crate::journal::Manifest;
-use crate::record::{Outcome, Record};
 use crate::scene::Parameter;
 use crate::view::{FrameAt, PlotError, ReportedRun, Shape, Told, chosen_frames, report_page};
 
@@ -47,18 +47,19 @@ fn reported(path: &Path) -> Result<ReportedRun, Failure> {
     let read = read_log(path)?.whole(path)?;
     let records = read.records_of_scene(path)?;
     let last = records.last().ok_or(PlotError::NoEquilibrium)?;
-    let settled = settled(&records);
-    if settled.is_empty() {
+    let mut ends = Ends::default();
+    records.iter().for_each(|record| ends.take(record));
+    let steps: Vec<u64> = ends.records.iter().map(|record| record.report.step).collect();
+    if steps.is_empty() {
         return Err(PlotError::NoEquilibrium.into());
     }
-    let steps: Vec<u64> = settled.iter().map(|index| records[*index].report.step).collect();
     let jumped = |step: u64| records.iter().any(|record| record.report.step == step && record.report.jumped);
     let chosen = chosen_frames(&steps, |step| jumped(step) || jumped(step + 1));
     let mut states = States::of(&read.log);
     let mut frames = Vec::new();
-    for index in settled.into_iter().filter(|index| chosen.contains(&records[*index].report.step)) {
+    for end in ends.records.iter().filter(|end| chosen.contains(&end.report.step)) {
         let wrong = |source| Failure::WrongLog { log: path.to_path_buf(), source: Box::new(source) };
-        let state = states.at(index).map_err(wrong)?;
+        let state = states.at(ordinal(end)).map_err(wrong)?;
         let label = Parameter::of(&read.scene).shown_short(state.parameter);
         frames.push(FrameAt { step: state.step, label, state });
     }
@@ -71,20 +72,6 @@ fn reported(path: &Path) -> Result<ReportedRun, Failure> {
     let scene_text = read.log.manifests().iter().next_back().map_or_else(String::new, |made| made.scene_text.clone());
     let told = Told { name: name_of(path), scene_text, origin };
     Ok(ReportedRun::new(&read.scene, &records, told, Shape::new(&read.scene, &frames)))
-}
-
-/// Indices of the last equilibrium of every load step.
-fn settled(records: &[Record]) -> Vec<usize> {
-    let is_equilibrium =
-        |record: &Record| record.report.outcome == Outcome::Done && record.report.stage.finds_equilibrium();
-    let mut found: Vec<usize> = Vec::new();
-    for (index, record) in records.iter().enumerate().filter(|(_, record)| is_equilibrium(record)) {
-        match found.last_mut().filter(|last| records[**last].report.step == record.report.step) {
-            Some(last) => *last = index,
-            None => found.push(index),
-        }
-    }
-    found
 }
 
 fn machine(made: &Manifest) -> Vec<(String, String)> {

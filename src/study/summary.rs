@@ -248,23 +248,19 @@ fn energy_balance(records: &[Record]) -> Option<EnergyBalance> {
         if report.jumped {
             break;
         }
-        let turned = (moment + report.moment_n_mm) * (report.parameter - sum.parameter).to_radians();
+        let work = match report.driven_by {
+            Parameter::Rotation => (moment + report.moment_n_mm) * (report.parameter - sum.parameter).to_radians(),
+            Parameter::LoadFactor => report.work_n_mm,
+        };
         match report.stage {
             Stage::Solve if report.outcome == Outcome::Done => {
-                sum.work_n_mm += match report.driven_by {
-                    Parameter::Rotation => turned,
-                    Parameter::LoadFactor => report.work_n_mm,
-                };
+                sum.work_n_mm += work;
                 sum.parameter = report.parameter;
                 sum.put_in_n_mm += report.put_in_n_mm;
                 sum.released_in_ripples_n_mm += report.energy_released_n_mm.unwrap_or(0.0);
             }
             // A return to before a jump on refining takes the work of the step back.
             Stage::ReEquilibrate if report.returned_from().is_some() => {
-                let work = match report.driven_by {
-                    Parameter::Rotation => turned,
-                    Parameter::LoadFactor => report.work_n_mm,
-                };
                 sum.work_n_mm += work;
                 sum.parameter = report.parameter;
                 sum.put_in_n_mm -= report.put_in_n_mm;

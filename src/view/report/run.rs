@@ -1,10 +1,12 @@
 //! What the page shows of a run.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::shape::Shape;
 use crate::record::{Parameter, Record};
-use crate::scene::{Parameter as Driven, Scene};
+use crate::scene::Scene;
 use crate::study::{Summary, equilibrium_path};
 
 /// A run, as the page has it.
@@ -88,7 +90,7 @@ impl ReportedRun {
         let snaps = summary.snaps.iter().map(|snap| {
             let released =
                 snap.energy_released_n_mm.map_or(String::new(), |energy| format!(", released {energy:.4} N·mm"));
-            let [from, to] = [snap.before, snap.after].map(|at| Driven::of(scene).shown_short(at));
+            let [from, to] = [snap.before, snap.after].map(|at| Parameter::of(scene).shown_short(at));
             format!("{from} to {to}: {:.3} → {:.3}{released}", snap.moment_before_n_mm, snap.moment_after_n_mm)
         });
         Self {
@@ -96,7 +98,7 @@ impl ReportedRun {
             summary: summary.to_string(),
             scene: told.scene_text,
             origin: told.origin,
-            parameter: match Driven::of(scene) {
+            parameter: match Parameter::of(scene) {
                 Parameter::Rotation => "rotation of each end (°)",
                 Parameter::LoadFactor => "load factor",
             },
@@ -109,18 +111,29 @@ impl ReportedRun {
     }
 }
 
+/// What a run came to by the end of a load step.
+#[derive(Clone, Copy, Default)]
+struct Spent {
+    wall_s: f64,
+    iterations: usize,
+    unknowns: usize,
+}
+
 fn points(records: &[Record], turns: bool, unprobed: bool) -> Vec<Point> {
-    let spent_until = |step: u64| {
-        let until = records.iter().take_while(|record| record.report.step <= step);
-        until.fold((0.0, 0), |(wall, iterations), record| (wall + record.wall_s, iterations + record.report.iterations))
-    };
-    let unknowns_at = |step: u64| {
-        records.iter().rev().find(|record| record.report.step == step).map_or(0, |record| record.report.unknowns)
-    };
+    let mut spent = Spent::default();
+    let mut by_step: BTreeMap<u64, Spent> = BTreeMap::new();
+    for Record { report, wall_s, .. } in records {
+        spent = Spent {
+            wall_s: spent.wall_s + wall_s,
+            iterations: spent.iterations + report.iterations,
+            unknowns: report.unknowns,
+        };
+        by_step.insert(report.step, spent);
+    }
     equilibrium_path(records)
         .iter()
         .map(|point| {
-            let (wall_s, iterations) = spent_until(point.step);
+            let Spent { wall_s, iterations, unknowns } = by_step.get(&point.step).copied().unwrap_or_default();
             Point {
                 step: point.step,
                 at: point.parameter,
@@ -131,10 +144,10 @@ fn points(records: &[Record], turns: bool, unprobed: bool) -> Vec<Point> {
                 },
                 energy: point.strain_energy_n_mm,
                 elements: point.elements,
-                unknowns: unknowns_at(point.step),
+                unknowns,
                 stable: point.negative_pivots == 0,
                 jumped: point.jumped,
-                critical: point.passed.map(|passed| passed.critical.in_words().to_string()),
+                critical: point.passed.map(|passed| passed.critical.in_words()),
                 wall_s,
                 iterations,
             }

@@ -8,8 +8,8 @@ use crate::shell::norm;
 use crate::spline::{Mesh, Spans, mid_surface_point};
 use crate::state::State;
 use crate::view::colour::VIRIDIS;
-use crate::view::export::base64;
-use crate::view::fields::{Field, ShellFields, fields_of};
+use crate::view::export::{WholeShell, base64};
+use crate::view::fields::{Field, fields_of};
 
 /// Most points of the whole shell in a frame.
 const MOST_POINTS: usize = 4000;
@@ -80,14 +80,11 @@ pub fn chosen_frames(steps: &[u64], wanted: impl Fn(u64) -> bool) -> Vec<u64> {
     steps.iter().enumerate().filter(is_chosen).map(|(_, step)| *step).collect()
 }
 
-/// A line of points in one direction: parameters, and whether they are images in the plane of symmetry.
-type Places = Vec<(f64, bool)>;
-
 impl Shape {
     /// Samples the states of a scene; `None` where there is none.
     pub fn new(scene: &Scene, states: &[FrameAt]) -> Option<Self> {
         let finest = states.iter().max_by_key(|at| at.state.mesh.element_counts().iter().product::<usize>())?;
-        let grid = places(scene, &finest.state.mesh);
+        let grid = places(WholeShell::new(scene, &finest.state).undeformed());
         let offered = offered(scene);
         let sampled: Vec<Sampled> = states.iter().map(|at| Sampled::new(scene, &at.state, &grid, &offered)).collect();
         let coordinates =
@@ -139,85 +136,52 @@ struct Sampled {
 }
 
 impl Sampled {
-    fn new(scene: &Scene, state: &State, grid: &[Places; 2], offered: &[(Field, Option<usize>)]) -> Self {
-        let fields = ShellFields::new(scene, state);
-        let plane = symmetry_plane(state);
-        let position = |u: &(f64, bool), v: &(f64, bool)| {
-            let [mut x, mut y, z] = mid_surface_point(&state.mesh, &state.displacement, [u.0, v.0]).position;
-            if u.1 {
-                x = 2.0 * plane - x;
-            }
-            if v.1 {
-                y = -y;
-            }
-            [x, y, z]
-        };
-        let [along, across] = grid;
-        let each = || along.iter().flat_map(|u| across.iter().map(move |v| (u, v)));
-        let value = |field: &Field, component: Option<usize>, u: &(f64, bool), v: &(f64, bool)| {
-            let value = fields.value(field, [u.0, v.0]);
-            // Components that the page offers are the same in images.
+    fn new(scene: &Scene, state: &State, [along, across]: &[Vec<f64>; 2], offered: &[(Field, Option<usize>)]) -> Self {
+        let shell = WholeShell::new(scene, state);
+        let position = |at: [f64; 2]| mid_surface_point(shell.deformed(), &[], at).position;
+        let each = || along.iter().flat_map(|u| across.iter().map(|v| [*u, *v]));
+        let value = |field: &Field, component: Option<usize>, at: [f64; 2]| {
+            let value = shell.value(field, at);
             component.map_or_else(|| norm(value), |index| value[index])
         };
-        let knots = [0, 1].map(|direction| knot_places(scene, &state.mesh, direction));
-        let along_v = knots[0].iter().flat_map(|u| across.iter().map(move |v| (u, v)));
-        let along_u = knots[1].iter().flat_map(|v| along.iter().map(move |u| (u, v)));
+        let knots = [0, 1].map(|direction| divided(shell.undeformed(), direction, 1));
+        let along_v = knots[0].iter().flat_map(|u| across.iter().map(|v| [*u, *v]));
+        let along_u = knots[1].iter().flat_map(|v| along.iter().map(|u| [*u, *v]));
         Self {
-            points: each().map(|(u, v)| position(u, v)).collect(),
+            points: each().map(position).collect(),
             values: offered
                 .iter()
-                .map(|(field, component)| each().map(|(u, v)| value(field, *component, u, v)).collect())
+                .map(|(field, component)| each().map(|at| value(field, *component, at)).collect())
                 .collect(),
-            lines: along_v.chain(along_u).map(|(u, v)| position(u, v)).collect(),
+            lines: along_v.chain(along_u).map(position).collect(),
             line_counts: knots.each_ref().map(Vec::len),
         }
     }
 }
 
-/// x of the plane that the model ends at, mm: where its last row of points stands.
-fn symmetry_plane(state: &State) -> f64 {
-    const SAMPLES: usize = 5;
-    let at = |k: usize| {
-        mid_surface_point(&state.mesh, &state.displacement, [1.0, k as f64 / (SAMPLES - 1) as f64]).position[0]
-    };
-    (0..SAMPLES).map(at).sum::<f64>() / SAMPLES as f64
-}
-
-/// Parameters of the points of the whole shell: every element of the mesh, divided so that there are not too many.
-fn places(scene: &Scene, mesh: &Mesh) -> [Places; 2] {
-    let cuts = scene.symmetry.cuts();
+/// Parameters of the points of a whole shell: every element of the mesh, divided so that there are not too many.
+fn places(mesh: &Mesh) -> [Vec<f64>; 2] {
     let counts = mesh.element_counts();
-    let whole = [0, 1].map(|direction| counts[direction] * (1 + usize::from(cuts[direction])));
     let parts =
-        (1..=8).rev().find(|parts| whole.iter().map(|count| count * parts + 1).product::<usize>() <= MOST_POINTS);
-    let parts = parts.unwrap_or(1);
+        (1..=8).rev().find(|parts| counts.iter().map(|count| count * parts + 1).product::<usize>() <= MOST_POINTS);
     [0, 1].map(|direction| {
-        let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
-        let inner =
-            bounds.iter().flat_map(|[from, to]| (1..=parts).map(move |k| from + (to - from) * k as f64 / parts as f64));
-        let own: Vec<f64> = bounds.first().map(|[from, _]| *from).into_iter().chain(inner).collect();
-        let stride = own.len().div_ceil(MOST_POINTS / 20).max(1);
-        let last = own.len() - 1;
-        let kept = own.iter().enumerate().filter(|(index, _)| index % stride == 0 || *index == last).map(|(_, p)| *p);
-        completed(kept.collect(), direction, cuts[direction])
+        let all = divided(mesh, direction, parts.unwrap_or(1));
+        let stride = all.len().div_ceil(MOST_POINTS / 20).max(1);
+        let last = all.len() - 1;
+        all.into_iter()
+            .enumerate()
+            .filter(|(index, _)| index % stride == 0 || *index == last)
+            .map(|(_, at)| at)
+            .collect()
     })
 }
 
-fn knot_places(scene: &Scene, mesh: &Mesh, direction: usize) -> Places {
+/// The ends of the elements in a direction and points that divide each into so many parts.
+fn divided(mesh: &Mesh, direction: usize, parts: usize) -> Vec<f64> {
     let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
-    let knots = bounds.first().map(|[from, _]| *from).into_iter().chain(bounds.iter().map(|[_, to]| *to)).collect();
-    completed(knots, direction, scene.symmetry.cuts()[direction])
-}
-
-/// Parameters with their images: along the length the images follow, across they come before.
-fn completed(own: Vec<f64>, direction: usize, cut: bool) -> Places {
-    let own: Places = own.into_iter().map(|parameter| (parameter, false)).collect();
-    let image = |(parameter, _): &(f64, bool)| (*parameter, true);
-    match (cut, direction) {
-        (false, _) => own,
-        (true, 0) => own.iter().copied().chain(own.iter().rev().skip(1).map(image)).collect(),
-        (true, _) => own.iter().skip(1).rev().map(image).chain(own.iter().copied()).collect(),
-    }
+    let inner =
+        bounds.iter().flat_map(|[from, to]| (1..=parts).map(move |k| from + (to - from) * k as f64 / parts as f64));
+    bounds.first().map(|[from, _]| *from).into_iter().chain(inner).collect()
 }
 
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
