@@ -63,8 +63,8 @@ pub enum Damage {
         /// The error of the MCAP library.
         cause: mcap::McapError,
     },
-    /// A chunk whose lengths disagree, or that is compressed, which no log of this program is.
-    #[error("the lengths in the chunk's header do not agree, or it is compressed, which foldline's logs are not")]
+    /// A chunk whose lengths disagree, or that is compressed otherwise than logs of this program are.
+    #[error("the lengths in the chunk's header do not agree, or it is compressed in a way that foldline does not use")]
     ChunkHeader,
     /// A chunk larger than any that is written.
     #[error("the chunk has {bytes} bytes, and no chunk has more than {CHUNK_BYTES_LIMIT}")]
@@ -219,6 +219,9 @@ pub enum Damage {
         /// Commits before it.
         found: u64,
     },
+    /// A packed chunk without the commit that names it.
+    #[error("the packed chunk is not the one that the commit behind it names: viewers are not shown what they were")]
+    LoosePacked,
     /// Something after the end of the run.
     #[error("the log continues after the record of its end")]
     AfterEnd,
@@ -227,7 +230,8 @@ pub enum Damage {
 impl Damage {
     /// Whether this is what a writer that was cut off leaves behind.
     pub(super) fn is_cut(&self) -> bool {
-        matches!(self, Damage::CutPrefix { .. } | Damage::CutRecord { .. } | Damage::Zeros { .. })
+        let cut = matches!(self, Damage::CutPrefix { .. } | Damage::CutRecord { .. } | Damage::Zeros { .. });
+        cut || matches!(self, Damage::LoosePacked)
     }
 }
 

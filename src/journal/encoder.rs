@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 use std::io::{self, Write};
-use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use mcap::records::{MessageHeader, Metadata, Record as McapRecord};
@@ -13,48 +13,32 @@ use super::chunk;
 use super::codec::EncodedField;
 use super::encode_error::EncodeError;
 use super::format::{
-    BINARY_ENCODING, CHUNK_BYTES_LIMIT, COMMIT_TOPIC, DISPLACEMENT_TOPIC, FINISHED_TOPIC, MESH_TOPIC, OWN_TOPICS,
-    PROFILE, REPORT_BYTES_LIMIT, REPORT_TOPIC, STATE_TOPIC, log_time_ns, sequence,
+    CHUNK_BYTES_LIMIT, DISPLACEMENT_TOPIC, OWN_TOPICS, PROFILE, REPORT_BYTES_LIMIT, log_time_ns, sequence,
 };
 use super::frame::{self, Frame, op};
 use super::index::{Mark, Piece};
 use super::ledger::{ChunkPlace, Ledger};
 use super::manifest::Manifest;
-use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, ReportMessage, schema_of, seal};
+use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, PackedHash, ReportMessage, seal};
+use super::packer::Packer;
 use super::summary;
+use super::topics::{OWN, ViewerMessage, ViewerTopic, binary_topic};
 use crate::record::{Commit, Record};
 use crate::state::Hash;
 
-/// A topic that a log carries for viewers, apart from its own.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ViewerTopic {
-    /// Name of the topic; none of the log's own.
-    pub topic: String,
-    /// Encoding of its messages, such as `protobuf`.
-    pub message_encoding: String,
-    /// Name of their schema, such as `foxglove.SceneUpdate`.
-    pub schema_name: String,
-    /// Encoding of the schema, such as `protobuf`.
-    pub schema_encoding: String,
-    /// The schema of the messages.
-    pub schema: Vec<u8>,
-}
-
-/// A message for viewers on one of their topics.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ViewerMessage {
-    /// The topic of the message.
-    pub topic: Arc<ViewerTopic>,
-    /// Its bytes, in the topic's encoding.
-    pub data: Vec<u8>,
+/// The numbers under which a topic is described.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ChannelNumbers {
+    pub schema: u16,
+    pub channel: u16,
 }
 
 /// Bytes on their way out, shared with MCAP's writer, which would not give them back.
 #[derive(Clone, Debug, Default)]
-struct Outbox(Arc<Mutex<Vec<u8>>>);
+pub(super) struct Outbox(Arc<Mutex<Vec<u8>>>);
 
 impl Outbox {
-    fn bytes(&self) -> MutexGuard<'_, Vec<u8>> {
+    pub(super) fn bytes(&self) -> MutexGuard<'_, Vec<u8>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -82,8 +66,10 @@ pub(super) struct Encoder {
     ledger: Ledger,
     /// Numbers of the channels that are described so far.
     described: HashSet<u16>,
-    /// Topics that messages went to, and the numbers of their channels.
-    channels: Vec<(ViewerTopic, u16)>,
+    /// Topics that messages went to, and the numbers of their schemas and channels.
+    channels: Vec<(ViewerTopic, ChannelNumbers)>,
+    /// Packs what viewers are shown; not there before they are shown something.
+    packer: Option<Packer>,
     /// Mesh and fields of the last state, where they lie, and their lengths.
     pieces: Vec<(Hash, [u64; 2])>,
     /// Those that were not taken yet: the first messages of their chunk.
@@ -131,6 +117,7 @@ impl Encoder {
             described: ledger.channels.keys().copied().collect(),
             ledger,
             channels: Vec::new(),
+            packer: None,
             pieces: Vec::new(),
             new_pieces: Vec::new(),
             length,
@@ -154,6 +141,7 @@ impl Encoder {
         }
         if self.ledger.chunks.len() - self.writer_made_at >= CHUNKS_OF_ONE_WRITER {
             self.writer_made_at = self.ledger.chunks.len();
+            self.packer = None;
             // The one there is does as well.
             if let Ok((writer, outbox)) = writer_that_knows(&self.ledger) {
                 (self.writer, self.outbox) = (writer, outbox);
@@ -222,12 +210,6 @@ impl Encoder {
         messages.extend(new_fields.iter().map(|field| (&OWN.displacement, &field.bytes[..])));
         messages.push((&OWN.state, parts.state));
         messages.push((&OWN.report, &report));
-        for message in parts.viewer {
-            if OWN_TOPICS.contains(&message.topic.topic.as_str()) {
-                return Err(EncodeError::OwnTopic { topic: message.topic.topic.clone() });
-            }
-            messages.push((&message.topic, &message.data));
-        }
         let mut hashes = new_fields.iter().map(|field| field.hash);
         let named = messages.iter().map(|(topic, data)| match topic.topic.as_str() {
             DISPLACEMENT_TOPIC => hashes.next().map_or_else(
@@ -238,23 +220,47 @@ impl Encoder {
         });
         let named = named.collect();
         let fields: Vec<Hash> = parts.fields.iter().map(|field| field.hash).collect();
-        let commit = CommitMessage::new(&parts.record.commit, self.stretch, parts.mesh_hash, &fields, named);
+        let ordinal = parts.record.commit.ordinal;
+        let own_bytes = bytes_of(messages.iter().copied());
+        check_size(own_bytes, "")?;
+        let packed = self.packed(ordinal, parts.viewer)?;
+        let mut commit = CommitMessage::new(&parts.record.commit, self.stretch, parts.mesh_hash, &fields, named);
+        commit.packed = packed.as_deref().map(PackedHash::of);
         let commit = seal(&commit)?;
         messages.push((&OWN.commit, &commit));
-
-        const RECORD_OVERHEAD: usize = 256;
-        let bytes = messages.iter().map(|(topic, data)| data.len() + topic.schema.len() + RECORD_OVERHEAD).sum();
-        if bytes > CHUNK_BYTES_LIMIT {
-            let hint = if parts.viewer.is_empty() { "" } else { ", or `mesh_history = false` under [output]" };
-            return Err(EncodeError::TooLarge { bytes, hint });
-        }
         for (topic, data) in messages {
-            self.message(topic, parts.record.commit.ordinal, data)?;
+            self.message(topic, ordinal, data)?;
         }
+        // The chunk itself comes when the writer is flushed.
+        self.outbox.bytes().extend(packed.unwrap_or_default());
         self.pieces.retain(|(hash, _)| *hash == parts.mesh_hash || fields.contains(hash));
         let mesh = parts.mesh.as_ref().map(|_| parts.mesh_hash);
         self.new_pieces = mesh.into_iter().chain(new_fields.iter().map(|field| field.hash)).collect();
         Ok(self.writer.flush()?)
+    }
+
+    /// The messages for viewers as a packed chunk with its message indexes; `None` without a message.
+    fn packed(&mut self, ordinal: u64, viewer: &[ViewerMessage]) -> Result<Option<Vec<u8>>, EncodeError> {
+        if viewer.is_empty() {
+            return Ok(None);
+        }
+        check_size(
+            bytes_of(viewer.iter().map(|message| (&*message.topic, &message.data[..]))),
+            ", or `mesh_history = false` under [output]",
+        )?;
+        for message in viewer {
+            if OWN_TOPICS.contains(&message.topic.topic.as_str()) {
+                return Err(EncodeError::OwnTopic { topic: message.topic.topic.clone() });
+            }
+            // Described in the commit's chunk as well: nothing that is packed has to be unpacked to continue a log.
+            let numbers = self.channel(&message.topic)?;
+            let packer = match &mut self.packer {
+                Some(packer) => packer,
+                none => none.insert(Packer::new()?),
+            };
+            packer.message(&message.topic, numbers, &header_of(numbers, ordinal), &message.data)?;
+        }
+        Ok(self.packer.as_mut().map(Packer::chunk).transpose()?)
     }
 
     /// Where the last chunk that was taken lies.
@@ -286,31 +292,25 @@ impl Encoder {
         Ok(self.writer.flush()?)
     }
 
-    /// The number of a topic's channel. MCAP's writer knows it too, and looks for it by the hash of the whole schema.
-    fn channel(&mut self, topic: &ViewerTopic) -> Result<u16, McapError> {
-        if let Some((_, number)) = self.channels.iter().find(|(known, _)| known == topic) {
-            return Ok(*number);
+    /// The numbers of a topic's channel. MCAP's writer knows them too, and looks for them by the hash of the whole schema.
+    fn channel(&mut self, topic: &ViewerTopic) -> Result<ChannelNumbers, McapError> {
+        if let Some((_, numbers)) = self.channels.iter().find(|(known, _)| known == topic) {
+            return Ok(*numbers);
         }
         let schema = match topic.schema_encoding.as_str() {
             "" => 0,
             encoding => self.writer.add_schema(&topic.schema_name, encoding, &topic.schema)?,
         };
-        let number = self.writer.add_channel(schema, &topic.topic, &topic.message_encoding, &BTreeMap::new())?;
-        self.described.insert(number);
-        self.channels.push((topic.clone(), number));
-        Ok(number)
+        let channel = self.writer.add_channel(schema, &topic.topic, &topic.message_encoding, &BTreeMap::new())?;
+        let numbers = ChannelNumbers { schema, channel };
+        self.described.insert(channel);
+        self.channels.push((topic.clone(), numbers));
+        Ok(numbers)
     }
 
     fn message(&mut self, topic: &ViewerTopic, ordinal: u64, data: &[u8]) -> Result<(), McapError> {
-        let channel = self.channel(topic)?;
-        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let header = MessageHeader {
-            channel_id: channel,
-            sequence: sequence(ordinal),
-            log_time: log_time_ns(ordinal),
-            publish_time: u64::try_from(now.as_nanos()).unwrap_or(u64::MAX),
-        };
-        self.writer.write_to_known_channel(&header, data)
+        let numbers = self.channel(topic)?;
+        self.writer.write_to_known_channel(&header_of(numbers, ordinal), data)
     }
 
     /// A manifest or a chunk of another log again: the same records with the same numbers and times, so that the bytes are
@@ -335,6 +335,12 @@ impl Encoder {
             && let McapRecord::Metadata(record) = frame::parse(part.opcode, &bytes[part.body.clone()])?
         {
             return self.writer.write_metadata(&record);
+        }
+        if frame::packed_content(bytes, part).is_some() {
+            let end = frame::end_with_indexes(bytes, part);
+            let Some(Ok(commit)) = frame::next(bytes, end) else { return Ok(()) };
+            self.outbox.bytes().extend(&bytes[part.at..end]);
+            return self.again_if(bytes, &commit, keeps);
         }
         if !self.describes(bytes, part) {
             return self.again_as_committed(bytes, part, keeps);
@@ -404,17 +410,40 @@ impl Encoder {
     }
 }
 
+/// What the messages of a chunk take, or somewhat more, bytes.
+fn bytes_of<'m>(messages: impl Iterator<Item = (&'m ViewerTopic, &'m [u8])>) -> usize {
+    const RECORD_OVERHEAD: usize = 256;
+    messages.map(|(topic, data)| data.len() + topic.schema.len() + RECORD_OVERHEAD).sum()
+}
+
+fn check_size(bytes: usize, hint: &'static str) -> Result<(), EncodeError> {
+    // Room for the commit, which comes last.
+    const COMMIT_BYTES: usize = 64 << 10;
+    if bytes + COMMIT_BYTES > CHUNK_BYTES_LIMIT { Err(EncodeError::TooLarge { bytes, hint }) } else { Ok(()) }
+}
+
 /// MCAP's writer at the start of a log, and where its bytes go.
 fn writer(library: &str) -> Result<(Writer<NoSeek<Outbox>>, Outbox), McapError> {
     let outbox = Outbox::default();
-    let options = WriteOptions::new()
-        .profile(PROFILE)
-        .library(library)
-        .compression(None)
-        .chunk_size(None)
-        .disable_seeking(true)
-        .calculate_data_section_crc(false);
+    let options = options().library(library).compression(None);
     Ok((options.create(NoSeek::new(outbox.clone()))?, outbox))
+}
+
+/// How chunks are written: each when it is flushed, and never gone back to.
+pub(super) fn options() -> WriteOptions {
+    let options = WriteOptions::new().profile(PROFILE).chunk_size(None).disable_seeking(true);
+    options.calculate_data_section_crc(false).compression_threads(0)
+}
+
+/// The header of a message of a stage.
+fn header_of(numbers: ChannelNumbers, ordinal: u64) -> MessageHeader {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    MessageHeader {
+        channel_id: numbers.channel,
+        sequence: sequence(ordinal),
+        log_time: log_time_ns(ordinal),
+        publish_time: u64::try_from(now.as_nanos()).unwrap_or(u64::MAX),
+    }
 }
 
 /// MCAP's writer in the middle of a log: it knows the schemas and channels, and makes the bytes that the one before it would
@@ -443,50 +472,4 @@ fn describe(writer: &mut Writer<NoSeek<Outbox>>, record: &McapRecord) -> Result<
         _ => {}
     }
     Ok(())
-}
-
-/// The log's own topics; their schemas are made once.
-struct OwnTopics {
-    mesh: ViewerTopic,
-    displacement: ViewerTopic,
-    state: ViewerTopic,
-    report: ViewerTopic,
-    commit: ViewerTopic,
-    finished: ViewerTopic,
-}
-
-impl OwnTopics {
-    fn named(&self, name: &str) -> Option<&ViewerTopic> {
-        let Self { mesh, displacement, state, report, commit, finished } = self;
-        [mesh, displacement, state, report, commit, finished].into_iter().find(|topic| topic.topic == name)
-    }
-}
-
-static OWN: LazyLock<OwnTopics> = LazyLock::new(|| OwnTopics {
-    mesh: binary_topic(MESH_TOPIC),
-    displacement: binary_topic(DISPLACEMENT_TOPIC),
-    state: binary_topic(STATE_TOPIC),
-    report: json_topic::<ReportMessage>(REPORT_TOPIC, "foldline.Report"),
-    commit: json_topic::<CommitMessage>(COMMIT_TOPIC, "foldline.Commit"),
-    finished: json_topic::<FinishedMessage>(FINISHED_TOPIC, "foldline.Finished"),
-});
-
-fn binary_topic(topic: &str) -> ViewerTopic {
-    ViewerTopic {
-        topic: topic.to_owned(),
-        message_encoding: BINARY_ENCODING.to_owned(),
-        schema_name: String::new(),
-        schema_encoding: String::new(),
-        schema: Vec::new(),
-    }
-}
-
-fn json_topic<M: schemars::JsonSchema>(topic: &str, schema_name: &str) -> ViewerTopic {
-    ViewerTopic {
-        topic: topic.to_owned(),
-        message_encoding: "json".to_owned(),
-        schema_name: schema_name.to_owned(),
-        schema_encoding: "jsonschema".to_owned(),
-        schema: schema_of::<M>(schema_name),
-    }
 }

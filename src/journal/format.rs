@@ -23,15 +23,20 @@
 //! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest names the revision of the numerics that wrote the stretch; a chunk may lack a state, and a mesh or displacements that no state needs, in a log that was thinned and says so in a metadata record `foldline.thinned` |
 //!
 //! | 3 | a state names each of its fields by its own hash, and a commit names them all; before, the displacements and those of the equilibrium before were one |
+//! | 4 | what viewers are shown of a stage lies in a packed chunk right in front of the stage's own, which names it by the hash of its bytes; before, it lay among the stage's messages |
 //!
 //! A log may hold commits of several versions: one that is continued keeps those that it has.
 //!
-//! # Why nothing is compressed
-//! Measured on the chunks of three runs, one by one, as they would have to be written: zstd at level 1
-//! leaves 89 %, 60 % and 48 % of a chunk of 9, 26 and 3 kB, lz4 94 %, 74 % and 61 %, and higher levels gain no more than five in
-//! a hundred. What is left over are displacements, of which the last bits are noise. A library in C and
-//! chunks that have to be unpacked before they can be bounded are not worth that; `foldline thin` drops nine states of ten. What
-//! states repeat is named by its hash instead.
+//! # What is packed
+//! Messages for viewers are text, of which zstd leaves an eighth. They go into a chunk of their own with the message indexes behind it, in
+//! the same write as the stage's chunk and in front of it, so that a commit still comes last. Nothing in this program unpacks it: its
+//! commit names it by the hash of its bytes, and its channels are described in the commit's chunk as well. Where it is damaged or
+//! not there, nothing is lost but what viewers are shown.
+//!
+//! What states are made of is not packed. Measured on the chunks of three runs, one by one, as they would have to be written: zstd at
+//! level 1 leaves 89 %, 60 % and 48 % of a chunk of 9, 26 and 3 kB, lz4 94 %, 74 % and 61 %, and higher levels gain no more than five in
+//! a hundred. What is left over are displacements, of which the last bits are noise. Chunks that have to be unpacked before they can be
+//! bounded are not worth that; `foldline thin` drops nine states of ten. What states repeat is named by its hash instead.
 //!
 //! # Times
 //! `log_time` is the place in the run, not the clock: stage k is at (k + 1) · 100 ms after 1970. A viewer then
@@ -40,7 +45,7 @@
 //! reads back. No hash covers either.
 
 /// Version of the layout that this module describes. A reader refuses a newer one.
-pub const FORMAT_VERSION: u32 = 3;
+pub const FORMAT_VERSION: u32 = 4;
 
 /// Name of the MCAP profile in the header of a log.
 pub const PROFILE: &str = "foldline";

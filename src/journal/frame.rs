@@ -57,12 +57,44 @@ pub(super) fn chunk_records(bytes: &[u8], frame: &Frame) -> Option<Range<usize>>
     agree.then(|| frame.body.start + CHUNK_HEADER_LEN..frame.body.end)
 }
 
-/// The next place at or after `from` that looks like an uncompressed chunk, whose three lengths agree, or like a manifest.
+/// What chunks are packed by, as MCAP names it.
+pub(super) const PACKED_BY: &str = "zstd";
+
+/// Length of the records of a chunk that is packed, once they are unpacked, if the lengths in its header agree with its
+/// own.
+pub(super) fn packed_content(bytes: &[u8], frame: &Frame) -> Option<u64> {
+    let body = bytes.get(frame.body.clone()).filter(|_| frame.opcode == op::CHUNK)?;
+    let (_times, rest) = body.split_first_chunk::<16>()?;
+    let (content, rest) = rest.split_first_chunk::<8>()?;
+    let (_checksum, rest) = rest.split_first_chunk::<4>()?;
+    let (name_len, rest) = rest.split_first_chunk::<4>()?;
+    let is_named = u32::from_le_bytes(*name_len) as usize == PACKED_BY.len();
+    let (length, records) = rest.strip_prefix(PACKED_BY.as_bytes()).filter(|_| is_named)?.split_first_chunk::<8>()?;
+    (u64::from_le_bytes(*length) == records.len() as u64).then_some(u64::from_le_bytes(*content))
+}
+
+/// Whether a record is a chunk whose lengths agree.
+pub(super) fn is_chunk(bytes: &[u8], frame: &Frame) -> bool {
+    frame.opcode == op::CHUNK && (chunk_records(bytes, frame).is_some() || packed_content(bytes, frame).is_some())
+}
+
+/// Where a chunk ends with the message indexes that follow on it.
+pub(super) fn end_with_indexes(bytes: &[u8], chunk: &Frame) -> usize {
+    let mut end = chunk.body.end;
+    while let Some(Ok(index)) =
+        next(bytes, end).filter(|next| matches!(next, Ok(next) if next.opcode == op::MESSAGE_INDEX))
+    {
+        end = index.body.end;
+    }
+    end
+}
+
+/// The next place at or after `from` that looks like a chunk, whose lengths agree, or like a manifest.
 pub(super) fn find(bytes: &[u8], from: usize) -> Option<usize> {
     let kinds = [op::CHUNK, op::METADATA];
     let candidates = bytes.get(from..)?.iter().enumerate().filter(|(_, byte)| kinds.contains(*byte));
     candidates.map(|(offset, _)| from + offset).find(|&at| match next(bytes, at) {
-        Some(Ok(frame)) if frame.opcode == op::CHUNK => chunk_records(bytes, &frame).is_some(),
+        Some(Ok(frame)) if frame.opcode == op::CHUNK => is_chunk(bytes, &frame),
         Some(Ok(frame)) => is_named(&bytes[frame.body], MANIFEST),
         _ => false,
     })

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::checkpoint::Checkpoint;
 use super::format::{FIELDS_LIMIT, MANIFEST, THINNED, library};
 use super::frame;
-use super::ledger::{ChunkPlace, Ledger, Pattern};
+use super::ledger::{ChunkPlace, Ledger, PackedPlace, Pattern};
 use super::manifest::Manifest;
 use super::message::{HexHash, kept_as};
 use super::reader::{open_regular, read_at};
@@ -35,6 +35,9 @@ const HEAD_LIMIT: usize = 4 << 20;
 
 /// Columns with the places of chunks.
 const PLACES: [&str; 3] = ["#at", "#bytes", "#pattern"];
+
+/// Columns with the places of packed chunks in front of them, where there are any.
+const PACKED_PLACES: [&str; 3] = ["#packed_length", "#packed_content", "#packed_pattern"];
 
 /// What a block begins with.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -118,7 +121,7 @@ impl Builder {
     ) -> Option<(Head, Vec<u8>)> {
         self.places.push(place);
         self.reports.push(record.report.clone());
-        let bytes = place.at - self.places[0].at;
+        let bytes = place.at - self.places[0].start();
         let full = self.places.len() >= BLOCK_COMMITS || bytes >= BLOCK_BYTES;
         let mark = if full { mark()? } else { return None };
         Some(std::mem::replace(self, Self::at(self.next())).block(mark))
@@ -130,9 +133,17 @@ impl Builder {
             self.places.iter().map(|place| u64::from(place.bytes)).collect(),
             self.places.iter().map(|place| u64::from(place.pattern)).collect::<Vec<u64>>(),
         ];
-        let places = PLACES.map(str::to_owned).into_iter().zip(places);
+        let mut places: Vec<(String, Vec<u64>)> = PLACES.map(str::to_owned).into_iter().zip(places).collect();
+        if self.places.iter().any(|place| place.packed.is_some()) {
+            let column = |number: fn(&PackedPlace) -> u32| {
+                let number = |place: &ChunkPlace| place.packed.as_ref().map_or(ABSENT, |packed| number(packed).into());
+                self.places.iter().map(number).collect()
+            };
+            let packed = [column(|place| place.length), column(|place| place.content), column(|place| place.pattern)];
+            places.extend(PACKED_PLACES.map(str::to_owned).into_iter().zip(packed));
+        }
         let (mut columns, mut data) = (Vec::new(), Vec::new());
-        for (name, column) in places.chain(numbers_of(&self.reports)) {
+        for (name, column) in places.into_iter().chain(numbers_of(&self.reports)) {
             let bytes: Vec<u8> = column.iter().flat_map(|number| number.to_le_bytes()).collect();
             columns.push(Column { name, blake3: HexHash(blake3::hash(&bytes)) });
             data.extend(bytes);
@@ -266,16 +277,28 @@ impl Index {
         let Some(last) = self.heads.last() else { return Ok(None) };
         let mut ledger = Ledger { patterns: last.mark.patterns.clone(), ..Ledger::default() };
         for head in &self.heads {
-            let [at, bytes, pattern] = PLACES.map(|name| self.column(head, name));
-            for ((at, bytes), pattern) in at?.into_iter().zip(bytes?).zip(pattern?) {
-                if pattern as usize >= ledger.patterns.len() {
-                    return Ok(None);
-                }
-                ledger.chunks.push(ChunkPlace { at, bytes: bytes as u32, pattern: pattern as u32 });
-            }
+            let Some(places) = self.places(head, ledger.patterns.len())? else { return Ok(None) };
+            ledger.chunks.extend(places);
         }
         let Some(here) = ledger.chunks.pop() else { return Ok(None) };
-        Ok(checkpoint_of(log, last, here.at, &mut ledger)?.map(|checkpoint| (checkpoint, ledger)))
+        Ok(checkpoint_of(log, last, here.start(), &mut ledger)?.map(|checkpoint| (checkpoint, ledger)))
+    }
+
+    /// Reads the places of the chunks of a block; `None` where one has none of so many patterns.
+    fn places(&self, head: &Head, patterns: usize) -> io::Result<Option<Vec<ChunkPlace>>> {
+        let numbers = PLACES.into_iter().chain(PACKED_PLACES).map(|name| self.column(head, name));
+        let numbers = numbers.collect::<io::Result<Vec<_>>>()?;
+        let place = |row: usize| {
+            let [at, bytes, pattern, length, content, packed_pattern] =
+                [0, 1, 2, 3, 4, 5].map(|column| numbers[column][row]);
+            let packed = PackedPlace { length: length as u32, content: content as u32, pattern: packed_pattern as u32 };
+            let packed = (length != ABSENT).then_some(packed);
+            let is_known = |pattern: u32| (pattern as usize) < patterns;
+            let is_sound = is_known(pattern as u32)
+                && packed.is_none_or(|packed| is_known(packed.pattern) && u64::from(packed.length) <= at);
+            is_sound.then_some(ChunkPlace { at, bytes: bytes as u32, pattern: pattern as u32, packed })
+        };
+        Ok((0..head.commits as usize).map(place).collect())
     }
 
     /// Reads from the log the checkpoint that the last block marks.
@@ -287,8 +310,9 @@ impl Index {
     pub fn checkpoint_before(&self, log: &File, ordinal: usize) -> io::Result<Option<Checkpoint>> {
         let behind = self.heads.partition_point(|head| head.first + head.commits <= ordinal as u64);
         let Some(last) = self.heads[..behind].last() else { return Ok(None) };
-        let Some(at) = self.column(last, PLACES[0])?.pop() else { return Ok(None) };
-        checkpoint_of(log, last, at, &mut Ledger::default())
+        let places = self.places(last, last.mark.patterns.len())?;
+        let Some(here) = places.as_ref().and_then(|places| places.last()) else { return Ok(None) };
+        checkpoint_of(log, last, here.start(), &mut Ledger::default())
     }
 }
 

@@ -16,6 +16,26 @@ pub(super) struct ChunkPlace {
     pub bytes: u32,
     /// Which of the ledger's patterns its message indexes have.
     pub pattern: u32,
+    /// The packed chunk right in front of it.
+    pub packed: Option<PackedPlace>,
+}
+
+impl ChunkPlace {
+    /// Offset at which it begins, with the packed chunk in front of it.
+    pub fn start(&self) -> u64 {
+        self.at - self.packed.map_or(0, |packed| u64::from(packed.length))
+    }
+}
+
+/// A packed chunk, right in front of the commit that names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct PackedPlace {
+    /// Length with the nine bytes in front and with its message indexes.
+    pub length: u32,
+    /// Length of its records once they are unpacked.
+    pub content: u32,
+    /// Which of the ledger's patterns its message indexes have.
+    pub pattern: u32,
 }
 
 /// The message indexes behind a chunk: channel and messages of each, in their order.
@@ -42,13 +62,21 @@ impl Ledger {
     pub fn enter(&mut self, at: u64, bytes: &[u8]) {
         let mut from = if at == 0 { mcap::MAGIC.len() } else { 0 };
         let mut open: Option<(ChunkPlace, Pattern)> = None;
+        // What was packed comes before its commit.
+        let mut packed: Option<(PackedPlace, Pattern)> = None;
         while let Some(Ok(record)) = frame::next(bytes, from) {
             from = record.body.end;
             if record.opcode == op::MESSAGE_INDEX {
                 let body = &bytes[record.body.clone()];
                 let messages = (body.len().saturating_sub(INDEX_HEAD_LEN) / INDEX_ENTRY_LEN) as u32;
-                if let (Some((_, pattern)), Some(channel)) = (&mut open, body.first_chunk()) {
-                    pattern.push((u16::from_le_bytes(*channel), messages));
+                let Some(channel) = body.first_chunk().map(|channel| u16::from_le_bytes(*channel)) else { continue };
+                match (&mut open, &mut packed) {
+                    (Some((_, pattern)), _) => pattern.push((channel, messages)),
+                    (None, Some((place, pattern))) => {
+                        pattern.push((channel, messages));
+                        place.length += (record.body.end - record.at) as u32;
+                    }
+                    (None, None) => {}
                 }
                 continue;
             }
@@ -56,9 +84,17 @@ impl Ledger {
             let place = at + record.at as u64;
             match record.opcode {
                 op::CHUNK => {
+                    let length = (record.body.end - record.at) as u32;
+                    if let Some(content) = frame::packed_content(bytes, &record) {
+                        packed = Some((PackedPlace { length, content: content as u32, pattern: 0 }, Pattern::new()));
+                        continue;
+                    }
                     self.describe(place, bytes, &record);
-                    let bytes = (record.body.end - record.at) as u32;
-                    open = Some((ChunkPlace { at: place, bytes, pattern: 0 }, Pattern::new()));
+                    let packed = packed.take().map(|(packed, pattern)| {
+                        let pattern = self.number_of(pattern);
+                        PackedPlace { pattern, ..packed }
+                    });
+                    open = Some((ChunkPlace { at: place, bytes: length, pattern: 0, packed }, Pattern::new()));
                 }
                 op::METADATA => {
                     let name = frame::name(&bytes[record.body.clone()]).unwrap_or_default();
@@ -73,7 +109,10 @@ impl Ledger {
     /// Number of messages of each channel.
     pub fn messages(&self) -> BTreeMap<u16, u64> {
         let mut chunks = vec![0_u64; self.patterns.len()];
-        self.chunks.iter().for_each(|chunk| chunks[chunk.pattern as usize] += 1);
+        for chunk in &self.chunks {
+            chunks[chunk.pattern as usize] += 1;
+            chunk.packed.iter().for_each(|packed| chunks[packed.pattern as usize] += 1);
+        }
         let mut messages = BTreeMap::new();
         for (pattern, chunks) in self.patterns.iter().zip(chunks) {
             for (channel, each) in pattern {

@@ -23,7 +23,7 @@ pub struct Entry {
     pub mesh_hash: Hash,
     /// Hashes of the bytes of its state's fields.
     pub(super) fields: Box<[Hash]>,
-    /// Where its chunk lies in the log, bytes.
+    /// Where its chunk lies in the log, bytes, with the packed one in front of it.
     pub bytes: Range<u64>,
     /// Where its state lies, if that was not thinned out.
     pub(super) state: Option<Range<usize>>,

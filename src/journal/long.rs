@@ -9,7 +9,7 @@ use super::backend::beside;
 use super::chunk::{self, Content};
 use super::index::{Builder, Head, Index, Mark, Piece, record_at};
 use super::index_keeper::{LONG_BYTES, Rewritten};
-use super::ledger::Ledger;
+use super::ledger::{ChunkPlace, Ledger};
 use super::log::{Entry, Log};
 use super::message::HexHash;
 use super::parts::read_in_parts;
@@ -162,7 +162,7 @@ impl LongLog {
     /// Where it cannot be read, or they are not what they were.
     pub fn part(&self, stages: Range<usize>) -> Result<Log, LongLogError> {
         let first = stages.start.saturating_sub(1);
-        let end = self.ledger.chunks.get(stages.end).map(|place| place.at);
+        let end = self.ledger.chunks.get(stages.end).map(ChunkPlace::start);
         let end = end.unwrap_or(self.tail.base + self.tail.walked as u64);
         let mut from = first;
         let log = loop {

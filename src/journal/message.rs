@@ -77,6 +77,22 @@ impl MessageHash {
     }
 }
 
+/// A packed chunk, as its commit names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct PackedHash {
+    /// Its length with its message indexes, bytes.
+    pub bytes: u64,
+    /// BLAKE3 of all of them.
+    pub blake3: HexHash,
+}
+
+impl PackedHash {
+    /// Hashes a packed chunk with its message indexes.
+    pub fn of(bytes: &[u8]) -> Self {
+        Self { bytes: bytes.len() as u64, blake3: HexHash(blake3::hash(bytes)) }
+    }
+}
+
 /// The message on `/foldline/commit`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
@@ -108,6 +124,10 @@ pub struct CommitMessage {
     pub displacement_hash: Option<HexHash>,
     /// The other messages of this chunk, in their order.
     pub messages: Vec<MessageHash>,
+    /// The packed chunk right in front of this one, with the message indexes between them; not there where viewers are shown
+    /// nothing, and not before version 4.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub packed: Option<PackedHash>,
     /// Hash of the manifest of the stretch that this commit belongs to; not there in version 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub manifest_hash: Option<HexHash>,
@@ -132,6 +152,7 @@ impl CommitMessage {
             field_hashes: fields.iter().copied().map(HexHash).collect(),
             displacement_hash: None,
             messages,
+            packed: None,
             manifest_hash: Some(HexHash(manifest)),
             check: UNSEALED,
         }

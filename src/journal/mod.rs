@@ -18,7 +18,7 @@
 //! | `format` | topics, encodings, versions, limits, times |
 //! | `codec`, `soundness` | states and meshes as bytes, and what they must satisfy |
 //! | `message`, `manifest` | reports, commits, the end, who wrote it |
-//! | `ledger`, `summary`, `encoder`, `encode_error`, `backend`, `writer`, `write_error` | from a stage to bytes in a file |
+//! | `topics`, `ledger`, `summary`, `encoder`, `packer`, `encode_error`, `backend`, `writer`, `write_error` | from a stage to bytes in a file |
 //! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
 //! | `checkpoint`, `parts`, `index`, `index_keeper`, `long`, `asked` | a long log, of which only what is needed is read |
 //! | `portions` | a log of any length, read through without holding it |
@@ -103,6 +103,7 @@ mod manifest;
 mod mending;
 pub mod message;
 mod new_log;
+mod packer;
 mod parts;
 mod portions;
 mod reader;
@@ -115,6 +116,7 @@ mod still_ours;
 mod stretch;
 mod summary;
 mod thin;
+mod topics;
 mod trace;
 mod verify;
 mod write_error;
@@ -128,7 +130,6 @@ pub use codec::{
 };
 pub use damage::{Completeness, Damage, LaterCommit, Problem};
 pub use encode_error::EncodeError;
-pub use encoder::{ViewerMessage, ViewerTopic};
 pub(crate) use index::word_number;
 pub use lock::{LockError, LogLock};
 pub use log::{Entry, Log, Note, StateError};
@@ -148,6 +149,7 @@ pub use soundness::check_state;
 pub use still_ours::LogChanged;
 pub use stretch::LostManifest;
 pub use thin::{ThinError, Thinned, thin};
+pub use topics::{ViewerMessage, ViewerTopic};
 pub use trace::{ITERATE_TOPIC, TraceRow, trace_file};
 pub use verify::{Finding, Level, verify, verify_log};
 pub use write_error::WriteError;

@@ -8,11 +8,13 @@ use mcap::records::Record as McapRecord;
 use super::checkpoint::Checkpoint;
 use super::chunk::{self, Channels, CommitContent, Content};
 use super::damage::{Damage, LaterCommit, Problem};
-use super::format::{FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT, MANIFESTS_BYTES_LIMIT, PROFILE, THINNED};
+use super::format::{
+    CHUNK_BYTES_LIMIT, FORMAT_VERSION, MANIFEST, MANIFEST_BYTES_LIMIT, MANIFESTS_BYTES_LIMIT, PROFILE, THINNED,
+};
 use super::frame::{self, Cut, Frame, PREFIX_LEN, op};
 use super::log::{Entry, Kept, Note, Part};
 use super::manifest::{LIBRARY, Manifest};
-use super::message::{FinishedMessage, in_brief, kept_as};
+use super::message::{FinishedMessage, PackedHash, in_brief, kept_as};
 use super::stretch::Stretches;
 use crate::record::{Commit, Record};
 use crate::state::Hash;
@@ -60,6 +62,8 @@ pub(super) struct Scan {
     in_vain: usize,
     /// Bytes of the manifests that are kept.
     manifests_bytes: usize,
+    /// A packed chunk with its message indexes, whose commit has not come yet.
+    packed: Option<Range<usize>>,
 }
 
 impl Scan {
@@ -103,7 +107,7 @@ impl Scan {
             };
             let following = match (outcome, next) {
                 (Ok(()), Ok(frame)) => {
-                    if !self.has_lost() {
+                    if !self.has_lost() && self.packed.is_none() {
                         self.good_end = frame.body.end;
                         if self.finished.is_none() && !self.closed {
                             self.stretch_end = frame.body.end;
@@ -122,7 +126,7 @@ impl Scan {
                     self.problem(at, damage);
                     // A chunk keeps its place even where its content is damaged; all else may have lost the step.
                     match next {
-                        Ok(frame) if frame::chunk_records(bytes, &frame).is_some() => Some(frame.body.end),
+                        Ok(frame) if frame::is_chunk(bytes, &frame) => Some(frame.body.end),
                         _ => {
                             let following = frame::find(bytes, at + 1);
                             if !only_zeros && !self.closed {
@@ -142,6 +146,9 @@ impl Scan {
         }
         let good = self.commits();
         if !more_follows || self.closed {
+            if let Some(packed) = self.packed.take().filter(|_| !self.has_lost()) {
+                self.problem(packed.start, Damage::LoosePacked);
+            }
             self.stretches.end(good, self.problems.last().map(|problem| problem.at));
             if let Some(at) = self.stretches.unused {
                 let text = "the log ends in a manifest that cannot be read: no stage was run under it, and what it demanded is not \
@@ -219,8 +226,22 @@ impl Scan {
                 }
                 Ok(())
             }
+            op::CHUNK if frame::packed_content(bytes, frame).is_some() => {
+                if body.len() > CHUNK_BYTES_LIMIT {
+                    return Err(Damage::ChunkTooLarge { bytes: body.len() as u64 });
+                }
+                if let Some(loose) = self.packed.replace(frame.at..frame.body.end) {
+                    self.problem(loose.start, Damage::LoosePacked);
+                }
+                Ok(())
+            }
             op::CHUNK => self.chunk(bytes, frame),
-            op::MESSAGE_INDEX if is_message_index(body) => Ok(()),
+            op::MESSAGE_INDEX if is_message_index(body) => {
+                if let Some(packed) = self.packed.as_mut().filter(|packed| packed.end == frame.at) {
+                    packed.end = frame.body.end;
+                }
+                Ok(())
+            }
             op::DATA_END if body.len() == 4 => {
                 self.closed = true;
                 Ok(())
@@ -268,11 +289,22 @@ impl Scan {
     /// Takes a chunk if it follows from what was taken before, whatever lies in between.
     fn chunk(&mut self, bytes: &[u8], frame: &Frame) -> Result<(), Damage> {
         let (content, beside) = chunk::open(bytes, frame, &mut self.channels)?;
+        let packed = self.packed.take();
+        let named = match &content {
+            Content::Commit(content) => content.commit.packed,
+            Content::Finished(_) => None,
+        };
+        let is_named = |packed: &Range<usize>| {
+            packed.end == frame.at && named.is_some_and(|named| named == PackedHash::of(&bytes[packed.clone()]))
+        };
+        // Pictures may be lost without a loss of what they show.
+        let (packed, loose) = (packed.clone().filter(is_named), packed.filter(|packed| !is_named(packed)));
+        let at = packed.map_or(frame.at, |packed| packed.start);
         let kept = match content {
             Content::Commit(content) => {
                 let (ordinal, stage, step) = (content.commit.ordinal, content.commit.stage, content.commit.step);
                 let manifest = content.commit.manifest_hash.map(|hash| hash.0);
-                if let Err(damage) = self.commit(frame, *content) {
+                if let Err(damage) = self.commit(at..frame.body.end, *content) {
                     self.stretches.of_later_commit(self.place(frame.at), manifest);
                     if self.later_seen.insert(ordinal) {
                         let at = self.place(frame.at);
@@ -300,7 +332,10 @@ impl Scan {
             }
         };
         self.good_end = frame.body.end;
-        self.parts.push(Part { at: frame.at, end: frame.body.end, kept });
+        self.parts.push(Part { at, end: frame.body.end, kept });
+        if let Some(loose) = loose {
+            self.problem(loose.start, Damage::LoosePacked);
+        }
         self.beside(frame.at, beside);
         Ok(())
     }
@@ -314,8 +349,8 @@ impl Scan {
         }
     }
 
-    /// Compares a commit with the one before it, and keeps it.
-    fn commit(&mut self, frame: &Frame, content: CommitContent) -> Result<(), Damage> {
+    /// Compares a commit, whose chunks lie at `place`, with the one before it, and keeps it.
+    fn commit(&mut self, place: Range<usize>, content: CommitContent) -> Result<(), Damage> {
         if self.finished.is_some() {
             return Err(Damage::AfterEnd);
         }
@@ -352,10 +387,10 @@ impl Scan {
         self.meshes.extend(content.mesh.map(|place| (mesh_hash, place)));
         self.fields.extend(content.fields);
         let stretch =
-            self.stretches.of_commit(self.place(frame.at), ordinal, content.commit.manifest_hash.map(|hash| hash.0));
+            self.stretches.of_commit(self.place(place.start), ordinal, content.commit.manifest_hash.map(|hash| hash.0));
         let names_stretch = content.commit.manifest_hash.is_some();
         let record = Record { wall_s: content.report.wall_s, report: content.report.report, commit };
-        let bytes = self.place(frame.at)..self.place(frame.body.end);
+        let bytes = self.place(place.start)..self.place(place.end);
         self.entries.push(Entry { record, mesh_hash, fields, bytes, state: content.state, stretch, names_stretch });
         Ok(())
     }

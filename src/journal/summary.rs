@@ -4,8 +4,8 @@
 //! byte of a log read that is continued.
 
 use super::format::log_time_ns;
-use super::frame::{CHUNK_HEADER_LEN, PREFIX_LEN, op};
-use super::ledger::{Ledger, message_index_len};
+use super::frame::{CHUNK_HEADER_LEN, PACKED_BY, PREFIX_LEN, op};
+use super::ledger::{ChunkPlace, Ledger, Pattern, message_index_len};
 
 /// Bytes that are collected before they are handed on.
 const PIECE_BYTES: usize = 1 << 20;
@@ -35,8 +35,12 @@ pub(super) fn write<E>(
     groups.push((op::STATISTICS, out.position()));
     out.record(op::STATISTICS, |body| statistics(ledger, commits, body));
     groups.push((op::CHUNK_INDEX, out.position()));
-    for number in 0..ledger.chunks.len() {
-        out.record(op::CHUNK_INDEX, |body| chunk_index(ledger, number, commits, body));
+    for (number, chunk) in ledger.chunks.iter().enumerate() {
+        // The record of the end has the time of the last stage.
+        let time = log_time_ns((number as u64).min(commits.saturating_sub(1)));
+        for indexed in IndexedChunk::of(ledger, chunk) {
+            out.record(op::CHUNK_INDEX, |body| indexed.write(time, body));
+        }
         out.pass_if_large()?;
     }
     groups.push((op::METADATA_INDEX, out.position()));
@@ -82,33 +86,58 @@ fn statistics(ledger: &Ledger, commits: u64, body: &mut Vec<u8>) {
     body.extend((ledger.channels.len() as u32).to_le_bytes());
     body.extend(0_u32.to_le_bytes());
     body.extend((ledger.metadata.len() as u32).to_le_bytes());
-    body.extend((ledger.chunks.len() as u32).to_le_bytes());
+    let packed = ledger.chunks.iter().filter(|chunk| chunk.packed.is_some()).count();
+    body.extend(((ledger.chunks.len() + packed) as u32).to_le_bytes());
     body.extend(first.to_le_bytes());
     body.extend(last.to_le_bytes());
     map(messages.into_iter(), body);
 }
 
-fn chunk_index(ledger: &Ledger, number: usize, commits: u64, body: &mut Vec<u8>) {
-    let chunk = ledger.chunks[number];
-    let pattern = &ledger.patterns[chunk.pattern as usize];
-    // The record of the end has the time of the last stage.
-    let time = log_time_ns((number as u64).min(commits.saturating_sub(1)));
-    let content = u64::from(chunk.bytes) - (PREFIX_LEN + CHUNK_HEADER_LEN) as u64;
-    let behind = chunk.at + u64::from(chunk.bytes);
-    let places = pattern.iter().scan(behind, |at, (channel, messages)| {
-        let place = (*channel, *at);
-        *at += message_index_len(*messages);
-        Some(place)
-    });
-    let indexes: u64 = pattern.iter().map(|(_, messages)| message_index_len(*messages)).sum();
-    for number in [time, time, chunk.at, u64::from(chunk.bytes)] {
-        body.extend(number.to_le_bytes());
+/// What the index states of a chunk.
+struct IndexedChunk<'l> {
+    at: u64,
+    /// Length with the nine bytes in front.
+    bytes: u64,
+    pattern: &'l Pattern,
+    compression: &'static str,
+    /// Lengths of the records as they lie there, and unpacked.
+    lengths: [u64; 2],
+}
+
+impl<'l> IndexedChunk<'l> {
+    /// The packed chunk in front of a chunk, if there is one, and the chunk.
+    fn of(ledger: &'l Ledger, chunk: &ChunkPlace) -> impl Iterator<Item = Self> {
+        let packed = chunk.packed.map(|packed| {
+            let pattern = &ledger.patterns[packed.pattern as usize];
+            let bytes = u64::from(packed.length) - indexes_len(pattern);
+            let records = bytes - (PREFIX_LEN + CHUNK_HEADER_LEN + PACKED_BY.len()) as u64;
+            let lengths = [records, u64::from(packed.content)];
+            Self { at: chunk.start(), bytes, pattern, compression: PACKED_BY, lengths }
+        });
+        let bytes = u64::from(chunk.bytes);
+        let records = bytes - (PREFIX_LEN + CHUNK_HEADER_LEN) as u64;
+        let pattern = &ledger.patterns[chunk.pattern as usize];
+        packed.into_iter().chain([Self { at: chunk.at, bytes, pattern, compression: "", lengths: [records; 2] }])
     }
-    map(places, body);
-    body.extend(indexes.to_le_bytes());
-    text("", body);
-    body.extend(content.to_le_bytes());
-    body.extend(content.to_le_bytes());
+
+    fn write(&self, time: u64, body: &mut Vec<u8>) {
+        let places = self.pattern.iter().scan(self.at + self.bytes, |at, (channel, messages)| {
+            let place = (*channel, *at);
+            *at += message_index_len(*messages);
+            Some(place)
+        });
+        for number in [time, time, self.at, self.bytes] {
+            body.extend(number.to_le_bytes());
+        }
+        map(places, body);
+        body.extend(indexes_len(self.pattern).to_le_bytes());
+        text(self.compression, body);
+        self.lengths.iter().for_each(|length| body.extend(length.to_le_bytes()));
+    }
+}
+
+fn indexes_len(pattern: &Pattern) -> u64 {
+    pattern.iter().map(|(_, messages)| message_index_len(*messages)).sum()
 }
 
 fn text(text: &str, body: &mut Vec<u8>) {
