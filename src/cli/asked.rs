@@ -65,6 +65,17 @@ impl Asked {
         Ok(ends)
     }
 
+    /// All stages.
+    pub(super) fn records(&self) -> Result<Vec<Record>, Failure> {
+        let every: Vec<usize> = (0..self.log.commits()).collect();
+        let mut records = Vec::with_capacity(every.len());
+        for part in self.log.parts(&every) {
+            let (log, indices) = part.map_err(self.changed())?;
+            records.extend(indices.iter().filter_map(|index| log.entry(*index)).map(|entry| entry.record.clone()));
+        }
+        Ok(records)
+    }
+
     /// First and last load step.
     pub(super) fn steps(&self) -> Option<(u64, u64)> {
         let step_of = |ordinal: usize| self.log.record(ordinal).ok().map(|record| record.report.step);

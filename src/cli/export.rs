@@ -6,17 +6,19 @@ use clap::Args;
 use clap::builder::TypedValueParser;
 
 use super::asked::{Asked, ordinal};
-use super::export_choice::{Format, StepRange, Steps, Target, chosen_fields, list_of_fields};
+use super::export_choice::{Format, StepRange, Steps, Target, Times, chosen_fields, list_of_fields};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::scene_at;
 use super::output::{file_name, path_in_line, print, refuse_what_is_there, write_files};
+use super::plot::named;
 use crate::history::States;
 use crate::record::{Parameter, Record};
 use crate::scene::Scene;
 use crate::state::State;
 use crate::units::rounded;
 use crate::view::{
-    Instant, StatesOnMesh, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl, surface_vtu, time_steps,
+    Instant, StatesOnMesh, ViewerFile, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl, surface_vtu,
+    time_steps,
 };
 
 /// Write the states of a log for other programs: ParaView, tables, numpy, CAD
@@ -37,12 +39,16 @@ pub(super) struct Arguments {
     /// These load steps, such as 3,7,20-30
     #[arg(long, value_name = "LIST", value_delimiter = ',', conflicts_with = "every")]
     steps: Vec<StepRange>,
-    /// These fields [default: all]
+    /// These fields [default: all]; for mcap the one that colours the mesh, such as bending_moment.11 [default: the larger
+    /// bending strain]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     fields: Vec<String>,
     /// Points along each side of an element, for csv, json and stl
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = points())]
     points: usize,
+    /// For mcap: when viewers show what a stage did
+    #[arg(long, value_name = "TIMES", default_value = "steps")]
+    times: Times,
     /// Only print which fields there are, with units and meanings
     #[arg(long)]
     list_fields: bool,
@@ -51,10 +57,12 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Writes the files, and names them.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Self { log, to, output, every, steps, fields, points, list_fields } = self;
+        let Self { log, to, output, every, steps, fields, points, times, list_fields } = self;
         let asked = Asked::open(&log)?;
         let (Some(format), false) = (to, list_fields) else { return print(&list_of_fields(&asked.scene)) };
-        chosen_fields(&asked.scene, &fields)?;
+        if format != Format::Mcap {
+            chosen_fields(&asked.scene, &fields)?;
+        }
         let steps = match every {
             Some(n) => Steps::Every(n),
             None if steps.is_empty() => Steps::Unsaid,
@@ -66,7 +74,11 @@ impl Arguments {
             return Err(Failure::StepsInOneFile { file: file.clone(), steps: ends.len() });
         }
         let export = Export { asked, log: &log, format, fields: &fields, points, target };
-        if format == Format::Npz { export.write_arrays(&ends) } else { export.write_states(&ends) }
+        match format {
+            Format::Npz => export.write_arrays(&ends),
+            Format::Mcap => export.write_for_viewers(&ends, times),
+            _ => export.write_states(&ends),
+        }
     }
 }
 
@@ -124,6 +136,34 @@ impl Export<'_> {
         write(&groups.iter().map(file).collect::<Result<Vec<_>, Failure>>()?)
     }
 
+    /// Writes what viewers of MCAP are shown: a picture of these stages, the reports and lines of all.
+    fn write_for_viewers(&self, ends: &[Record], times: Times) -> Result<(), Failure> {
+        let path = self.target.of_step(ends.last().map_or(0, |end| end.report.step), self.format);
+        refuse_what_is_there(std::slice::from_ref(&path))?;
+        let shown = match self.fields {
+            [] => None,
+            [name] => Some(named(&self.asked.scene, name)?),
+            fields => return Err(Failure::FieldsForViewers { fields: fields.len() }),
+        };
+        let unusable = |source| Failure::WrongLog { log: self.log.to_path_buf(), source };
+        let mut file = ViewerFile::new(times.into(), shown).map_err(|source| unusable(Box::new(source)))?;
+        self.each_state(ends, |scene, state, _| Ok(file.reach_over(scene, state)?))?;
+        let records = self.asked.records()?;
+        let (mut stages, scene) = (records.iter().peekable(), &self.asked.scene);
+        self.each_state(ends, |scene, state, end| {
+            let mut time_ns = 0;
+            while let Some(stage) = stages.next_if(|stage| ordinal(stage) <= ordinal(end)) {
+                time_ns = file.add_stage(scene, stage).map_err(|source| unusable(Box::new(source)))?;
+            }
+            file.add_picture(scene, state, time_ns).map_err(|source| unusable(Box::new(source)))
+        })?;
+        for stage in stages {
+            file.add_stage(scene, stage).map_err(|source| unusable(Box::new(source)))?;
+        }
+        let bytes = file.finish().map_err(|source| unusable(Box::new(source)))?;
+        write(&[(path, bytes)])
+    }
+
     /// The contents of the files of a state.
     fn contents(&self, shell: &WholeShell, scene: &Scene, instant: &Instant) -> Result<Vec<Vec<u8>>, Failure> {
         let fields = chosen_fields(scene, self.fields)?;
@@ -143,8 +183,8 @@ impl Export<'_> {
             Format::Json => vec![json(shell, &fields, self.points, instant).into_bytes()],
             Format::Stl => vec![stl(shell.deformed(), self.points, &title())],
             Format::Step => vec![step(shell.deformed(), &title()).into_bytes()],
-            // Its states are not written one by one.
-            Format::Npz => vec![],
+            // Their states are not written one by one.
+            Format::Npz | Format::Mcap => vec![],
         })
     }
 

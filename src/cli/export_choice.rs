@@ -8,7 +8,7 @@ use super::asked::Ends;
 use super::failure::Failure;
 use crate::record::Record;
 use crate::scene::Scene;
-use crate::view::{Field, fields_of};
+use crate::view::{Field, StepTimes, fields_of};
 
 /// What states are written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -26,6 +26,9 @@ pub(super) enum Format {
     Stl,
     /// The deformed surface as NURBS for CAD (STEP AP214)
     Step,
+    /// Foxglove and other viewers of MCAP: the deformed mesh, with the reports and lines of all stages; for a log without
+    /// `mesh_history`, or for another field or other times than it has
+    Mcap,
 }
 
 impl Format {
@@ -38,17 +41,36 @@ impl Format {
             Format::Npz => "npz",
             Format::Stl => "stl",
             Format::Step => "step",
+            Format::Mcap => "mcap",
         }
     }
 
     /// Whether it writes all load steps where none are chosen, rather than the last one.
     fn is_of_all_steps(self) -> bool {
-        matches!(self, Format::Vtu | Format::Npz)
+        matches!(self, Format::Vtu | Format::Npz | Format::Mcap)
     }
 
     /// Whether several load steps may go into one file.
     pub(super) fn holds_many_steps(self) -> bool {
-        self == Format::Npz
+        matches!(self, Format::Npz | Format::Mcap)
+    }
+}
+
+/// When viewers show what a stage did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Times {
+    /// A tenth of a second for each load step
+    Steps,
+    /// When it was there, by the time that the stages took
+    Wall,
+}
+
+impl From<Times> for StepTimes {
+    fn from(times: Times) -> Self {
+        match times {
+            Times::Steps => Self::Steps,
+            Times::Wall => Self::Wall,
+        }
     }
 }
 
@@ -146,6 +168,8 @@ impl Target {
         let name = log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         match output {
             Some(file) if is_file(&file) => Self::File(file),
+            // The file ends as the log does.
+            None if format == Format::Mcap => Self::File(log.with_file_name(format!("{name}-view.mcap"))),
             folder => Self::Folder(folder.unwrap_or_else(|| log.with_extension("")), name),
         }
     }

@@ -71,6 +71,8 @@ pub(super) enum Failure {
         "{} is one file, and the load steps lie on {meshes} meshes: name a folder, or steps on one mesh with --steps", file.display()
     )]
     MeshesInOneFile { file: PathBuf, meshes: usize },
+    #[error("{fields} fields are chosen, and one colours the mesh: name one with --fields")]
+    FieldsForViewers { fields: usize },
     #[error("not one thread can be made")]
     Threads { source: Box<dyn std::error::Error + Send + Sync> },
     #[error("cannot watch for signals")]
@@ -151,6 +153,7 @@ impl Failure {
             | Failure::NoSuchField { .. }
             | Failure::StepsInOneFile { .. }
             | Failure::MeshesInOneFile { .. }
+            | Failure::FieldsForViewers { .. }
             | Failure::NoSuchScene { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,

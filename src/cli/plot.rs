@@ -121,7 +121,7 @@ fn surface(
 }
 
 /// The field of this name, with the component that is named behind a point.
-fn named(scene: &Scene, name: &str) -> Result<(Field, Option<usize>), Failure> {
+pub(super) fn named(scene: &Scene, name: &str) -> Result<(Field, Option<usize>), Failure> {
     let (of_field, of_component) = name.split_once('.').map_or((name, None), |(field, part)| (field, Some(part)));
     let fields = fields_of(scene);
     let found = fields.iter().find(|field| field.name == of_field).and_then(|field| match of_component {

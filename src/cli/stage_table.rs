@@ -64,7 +64,7 @@ pub fn stage_table(records: &[Record]) -> String {
 
 /// The cells of a stage; `probe` is the name of the one that has a column.
 fn cells(record: &Record, probe: Option<&str>) -> [String; COLUMNS.len()] {
-    let Record { report, commit, wall_s } = record;
+    let Record { report, commit, wall_s, .. } = record;
     let unless_zero = |number: u64| if number == 0 { String::new() } else { number.to_string() };
     [
         commit.ordinal.to_string(),
@@ -144,7 +144,7 @@ pub fn step_in_full(records: &[Record], step: u64) -> String {
 }
 
 fn in_full(record: &Record) -> Vec<(&'static str, String)> {
-    let Record { report, commit, wall_s } = record;
+    let Record { report, commit, wall_s, .. } = record;
     let outcome = match report.outcome {
         Outcome::Done if report.jumped => "done; the shell jumped".to_string(),
         Outcome::Done if report.rippled => "done; a ripple of the mesh was passed".to_string(),

@@ -149,7 +149,7 @@ impl LongLog {
         match chunk::open(&bytes, &record, &mut channels) {
             Ok((Content::Commit(content), _)) if content.commit.ordinal == ordinal as u64 => {
                 let commit = content.commit.commit();
-                Ok(Record { wall_s: content.report.wall_s, report: content.report.report, commit })
+                Ok(content.report.into_record(commit))
             }
             _ => Err(changed()),
         }

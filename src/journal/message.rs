@@ -224,6 +224,9 @@ pub struct ReportMessage {
     pub chain_hash: HexHash,
     /// Wall time of the stage, seconds.
     pub wall_s: f64,
+    /// Wall time that it took to keep the stage before, seconds; not there before version 4.
+    #[serde(default)]
+    pub kept_s: f64,
     /// Numbers above that JSON cannot hold, as (entry, value); seldom there.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     not_finite: Vec<NotFinite>,
@@ -246,6 +249,7 @@ impl ReportMessage {
             state_hash: HexHash(record.commit.state_hash),
             chain_hash: HexHash(record.commit.chain_hash),
             wall_s: record.wall_s,
+            kept_s: record.kept_s,
             not_finite: Vec::new(),
         };
         let found = message.numbers().into_iter().filter(|(_, value)| !value.is_finite());
@@ -272,6 +276,7 @@ impl ReportMessage {
             ("largest_indicator[0]", along_length),
             ("largest_indicator[1]", along_arc),
             ("wall_s", &mut self.wall_s),
+            ("kept_s", &mut self.kept_s),
         ];
         numbers.into_iter().chain(released).collect()
     }
@@ -282,6 +287,11 @@ impl ReportMessage {
     /// None that a report can cause; serde has no infallible way.
     pub fn to_json(&self) -> Result<Vec<u8>, serde_json::Error> {
         serde_json::to_vec(self)
+    }
+
+    /// The record of the stage, at this place in the run.
+    pub fn into_record(self, commit: Commit) -> Record {
+        Record { report: self.report, commit, wall_s: self.wall_s, kept_s: self.kept_s }
     }
 
     /// Reads the message from JSON, bit for bit as it was written. Entries that a report does not have are ignored,
@@ -300,13 +310,15 @@ impl ReportMessage {
             state_hash: HexHash,
             chain_hash: HexHash,
             wall_s: f64,
+            #[serde(default)]
+            kept_s: f64,
         }
         let Spelt { not_finite } = parsed(json)?;
         let json = if not_finite.is_empty() { Cow::from(json) } else { Cow::from(without_nulls(json)) };
         // One after the other and not as one: serde would hold all entries in memory to hand them on.
-        let Bound { state_hash, chain_hash, wall_s } = parsed(&json)?;
+        let Bound { state_hash, chain_hash, wall_s, kept_s } = parsed(&json)?;
         let report = parsed::<WrittenReport>(&json)?.into();
-        let mut message = Self { report, state_hash, chain_hash, wall_s, not_finite };
+        let mut message = Self { report, state_hash, chain_hash, wall_s, kept_s, not_finite };
         for Reading { name, unit, .. } in &mut message.report.probes {
             *name = one_line(name).into_owned();
             *unit = one_line(unit).into_owned();

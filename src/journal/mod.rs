@@ -27,7 +27,7 @@
 //! | `mending`, `lost_manifest` | a log with stages put back that it had lost; what is not known without a manifest |
 //! | `lock`, `lease`, `still_ours` | one writer at a time, of a file that is still the log |
 //! | `rewriting`, `agreement`, `verify` | all that can be checked, all of it |
-//! | `trace` | what a solve did, iterate by iterate, as a log of its own |
+//! | `trace`, `timed_messages` | what a solve did, iterate by iterate, and what viewers are shown, each as a file of its own |
 //!
 //! # Writing, stopping, continuing
 //!
@@ -116,6 +116,7 @@ mod still_ours;
 mod stretch;
 mod summary;
 mod thin;
+mod timed_messages;
 mod topics;
 mod trace;
 mod verify;
@@ -149,6 +150,7 @@ pub use soundness::check_state;
 pub use still_ours::LogChanged;
 pub use stretch::LostManifest;
 pub use thin::{ThinError, Thinned, thin};
+pub use timed_messages::{TimedMessages, TimedMessagesError};
 pub use topics::{ViewerMessage, ViewerTopic};
 pub use trace::{ITERATE_TOPIC, TraceRow, trace_file};
 pub use verify::{Finding, Level, verify, verify_log};

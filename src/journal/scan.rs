@@ -16,7 +16,7 @@ use super::log::{Entry, Kept, Note, Part};
 use super::manifest::{LIBRARY, Manifest};
 use super::message::{FinishedMessage, PackedHash, in_brief, kept_as};
 use super::stretch::Stretches;
-use crate::record::{Commit, Record};
+use crate::record::Commit;
 use crate::state::Hash;
 
 /// Problems and notes that are listed one by one; a file of another kind under a log's name could have any number.
@@ -389,7 +389,7 @@ impl Scan {
         let stretch =
             self.stretches.of_commit(self.place(place.start), ordinal, content.commit.manifest_hash.map(|hash| hash.0));
         let names_stretch = content.commit.manifest_hash.is_some();
-        let record = Record { wall_s: content.report.wall_s, report: content.report.report, commit };
+        let record = content.report.into_record(commit);
         let bytes = self.place(place.start)..self.place(place.end);
         self.entries.push(Entry { record, mesh_hash, fields, bytes, state: content.state, stretch, names_stretch });
         Ok(())

@@ -42,6 +42,8 @@ pub struct Run {
     scene_hash: Hash,
     mesh_hash: MeshHash,
     last: Option<Commit>,
+    /// Wall time that it took the sink to keep the last stage, seconds.
+    kept_s: f64,
 }
 
 impl Run {
@@ -50,7 +52,7 @@ impl Run {
         let scene_hash = stages.hash();
         let mut mesh_hash = MeshHash::default();
         let state_hash = state.hash_on(mesh_hash.of(&state.mesh));
-        Self { state_hash, mesh_hash, scene_hash, stages, state, last }
+        Self { state_hash, mesh_hash, scene_hash, stages, state, last, kept_s: 0.0 }
     }
 
     /// Current state of the run.
@@ -74,8 +76,10 @@ impl Run {
         let wall_s = begin.elapsed().as_secs_f64();
         let state_hash = state.hash_on(self.mesh_hash.of(&state.mesh));
         let commit = Commit::next(self.last.as_ref(), stage, report.step, self.scene_hash, self.state_hash, state_hash);
-        let record = Record { report, commit, wall_s };
+        let record = Record { report, commit, wall_s, kept_s: std::mem::take(&mut self.kept_s) };
+        let begin = Instant::now();
         sink.take(&state, &record)?;
+        self.kept_s = begin.elapsed().as_secs_f64();
         (self.state, self.state_hash, self.last) = (state, state_hash, Some(commit));
         Ok(Some(record))
     }

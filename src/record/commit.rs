@@ -59,6 +59,8 @@ pub struct Record {
     pub report: Report,
     /// Its place in the run.
     pub commit: Commit,
-    /// Wall time of the stage, seconds; the only number here that differs between equal runs.
+    /// Wall time of the stage, seconds; with the next the only number here that differs between equal runs.
     pub wall_s: f64,
+    /// Wall time that it took the sink to keep the stage before, seconds; 0 for the first one of a process.
+    pub kept_s: f64,
 }

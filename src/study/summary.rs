@@ -48,6 +48,8 @@ pub struct Summary {
     pub meshes: Vec<MeshChange>,
     /// What each stage that ran has cost, in the order of [`Stage::ALL`].
     pub work: Vec<StageWork>,
+    /// Wall time that keeping the stages took, all but the last one, seconds.
+    pub kept_s: f64,
     /// Where the mesh cannot show what the shell does, a line for each kind of warning.
     pub warnings: Vec<WarningCount>,
     /// Whether a warning casts doubt on the peak.
@@ -203,15 +205,16 @@ impl Summary {
             loads_follow: scene.loads_follow(),
             meshes: mesh_changes(records),
             work: work(records),
+            kept_s: records.iter().map(|record| record.kept_s).sum(),
             rejections: records.iter().filter(|record| record.report.outcome != Outcome::Done).count(),
             load_steps: steps.len(),
             last: path.last().copied(),
         }
     }
 
-    /// Wall time of all stages, seconds.
+    /// Wall time of all stages and of keeping them, seconds.
     pub fn wall_s(&self) -> f64 {
-        self.work.iter().map(|work| work.wall_s).sum()
+        self.work.iter().map(|work| work.wall_s).sum::<f64>() + self.kept_s
     }
 
     /// Number of stages that ran.

@@ -296,7 +296,7 @@ impl Summary {
 
     fn write_work(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let total = self.wall_s();
-        let row = |f: &mut Formatter<'_>, name: &str, numbers: [usize; 3], wall_s: f64| {
+        let row = |f: &mut Formatter<'_>, name: &str, numbers: [String; 3], wall_s: f64| {
             let share = if total > 0.0 { 100.0 * wall_s / total } else { 0.0 };
             let [runs, iterations, factorizations] = numbers;
             writeln!(
@@ -304,16 +304,20 @@ impl Summary {
                 "  {name:<21}   {runs:>5}   {iterations:>10}   {factorizations:>14}   {wall_s:>8.2}   {share:>4.0} %"
             )
         };
+        let texts = |numbers: [usize; 3]| numbers.map(|number| number.to_string());
         writeln!(
             f,
             "  {:<21}   {:>5}   {:>10}   {:>14}   {:>8}   {:>6}",
             "work in", "runs", "iterations", "factorizations", "wall s", "share"
         )?;
         for work in &self.work {
-            row(f, work.stage.name(), [work.runs, work.iterations, work.factorizations], work.wall_s)?;
+            row(f, work.stage.name(), texts([work.runs, work.iterations, work.factorizations]), work.wall_s)?;
+        }
+        if self.kept_s > 0.0 {
+            row(f, "writing the log", [const { String::new() }; 3], self.kept_s)?;
         }
         let sum = |number: fn(&super::summary::StageWork) -> usize| self.work.iter().map(number).sum();
-        row(f, "all", [self.stages(), sum(|work| work.iterations), sum(|work| work.factorizations)], total)?;
+        row(f, "all", texts([self.stages(), sum(|work| work.iterations), sum(|work| work.factorizations)]), total)?;
         if self.rejections > 0 {
             writeln!(f, "  {} rejected on the way", count(self.rejections, "solve"))?;
         }

@@ -8,7 +8,7 @@
 //! | `camera`, `colour`, `ticks` | projection, colours, round numbers |
 //! | `plot` | curves |
 //! | `mesh_picture` | the mesh as a picture |
-//! | `mesh_history` | the mesh for viewers of logs |
+//! | `viewers` | what viewers of MCAP draw |
 //! | `report` | runs as a page |
 //! | `vtu` | the mesh as drawn, for ParaView |
 //! | `export` | states in the formats of other programs |
@@ -18,13 +18,13 @@ mod colour;
 mod deformed_surface;
 mod export;
 mod fields;
-mod mesh_history;
 mod mesh_picture;
 #[cfg(feature = "pictures")]
 mod plot;
 mod report;
 mod samples;
 mod ticks;
+mod viewers;
 mod vtu;
 
 pub use camera::ViewDirection;
@@ -33,10 +33,10 @@ pub use export::{
     Instant, StatesOnMesh, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl, surface_vtu, time_steps,
 };
 pub use fields::{Field, ShellFields, fields_of};
-pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};
 #[cfg(feature = "pictures")]
 pub use plot::{PlotError, load_probe_plot, moment_rotation_plot};
 pub use report::{FrameAt, ReportedRun, Shape, Told, chosen_frames, report_page, study_page};
 pub use samples::{SamplesError, SurfaceSamples};
+pub use viewers::{LOG_TOPIC, MESH_HISTORY_TOPIC, MeshHistory, PictureError, StepTimes, ViewerFile};
 pub use vtu::vtu;

@@ -134,7 +134,7 @@ impl Script {
             warnings: vec![],
             ..report.clone()
         };
-        self.records.push(Record { report, commit, wall_s });
+        self.records.push(Record { report, commit, wall_s, kept_s: 0.0 });
     }
 
     /// A solve that is rejected.

@@ -87,7 +87,7 @@ fn write_long_of(text: &str, path: &Path, commits: u64) {
         report.moment_n_mm = state.moment_n_mm;
         let hash = state.hash();
         let commit = Commit::next(previous.as_ref(), report.stage, report.step, scene_hash, parent, hash);
-        writer.commit(&state, &Record { report, commit, wall_s: 0.01 }).unwrap();
+        writer.commit(&state, &Record { report, commit, wall_s: 0.01, kept_s: 0.0 }).unwrap();
         (previous, parent) = (Some(commit), hash);
     }
 }

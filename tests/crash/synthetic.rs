@@ -122,7 +122,7 @@ pub fn go_on(state: &State, previous: Option<&Commit>, stages: usize) -> Vec<(St
             let commit = Commit::next(previous.as_ref(), report.stage, report.step, scene_hash(), parent, new.hash());
             state = new.clone();
             previous = Some(commit);
-            (new, Record { report, commit, wall_s: 0.25 })
+            (new, Record { report, commit, wall_s: 0.25, kept_s: 0.01 })
         })
         .collect()
 }
