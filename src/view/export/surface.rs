@@ -5,7 +5,8 @@
 //! `displacement` has the displacements of the control points: "Warp by Vector" with scale 1 makes exactly the deformed surface,
 //! since both are sums of the same rational functions. Other fields are coefficients of patches that take the field's values at
 //! (p + 1)(q + 1) uniform points of each cell. Coefficients may lie beyond all values of the surface, where a field has an extreme inside
-//! a cell; so the range of the values stands beside them, as the field array `NAME_range` (a row for each component).
+//! a cell; so the range of the values stands beside them, as the field array `NAME_range` (a row for each component). They are of
+//! single precision, which is finer than any mesh; positions and displacements are exact.
 
 use rayon::prelude::*;
 
@@ -94,8 +95,8 @@ impl OnCells<'_> {
     fn array(&self, order: &[usize]) -> XmlArray {
         let Field { name, components, unit, .. } = self.field;
         let in_order = self.cells.iter().flat_map(|cell| order.iter().map(|k| cell.coefficients[*k]));
-        let numbers = in_order.flat_map(|value| value.into_iter().take(components.len()));
-        XmlArray::of_numbers(name, numbers).of_components(components).in_unit(unit)
+        let numbers: Vec<f64> = in_order.flat_map(|value| value.into_iter().take(components.len())).collect();
+        XmlArray::of_shown_numbers(name, &numbers).of_components(components).in_unit(unit)
     }
 }
 
