@@ -29,4 +29,6 @@ pub use grid::Grid;
 pub use insertion::{insert_knots, insert_knots_into_net};
 pub use knots::{KnotFlaw, check_knots, control_count, without_knots};
 pub use mesh::{Mesh, cartesian};
-pub use surface::{SurfacePoint, evaluate_surface, mid_surface_point, quotient_derivatives, tensor_derivatives};
+pub use surface::{
+    SurfacePoint, evaluate_surface, mid_surface_point, mid_surface_points, quotient_derivatives, tensor_derivatives,
+};

@@ -65,7 +65,22 @@ pub fn quotient_derivatives(f: [f64; 6], w: [f64; 6]) -> [f64; 6] {
 /// Evaluates a point of the surface whose control points are moved by `displacement` (in their order; empty for the
 /// undeformed surface).
 pub fn mid_surface_point(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) -> SurfacePoint {
+    let [point] = mid_surface_points(mesh, [displacement], parameters);
+    point
+}
+
+/// Evaluates the same point of several surfaces that differ by the displacement of their control points.
+pub fn mid_surface_points<const N: usize>(
+    mesh: &Mesh,
+    displacements: [&[[f64; 3]]; N],
+    parameters: [f64; 2],
+) -> [SurfacePoint; N] {
     let (first, functions) = evaluate_surface(mesh, parameters);
+    displacements.map(|displacement| sum(mesh, displacement, first, &functions))
+}
+
+/// The sum of the control points around a point, moved by `displacement`, with their functions there.
+fn sum(mesh: &Mesh, displacement: &[[f64; 3]], first: [usize; 2], functions: &[Vec<f64>; 6]) -> SurfacePoint {
     let mut sums = [[0.0; 3]; 6];
     for (a, index) in mesh.window(first).enumerate() {
         let [x, y, z] = mesh.point(index);

@@ -4,7 +4,7 @@ use super::fields::{Field, ShellFields};
 use super::samples::{SamplesError, SurfaceSamples, cells_of};
 use crate::scene::Scene;
 use crate::shell::{cross, dot, norm};
-use crate::spline::{Grid, Mesh, SurfacePoint, mid_surface_point};
+use crate::spline::{Grid, Mesh, SurfacePoint, mid_surface_point, mid_surface_points};
 use crate::state::State;
 
 /// Points and values on a grid that follows the elements.
@@ -57,7 +57,7 @@ pub fn coloured_surface(
 ) -> Result<SurfaceSamples, SamplesError> {
     let fields = ShellFields::new(scene, state);
     let of = |value: [f64; 3]| component.map_or_else(|| norm(value), |index| value[index]);
-    let value = |at: [f64; 2]| of(fields.value(field, at));
+    let value = |at: [f64; 2]| of(fields.at(at).value(field));
     let image = [0, 1].map(|direction| of(field.mirrored([1.0; 3], direction)).signum());
     let shown = Shown { value: &value, image, quantity: field.title_of(component) };
     sampled(scene, &state.mesh, &state.displacement, cells_per_element, shown)
@@ -105,9 +105,8 @@ fn bending_strain(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) 
         let normal = cross(a1, a2);
         [a11, a22].map(|second| dot(second, normal) / norm(normal))
     };
-    let undeformed = mid_surface_point(mesh, &[], parameters);
-    let before = curvatures(&undeformed);
-    let after = curvatures(&mid_surface_point(mesh, displacement, parameters));
+    let [undeformed, deformed] = mid_surface_points(mesh, [&[], displacement], parameters);
+    let [before, after] = [&undeformed, &deformed].map(curvatures);
     let physical = |i: usize| {
         let tangent = undeformed.derivatives[i];
         (before[i] - after[i]).abs() / dot(tangent, tangent)

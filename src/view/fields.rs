@@ -5,8 +5,8 @@
 
 use crate::model::{FreeStrains, NaturalState};
 use crate::scene::{Material, Scene};
-use crate::shell::{LocalPoint, gauss_legendre, layers, local_point, norm, principal};
-use crate::spline::{Grid, Mesh, Spans, mid_surface_point};
+use crate::shell::{LocalPoint, gauss_legendre, layers, local_point, norm, principal, sub};
+use crate::spline::{Grid, Mesh, Spans, mid_surface_point, mid_surface_points};
 use crate::state::State;
 
 /// A field of the shell.
@@ -160,41 +160,19 @@ impl<'a> ShellFields<'a> {
         }
     }
 
-    /// The components of a field at a point of the parameters (u, v); those beyond its number are 0.
-    pub fn value(&self, field: &Field, at: [f64; 2]) -> [f64; 3] {
-        let scalar = |value: f64| [value, 0.0, 0.0];
-        let tensor_of_strains = |[xx, yy, shear]: [f64; 3]| [xx, yy, 0.5 * shear];
-        let pair = |[one, two]: [f64; 2]| [one, two, 0.0];
-        match field.quantity {
-            Quantity::Displacement => {
-                let [to, from] = [self.displacement, &[]].map(|moved| mid_surface_point(self.mesh, moved, at).position);
-                [0, 1, 2].map(|c| to[c] - from[c])
-            }
-            Quantity::MembraneStrain => self.point(at).membrane,
-            Quantity::PrincipalMembraneStrain => pair(principal(tensor_of_strains(self.point(at).membrane))),
-            Quantity::BendingStrain => self.point(at).bending,
-            Quantity::PrincipalBendingStrain => pair(principal(tensor_of_strains(self.point(at).bending))),
-            Quantity::LargestBendingStrain => {
-                let [along, across] = self.bending_along_parameters(at);
-                scalar(along.max(across))
-            }
-            Quantity::MembraneForce => self.point(at).forces,
-            Quantity::PrincipalMembraneForce => pair(principal(self.point(at).forces)),
-            Quantity::BendingMoment => self.point(at).moments,
-            Quantity::PrincipalBendingMoment => pair(principal(self.point(at).moments)),
-            Quantity::EnergyDensity => scalar(self.point(at).energy),
-            Quantity::Indicator => {
-                let (strain, length) = (self.bending_along_parameters(at), self.lengths[self.element_at(at)]);
-                pair([strain[0] * length[0], strain[1] * length[1]])
-            }
-            Quantity::ElementSize => pair(self.lengths[self.element_at(at)]),
-            Quantity::Thickness => scalar(self.scene.material.thickness_mm()),
-            Quantity::Ply(ply) => {
-                let Some((heights, angle_deg)) = self.layers.get(ply) else { return [0.0; 3] };
-                let point = self.point(at);
-                let [bottom, top] = heights.map(|height| point.strains_at(height, *angle_deg));
-                [0, 1, 2].map(|i| if bottom[i].abs() > top[i].abs() { bottom[i] } else { top[i] })
-            }
+    /// A point of the parameters (u, v), of which every field can be read.
+    pub fn at(&self, at: [f64; 2]) -> FieldPoint<'_> {
+        let [undeformed, deformed] = mid_surface_points(self.mesh, [&[], self.displacement], at);
+        let moved = [0, 1, 2, 3, 4].map(|k| sub(deformed.derivatives[k], undeformed.derivatives[k]));
+        let free = self.natural.as_ref().map(|natural| &natural.strain);
+        let local = local_point(&self.scene.material, undeformed.derivatives, &moved, free);
+        let [a1, a2, ..] = undeformed.derivatives;
+        FieldPoint {
+            shell: self,
+            displacement: sub(deformed.position, undeformed.position),
+            bending_along_parameters: along_parameters(local.bending, a1, a2),
+            local,
+            element: self.element_at(at),
         }
     }
 
@@ -203,26 +181,8 @@ impl<'a> ShellFields<'a> {
         let widened = |range: [[f64; 2]; 3], value: [f64; 3]| {
             [0, 1, 2].map(|c| [range[c][0].min(value[c]), range[c][1].max(value[c])])
         };
-        let ranges = points.map(|at| self.value(field, at).map(|value| [value; 2]));
+        let ranges = points.map(|at| self.at(at).value(field).map(|value| [value; 2]));
         ranges.reduce(|all, one| widened(widened(all, one.map(|range| range[0])), one.map(|range| range[1])))
-    }
-
-    /// Strains and resultants at a point.
-    fn point(&self, at: [f64; 2]) -> LocalPoint {
-        let undeformed = mid_surface_point(self.mesh, &[], at).derivatives;
-        let deformed = mid_surface_point(self.mesh, self.displacement, at).derivatives;
-        let moved = [0, 1, 2, 3, 4].map(|k| [0, 1, 2].map(|c| deformed[k][c] - undeformed[k][c]));
-        let free = self.natural.as_ref().map(|natural| &natural.strain);
-        local_point(&self.scene.material, undeformed, &moved, free)
-    }
-
-    /// |κ| per length along the parameter lines u and v.
-    fn bending_along_parameters(&self, at: [f64; 2]) -> [f64; 2] {
-        let [a1, a2, ..] = mid_surface_point(self.mesh, &[], at).derivatives;
-        let [k11, k22, twice_k12] = self.point(at).bending;
-        // The line of v leaves e₁ by the angle between A₁ and A₂.
-        let (s, c) = angle_between(a1, a2).sin_cos();
-        [k11.abs(), (c * c * k11 + s * s * k22 + c * s * twice_k12).abs()]
     }
 
     fn element_at(&self, at: [f64; 2]) -> usize {
@@ -233,6 +193,59 @@ impl<'a> ShellFields<'a> {
         });
         Grid::new(counts).index(place)
     }
+}
+
+/// A point of a shell in a state: what its fields are read from.
+#[derive(Debug)]
+pub struct FieldPoint<'a> {
+    shell: &'a ShellFields<'a>,
+    /// Displacement, mm.
+    displacement: [f64; 3],
+    /// Strains and resultants.
+    local: LocalPoint,
+    /// |κ| per length along the parameter lines u and v.
+    bending_along_parameters: [f64; 2],
+    /// Index of its element, the second direction fastest.
+    element: usize,
+}
+
+impl FieldPoint<'_> {
+    /// The components of a field of the shell's scene; those beyond its number are 0.
+    pub fn value(&self, field: &Field) -> [f64; 3] {
+        let Self { shell, displacement, local, bending_along_parameters: [along, across], element } = self;
+        let scalar = |value: f64| [value, 0.0, 0.0];
+        let tensor_of_strains = |[xx, yy, shear]: [f64; 3]| [xx, yy, 0.5 * shear];
+        let pair = |[one, two]: [f64; 2]| [one, two, 0.0];
+        let lengths = shell.lengths[*element];
+        match field.quantity {
+            Quantity::Displacement => *displacement,
+            Quantity::MembraneStrain => local.membrane,
+            Quantity::PrincipalMembraneStrain => pair(principal(tensor_of_strains(local.membrane))),
+            Quantity::BendingStrain => local.bending,
+            Quantity::PrincipalBendingStrain => pair(principal(tensor_of_strains(local.bending))),
+            Quantity::LargestBendingStrain => scalar(along.max(*across)),
+            Quantity::MembraneForce => local.forces,
+            Quantity::PrincipalMembraneForce => pair(principal(local.forces)),
+            Quantity::BendingMoment => local.moments,
+            Quantity::PrincipalBendingMoment => pair(principal(local.moments)),
+            Quantity::EnergyDensity => scalar(local.energy),
+            Quantity::Indicator => pair([along * lengths[0], across * lengths[1]]),
+            Quantity::ElementSize => pair(lengths),
+            Quantity::Thickness => scalar(shell.scene.material.thickness_mm()),
+            Quantity::Ply(ply) => {
+                let Some((heights, angle_deg)) = shell.layers.get(ply) else { return [0.0; 3] };
+                let [bottom, top] = heights.map(|height| local.strains_at(height, *angle_deg));
+                [0, 1, 2].map(|i| if bottom[i].abs() > top[i].abs() { bottom[i] } else { top[i] })
+            }
+        }
+    }
+}
+
+/// |κ| per length along the parameter lines u and v, whose tangents are A₁ and A₂, from the bending strains in the shell's axes.
+fn along_parameters([k11, k22, twice_k12]: [f64; 3], a1: [f64; 3], a2: [f64; 3]) -> [f64; 2] {
+    // The line of v leaves e₁ by the angle between A₁ and A₂.
+    let (s, c) = angle_between(a1, a2).sin_cos();
+    [k11.abs(), (c * c * k11 + s * s * k22 + c * s * twice_k12).abs()]
 }
 
 /// The angle between two vectors, radians.

@@ -32,7 +32,7 @@ pub use deformed_surface::{coloured_surface, deformed_surface};
 pub use export::{
     Instant, StatesOnMesh, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl, surface_vtu, time_steps,
 };
-pub use fields::{Field, ShellFields, fields_of};
+pub use fields::{Field, FieldPoint, ShellFields, fields_of};
 pub use mesh_picture::{Picture, mesh_picture};
 #[cfg(feature = "pictures")]
 pub use plot::{PlotError, load_probe_plot, moment_rotation_plot};

@@ -4,7 +4,7 @@
 
 use std::fmt::Write as _;
 
-use super::export::XmlArray;
+use super::export::{OPENING, XmlArray};
 use super::mesh_picture::escaped;
 use super::samples::SurfaceSamples;
 
@@ -32,10 +32,7 @@ pub fn vtu(samples: &SurfaceSamples) -> String {
     let is_line: Vec<u8> = (0..cells).map(|cell| u8::from(cell >= faces)).collect();
 
     let quantity = escaped(&samples.quantity);
-    let mut xml = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\">\n<UnstructuredGrid>\n",
-    );
+    let mut xml = String::from(OPENING);
     // Writing to a string does not fail.
     let _ = writeln!(xml, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">", points.len() / 3);
     xml.push_str("<Points>\n");

@@ -22,6 +22,8 @@ ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "tests/restart/small.toml"
 # Cells of a table along an element; uniform points of cells of degree 3 and 2 are among the points of the table.
 TABLE_CELLS = 6
+# Rounding of coefficients that are some times larger than the values.
+SINGLE = 10 * 2.0**-24
 
 
 def foldline(program: str, *arguments: str, folder: Path) -> None:
@@ -156,7 +158,9 @@ def check_step(check: Check, folder: Path, path: Path, radius_length_arc: tuple[
                 error = np.abs(rational @ coefficients - values[column][of_cell]).max() / scale
                 off[name] = max(off.get(name, 0.0), error)
     for what, error in off.items():
-        check.within(f"{path.name}: {what} at the nodes of {grid.GetNumberOfCells()} cells", error, 1e-9)
+        # Other fields than positions are of single precision.
+        most = 1e-9 if what in ("undeformed", "deformed", "displacement") else SINGLE
+        check.within(f"{path.name}: {what} at the nodes of {grid.GetNumberOfCells()} cells", error, most)
     for name, columns in names.items():
         if name == "displacement":
             continue

@@ -17,7 +17,7 @@ fn field(scene: &Scene, name: &str) -> Field {
 }
 
 fn value(scene: &Scene, state: &State, name: &str, at: [f64; 2]) -> [f64; 3] {
-    ShellFields::new(scene, state).value(&field(scene, name), at)
+    ShellFields::new(scene, state).at(at).value(&field(scene, name))
 }
 
 fn assert_close(found: f64, expected: f64, scale: f64, what: &str) {
@@ -179,7 +179,7 @@ fn images_continue_the_fields() {
         let ranges = part.range(&field, grid).unwrap();
         let scale = ranges.as_flattened().iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         for at in [[0.4, 0.0], [0.6, 1.0], [0.6, 0.0]] {
-            let own = part.value(&field, at);
+            let own = part.at(at).value(&field);
             let [u, v] = [0.5 * at[0], 0.5 + 0.5 * at[1]];
             let images = [
                 ([u, v], own),
@@ -188,7 +188,7 @@ fn images_continue_the_fields() {
                 ([1.0 - u, 1.0 - v], field.mirrored(field.mirrored(own, 0), 1)),
             ];
             for (place, expected) in images {
-                let found = all.value(&field, place);
+                let found = all.at(place).value(&field);
                 for c in usize::from(name == "displacement")..field.components.len() {
                     assert!(
                         (found[c] - expected[c]).abs() < 0.01 * scale,

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::bezier::BezierPatches;
 use super::instant::Instant;
-use super::xml_array::XmlArray;
+use super::xml_array::{OPENING, XmlArray};
 
 /// The point array that warps a grid.
 pub(super) const DISPLACEMENT: &str = "displacement";
@@ -29,10 +29,7 @@ impl BezierGrid<'_> {
         field_arrays: impl Iterator<Item = XmlArray>,
         point_arrays: impl Iterator<Item = XmlArray>,
     ) -> String {
-        let mut xml = String::from(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-             header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n",
-        );
+        let mut xml = String::from(OPENING) + "<FieldData>\n";
         for (name, value) in instant.numbers() {
             XmlArray::of_numbers(name, [value].into_iter()).tuples(1).write(&mut xml);
         }

@@ -33,5 +33,6 @@ pub use step::step;
 pub use stl::stl;
 pub use surface::surface_vtu;
 pub use table::{csv, json};
+pub(super) use whole_shell::WholePoint;
 pub use whole_shell::WholeShell;
-pub(super) use xml_array::{XmlArray, base64};
+pub(super) use xml_array::{OPENING, XmlArray, base64};

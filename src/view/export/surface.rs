@@ -5,14 +5,15 @@
 //! `displacement` has the displacements of the control points: "Warp by Vector" with scale 1 makes exactly the deformed surface,
 //! since both are sums of the same rational functions. Other fields are coefficients of patches that take the field's values at
 //! (p + 1)(q + 1) uniform points of each cell. Coefficients may lie beyond all values of the surface, where a field has an extreme inside
-//! a cell; so the range of the values stands beside them, as the field array `NAME_range` (a row for each component).
+//! a cell; so the range of the values stands beside them, as the field array `NAME_range` (a row for each component). They are of
+//! single precision, which is finer than any mesh; positions and displacements are exact.
 
 use rayon::prelude::*;
 
 use super::bezier::BezierPatches;
 use super::bezier_grid::{BezierGrid, DISPLACEMENT};
 use super::instant::Instant;
-use super::whole_shell::WholeShell;
+use super::whole_shell::{WholePoint, WholeShell};
 use super::xml_array::XmlArray;
 use crate::view::fields::Field;
 
@@ -31,53 +32,71 @@ pub fn surface_vtu(shell: &WholeShell, fields: &[Field], instant: &Instant) -> S
     // Every cell has points of its own: fields may jump between elements.
     let controls = (0..cells).flat_map(in_order).collect();
     let degrees = vec![patches.undeformed.degree; cells];
-    let shown = fields.iter().filter(|field| field.name != DISPLACEMENT);
-    let shown: Vec<OnCells> = shown.map(|field| OnCells::of(shell, &patches, field)).collect();
+    let shown: Vec<&Field> = fields.iter().filter(|field| field.name != DISPLACEMENT).collect();
+    let on_cells = fields_on_cells(shell, &patches, &shown);
     BezierGrid { patches: &patches, kind: BEZIER_QUADRILATERAL, degrees, controls }.vtu(
         instant,
-        shown.iter().map(OnCells::range_array),
-        shown.iter().map(|on_cells| on_cells.array(&order)),
+        on_cells.iter().map(OnCells::range_array),
+        on_cells.iter().map(|on_cells| on_cells.array(&order)),
     )
 }
 
 /// A field on the cells.
 struct OnCells<'f> {
     field: &'f Field,
-    /// Coefficients of each cell, the second direction fastest.
-    coefficients: Vec<Vec<[f64; 3]>>,
-    /// Least and largest value of each component at the nodes.
-    range: Vec<[f64; 2]>,
+    /// In the order of the cells.
+    cells: Vec<OnCell>,
 }
 
-impl<'f> OnCells<'f> {
-    fn of(shell: &WholeShell, patches: &BezierPatches, field: &'f Field) -> Self {
-        let at_nodes = |element: usize| {
-            let bounds = patches.bounds(element);
-            patches.nodes(element).map(|at| shell.value_in(field, bounds, at)).collect::<Vec<_>>()
-        };
-        let values: Vec<Vec<[f64; 3]>> = (0..patches.elements().len()).into_par_iter().map(at_nodes).collect();
-        let range = |component: usize| {
-            let values = values.iter().flatten().map(|value| value[component]);
-            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
-        };
-        let coefficients =
-            values.iter().enumerate().map(|(element, values)| patches.interpolating(element, values)).collect();
-        Self { field, coefficients, range: (0..field.components.len()).map(range).collect() }
-    }
+/// A field on a cell.
+struct OnCell {
+    /// The second direction fastest.
+    coefficients: Vec<[f64; 3]>,
+    /// Least and largest value of each component at the nodes.
+    range: [[f64; 2]; 3],
+}
 
+/// Fields on the cells: a point is evaluated once for all of them.
+fn fields_on_cells<'f>(shell: &WholeShell, patches: &BezierPatches, fields: &[&'f Field]) -> Vec<OnCells<'f>> {
+    let on_cell = |element: usize| {
+        let bounds = patches.bounds(element);
+        let points: Vec<WholePoint> = patches.nodes(element).map(|at| shell.at_in(bounds, at)).collect();
+        let of_field = |field: &&Field| {
+            let values: Vec<[f64; 3]> = points.iter().map(|point| point.value(field)).collect();
+            let range = [0, 1, 2].map(|c| range(values.iter().map(|value| [value[c]; 2])));
+            OnCell { coefficients: patches.interpolating(element, &values), range }
+        };
+        fields.iter().map(of_field).collect()
+    };
+    let by_cell: Vec<Vec<OnCell>> = (0..patches.elements().len()).into_par_iter().map(on_cell).collect();
+    let mut by_field: Vec<OnCells> = fields.iter().map(|field| OnCells { field, cells: Vec::new() }).collect();
+    for of_cell in by_cell {
+        by_field.iter_mut().zip(of_cell).for_each(|(field, on_cell)| field.cells.push(on_cell));
+    }
+    by_field
+}
+
+/// The range that holds all of these.
+fn range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [least, most]| [low.min(least), high.max(most)])
+}
+
+impl OnCells<'_> {
     /// The range, a row for each component.
     fn range_array(&self) -> XmlArray {
-        XmlArray::of_numbers(&format!("{}_range", self.field.name), self.range.iter().flatten().copied())
+        let count = self.field.components.len();
+        let rows = (0..count).flat_map(|c| range(self.cells.iter().map(|cell| cell.range[c])));
+        XmlArray::of_numbers(&format!("{}_range", self.field.name), rows)
             .of_components(&["least", "largest"])
-            .tuples(self.range.len())
+            .tuples(count)
     }
 
     /// The coefficients, with those of a cell in this order.
     fn array(&self, order: &[usize]) -> XmlArray {
         let Field { name, components, unit, .. } = self.field;
-        let in_order = self.coefficients.iter().flat_map(|cell| order.iter().map(|k| cell[*k]));
-        let numbers = in_order.flat_map(|value| value.into_iter().take(components.len()));
-        XmlArray::of_numbers(name, numbers).of_components(components).in_unit(unit)
+        let in_order = self.cells.iter().flat_map(|cell| order.iter().map(|k| cell.coefficients[*k]));
+        let numbers: Vec<f64> = in_order.flat_map(|value| value.into_iter().take(components.len())).collect();
+        XmlArray::of_shown_numbers(name, &numbers).of_components(components).in_unit(unit)
     }
 }
 

@@ -29,14 +29,15 @@ fn rows(shell: &WholeShell, fields: &[Field], points: usize) -> Vec<Row> {
     let (elements, grid) = (Grid::new([0, 1].map(|direction| spans[direction].count())), Grid::new([points; 2]));
     let of_element = |element: [usize; 2]| {
         let bounds = [0, 1].map(|direction| spans[direction].bounds[element[direction]]);
-        (0..grid.len()).map(move |point| {
-            let share = grid.place(point).map(|place| place as f64 / (points - 1) as f64);
+        (0..grid.len()).map(move |index| {
+            let share = grid.place(index).map(|place| place as f64 / (points - 1) as f64);
             let parameters = [0, 1].map(|direction| {
                 let [from, to] = bounds[direction];
                 from + (to - from) * share[direction]
             });
+            let point = shell.at_in(bounds, parameters);
             let value = |field: &Field| {
-                let value = shell.value_in(field, bounds, parameters);
+                let value = point.value(field);
                 // A zero without a sign.
                 value[..field.components.len()].iter().copied().map(|number| number + 0.0).collect()
             };

@@ -6,7 +6,7 @@
 use crate::scene::Scene;
 use crate::spline::{Grid, Mesh};
 use crate::state::State;
-use crate::view::fields::{Field, ShellFields};
+use crate::view::fields::{Field, FieldPoint, ShellFields};
 
 /// Share of an element by which its border is evaluated inside it.
 const INSIDE: f64 = 1e-10;
@@ -56,21 +56,18 @@ impl<'a> WholeShell<'a> {
         displacements(&self.undeformed, &self.deformed)
     }
 
-    /// The components of a field at a point of an element that has these bounds in the parameters: what jumps at a knot has the
-    /// value of this element on its border.
-    pub fn value_in(&self, field: &Field, bounds: [[f64; 2]; 2], at: [f64; 2]) -> [f64; 3] {
-        self.value(
-            field,
-            [0, 1].map(|direction| {
-                let [from, to] = bounds[direction];
-                let gap = INSIDE * (to - from);
-                at[direction].clamp(from + gap, to - gap)
-            }),
-        )
+    /// A point of an element that has these bounds in the parameters: what jumps at a knot has the value of this element on its
+    /// border.
+    pub fn at_in(&self, bounds: [[f64; 2]; 2], at: [f64; 2]) -> WholePoint<'_> {
+        self.at([0, 1].map(|direction| {
+            let [from, to] = bounds[direction];
+            let gap = INSIDE * (to - from);
+            at[direction].clamp(from + gap, to - gap)
+        }))
     }
 
-    /// The components of a field at a point of the parameters of the whole shell; those beyond its number are 0.
-    pub fn value(&self, field: &Field, [u, v]: [f64; 2]) -> [f64; 3] {
+    /// A point of the parameters of the whole shell.
+    pub fn at(&self, [u, v]: [f64; 2]) -> WholePoint<'_> {
         let (u, in_image_along) = match self.cuts[0] {
             true if u > 0.5 => (2.0 - 2.0 * u, true),
             true => (2.0 * u, false),
@@ -81,9 +78,23 @@ impl<'a> WholeShell<'a> {
             true => (2.0 * v - 1.0, false),
             false => (v, false),
         };
-        let value = self.fields.value(field, [u, v]);
-        let images = [(0, in_image_along), (1, in_image_across)].into_iter().filter(|(_, is_image)| *is_image);
-        images.fold(value, |value, (direction, _)| field.mirrored(value, direction))
+        WholePoint { point: self.fields.at([u, v]), is_image: [in_image_along, in_image_across] }
+    }
+}
+
+/// A point of the whole shell, of which every field can be read.
+#[derive(Debug)]
+pub struct WholePoint<'a> {
+    point: FieldPoint<'a>,
+    /// Whether it lies beyond the plane across the length, and beyond that through the apex.
+    is_image: [bool; 2],
+}
+
+impl WholePoint<'_> {
+    /// The components of a field; those beyond its number are 0.
+    pub fn value(&self, field: &Field) -> [f64; 3] {
+        let planes = (0..2).filter(|direction| self.is_image[*direction]);
+        planes.fold(self.point.value(field), |value, direction| field.mirrored(value, direction))
     }
 }
 

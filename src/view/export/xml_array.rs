@@ -1,7 +1,19 @@
-//! Arrays of VTK's XML files: inline base64 (`format="binary"`) with a 64-bit length in front, little-endian, uncompressed: exact,
-//! and not-a-number survives, which ASCII arrays do not read back.
+//! Arrays of VTK's XML files: inline base64 (`format="binary"`), little-endian, compressed by zlib in blocks with their lengths in
+//! front (VTK File Formats, "Compressed data"). Not-a-number survives, which ASCII arrays do not read back.
 
 use std::fmt::Write as _;
+
+use miniz_oxide::deflate::compress_to_vec_zlib;
+use rayon::prelude::*;
+
+/// How a file of an unstructured grid with such arrays begins.
+pub(in crate::view) const OPENING: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+     byte_order=\"LittleEndian\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+
+/// Bytes of a block before it is compressed, as VTK has them.
+const BLOCK: usize = 1 << 15;
+/// zlib's level: more takes longer, and saves next to nothing on numbers.
+const LEVEL: u8 = 3;
 
 /// One array, to be formatted as an element of XML.
 #[derive(Debug)]
@@ -9,23 +21,28 @@ pub(in crate::view) struct XmlArray {
     kind: &'static str,
     attributes: String,
     unit: &'static str,
-    /// A 64-bit length and as many bytes.
-    framed: Vec<u8>,
+    bytes: Vec<u8>,
 }
 
 impl XmlArray {
     /// An array of the type `kind` with its bytes.
     pub(in crate::view) fn of_bytes(kind: &'static str, name: &str, bytes: impl Iterator<Item = u8>) -> Self {
-        let mut framed = vec![0; 8];
-        framed.extend(bytes);
-        let length = framed.len() as u64 - 8;
-        framed[..8].copy_from_slice(&length.to_le_bytes());
-        Self { kind, attributes: format!("Name=\"{name}\""), unit: "", framed }
+        Self { kind, attributes: format!("Name=\"{name}\""), unit: "", bytes: bytes.collect() }
     }
 
     /// An array of floating-point numbers.
     pub(in crate::view) fn of_numbers(name: &str, numbers: impl Iterator<Item = f64>) -> Self {
         Self::of_bytes("Float64", name, numbers.flat_map(f64::to_le_bytes))
+    }
+
+    /// An array of numbers that are to be looked at: in single precision, but where that cannot hold one of them.
+    pub(in crate::view) fn of_shown_numbers(name: &str, numbers: &[f64]) -> Self {
+        let is_held = |number: &f64| *number == 0.0 || (*number as f32).is_normal();
+        if numbers.iter().all(is_held) {
+            Self::of_bytes("Float32", name, numbers.iter().flat_map(|number| (*number as f32).to_le_bytes()))
+        } else {
+            Self::of_numbers(name, numbers.iter().copied())
+        }
     }
 
     /// An array of indices.
@@ -60,15 +77,24 @@ impl XmlArray {
 
     /// Appends the element.
     pub(in crate::view) fn write(self, xml: &mut String) {
-        let Self { kind, attributes, unit, framed } = self;
+        let Self { kind, attributes, unit, bytes } = self;
         // Writing to a string does not fail.
-        let _ = write!(xml, "<DataArray type=\"{kind}\" {attributes} format=\"binary\">\n{}\n", base64(&framed));
+        let _ = writeln!(xml, "<DataArray type=\"{kind}\" {attributes} format=\"binary\">\n{}", compressed(&bytes));
         if !unit.is_empty() {
             let key = "<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">";
             let _ = writeln!(xml, "{key}{unit}</InformationKey>");
         }
         xml.push_str("</DataArray>\n");
     }
+}
+
+/// The number of blocks, their length, that of the last one where it is shorter (else 0) and their lengths when compressed, in
+/// base64; then all of them, in base64 of their own.
+fn compressed(bytes: &[u8]) -> String {
+    let blocks: Vec<Vec<u8>> = bytes.par_chunks(BLOCK).map(|block| compress_to_vec_zlib(block, LEVEL)).collect();
+    let lengths = [blocks.len(), BLOCK, bytes.len() % BLOCK].into_iter().chain(blocks.iter().map(Vec::len));
+    let front: Vec<u8> = lengths.flat_map(|length| (length as u64).to_le_bytes()).collect();
+    base64(&front) + &base64(&blocks.concat())
 }
 
 /// RFC 4648, with padding.
@@ -99,14 +125,40 @@ mod tests {
     }
 
     #[test]
-    fn an_array_has_its_length_in_front() {
-        let mut xml = String::new();
-        XmlArray::of_indices("offsets", [4, 6].into_iter()).write(&mut xml);
-        let bytes: Vec<u8> = [16u64, 4, 6].iter().flat_map(|v| v.to_le_bytes()).collect();
-        let text = base64(&bytes);
+    fn an_array_is_blocks_with_their_lengths_in_front() {
+        let bytes: Vec<u8> = (0..2 * BLOCK + 5).map(|k| (k * k >> 7) as u8).collect();
+        let text = compressed(&bytes);
+        let front = base64(&[0; 8 * 6]).len();
+        let decoded = |text: &str| {
+            let digit =
+                |c: u8| (b'A'..=b'Z').chain(b'a'..=b'z').chain(b'0'..=b'9').chain(*b"+/").position(|it| it == c);
+            let bits: Vec<usize> = text.bytes().filter_map(digit).collect();
+            bits.chunks(4)
+                .flat_map(|four| {
+                    let word = four.iter().fold(0, |word, bits| word << 6 | bits) << (6 * (4 - four.len()));
+                    [word >> 16, word >> 8, word].into_iter().take(four.len() - 1).map(|byte| byte as u8)
+                })
+                .collect::<Vec<u8>>()
+        };
+        let lengths: Vec<usize> =
+            decoded(&text[..front]).chunks(8).map(|it| u64::from_le_bytes(it.try_into().unwrap()) as usize).collect();
+        assert_eq!(lengths[..3], [3, BLOCK, 5]);
+        let mut rest = &decoded(&text[front..])[..];
+        let mut found = Vec::new();
+        for length in &lengths[3..] {
+            let (block, others) = rest.split_at(*length);
+            found.extend(miniz_oxide::inflate::decompress_to_vec_zlib(block).unwrap());
+            rest = others;
+        }
+        assert!(rest.is_empty() && found == bytes);
+    }
+
+    #[test]
+    fn numbers_that_are_shown_are_single_unless_one_does_not_fit() {
+        let kind = |numbers: &[f64]| XmlArray::of_shown_numbers("a", numbers).kind;
         assert_eq!(
-            xml,
-            format!("<DataArray type=\"Int64\" Name=\"offsets\" format=\"binary\">\n{text}\n</DataArray>\n")
+            [kind(&[0.0, -1e30, 1e-30]), kind(&[1.0, 1e39]), kind(&[1.0, 1e-42])],
+            ["Float32", "Float64", "Float64"]
         );
     }
 }

@@ -8,7 +8,7 @@ use crate::shell::norm;
 use crate::spline::{Mesh, Spans, mid_surface_point};
 use crate::state::State;
 use crate::view::colour::VIRIDIS;
-use crate::view::export::{WholeShell, base64};
+use crate::view::export::{WholePoint, WholeShell, base64};
 use crate::view::fields::{Field, fields_of};
 
 /// Most points of the whole shell in a frame.
@@ -140,19 +140,17 @@ impl Sampled {
         let shell = WholeShell::new(scene, state);
         let position = |at: [f64; 2]| mid_surface_point(shell.deformed(), &[], at).position;
         let each = || along.iter().flat_map(|u| across.iter().map(|v| [*u, *v]));
-        let value = |field: &Field, component: Option<usize>, at: [f64; 2]| {
-            let value = shell.value(field, at);
-            component.map_or_else(|| norm(value), |index| value[index])
+        let field_points: Vec<WholePoint> = each().map(|at| shell.at(at)).collect();
+        let of_field = |(field, component): &(Field, Option<usize>)| {
+            let of = |value: [f64; 3]| component.map_or_else(|| norm(value), |index| value[index]);
+            field_points.iter().map(|point| of(point.value(field))).collect()
         };
         let knots = [0, 1].map(|direction| divided(shell.undeformed(), direction, 1));
         let along_v = knots[0].iter().flat_map(|u| across.iter().map(|v| [*u, *v]));
         let along_u = knots[1].iter().flat_map(|v| along.iter().map(|u| [*u, *v]));
         Self {
             points: each().map(position).collect(),
-            values: offered
-                .iter()
-                .map(|(field, component)| each().map(|at| value(field, *component, at)).collect())
-                .collect(),
+            values: offered.iter().map(of_field).collect(),
             lines: along_v.chain(along_u).map(position).collect(),
             line_counts: knots.each_ref().map(Vec::len),
         }
