@@ -147,9 +147,9 @@ fn lacks_first_probe(scene: &Scene, report: &Report) -> bool {
 }
 
 /// Cells that make a coarse mesh look smooth and a fine one no larger than need be.
-pub(super) fn cells_per_element(mesh: &Mesh) -> usize {
+pub(super) fn cells_per_element(mesh: &Mesh) -> [usize; 2] {
     let [n1, n2] = mesh.element_counts();
-    SMOOTH.div_ceil(n1.max(n2)).clamp(2, 12)
+    [SMOOTH.div_ceil(n1.max(n2)).clamp(2, 12); 2]
 }
 
 /// The numbers of the state that a picture shows.

@@ -2,7 +2,7 @@
 
 /// Polynomial degrees that the program handles: at least 2, for C¹ continuity, and at most 5, for which kernels are built.
 pub const DEGREES: std::ops::RangeInclusive<usize> = 2..=MAX_DEGREE;
-const MAX_DEGREE: usize = 5;
+pub(super) const MAX_DEGREE: usize = 5;
 
 /// Finds the index s of the knot span with `knots[s] ≤ parameter < knots[s + 1]`, or of the last non-empty span at the end.
 /// `knots` is open, of degree `degree`, and `parameter` lies within it.

@@ -30,5 +30,6 @@ pub use insertion::{insert_knots, insert_knots_into_net};
 pub use knots::{KnotFlaw, check_knots, control_count, without_knots};
 pub use mesh::{Mesh, cartesian};
 pub use surface::{
-    SurfacePoint, evaluate_surface, mid_surface_point, mid_surface_points, quotient_derivatives, tensor_derivatives,
+    LineBasis, SurfaceBasis, SurfacePoint, evaluate_surface, mid_surface_point, mid_surface_points, position_on_lines,
+    quotient_derivatives, tensor_derivatives,
 };

@@ -1,6 +1,7 @@
 //! Points and derivatives of a tensor-product NURBS surface, for construction, pictures and tests; assembly has its
 //! own tables.
 
+use super::basis::MAX_DEGREE;
 use crate::spline::{Mesh, basis_derivatives, basis_derivatives_len, find_span};
 
 /// A point of a surface: position and the five derivatives that a Kirchhoff–Love shell needs.
@@ -12,36 +13,118 @@ pub struct SurfacePoint {
     pub derivatives: [[f64; 3]; 5],
 }
 
-/// Evaluates the rational basis functions at a point: `(first control index in each direction, values and five
-/// derivatives)`. `functions[k][a₁ (p₂ + 1) + a₂]`, k = value, ,1 ,2 ,11 ,22 ,12.
-pub fn evaluate_surface(mesh: &Mesh, parameters: [f64; 2]) -> ([usize; 2], [Vec<f64>; 6]) {
-    let [p1, p2] = mesh.degree;
-    let grid = mesh.grid();
-    let span = [0, 1].map(|direction| find_span(&mesh.knots[direction], mesh.degree[direction], parameters[direction]));
-    let mut along = vec![0.0; basis_derivatives_len(p1)];
-    let mut across = vec![0.0; basis_derivatives_len(p2)];
-    basis_derivatives(&mesh.knots[0], p1, span[0], parameters[0], &mut along);
-    basis_derivatives(&mesh.knots[1], p2, span[1], parameters[1], &mut across);
-    let first = [span[0] - p1, span[1] - p2];
-    let mut weighted: [Vec<f64>; 6] = Default::default();
-    let mut sums = [0.0; 6];
-    for a1 in 0..=p1 {
-        for a2 in 0..=p2 {
-            let weight = mesh.control_points[grid.index([first[0] + a1, first[1] + a2])][3];
-            let products = tensor_derivatives(&along, &across, [p1, p2], [a1, a2]);
+/// Most basis functions that do not vanish at a point, one way and both.
+const MOST_EACH_WAY: usize = MAX_DEGREE + 1;
+const MOST: usize = MOST_EACH_WAY * MOST_EACH_WAY;
+
+/// The basis functions of one direction that do not vanish at a parameter, with two derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct LineBasis {
+    /// The parameter.
+    pub parameter: f64,
+    first: usize,
+    derivatives: [f64; 3 * MOST_EACH_WAY],
+}
+
+impl LineBasis {
+    /// Evaluates the functions of a direction of a mesh.
+    pub fn at(mesh: &Mesh, direction: usize, parameter: f64) -> Self {
+        let (knots, degree) = (&mesh.knots[direction], mesh.degree[direction]);
+        let span = find_span(knots, degree, parameter);
+        let mut derivatives = [0.0; 3 * MOST_EACH_WAY];
+        basis_derivatives(knots, degree, span, parameter, &mut derivatives[..basis_derivatives_len(degree)]);
+        Self { parameter, first: span - degree, derivatives }
+    }
+}
+
+/// The rational basis functions that do not vanish at a point, with the derivatives that a shell needs.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceBasis {
+    /// First control index in each direction.
+    first: [usize; 2],
+    /// `functions[k][a₁ (p₂ + 1) + a₂]`, k = value, ,1 ,2 ,11 ,22 ,12.
+    functions: [[f64; MOST]; 6],
+    count: usize,
+}
+
+impl SurfaceBasis {
+    /// Evaluates the functions at a point of the parameters.
+    pub fn at(mesh: &Mesh, parameters: [f64; 2]) -> Self {
+        let [along, across] = [0, 1].map(|direction| LineBasis::at(mesh, direction, parameters[direction]));
+        Self::of(mesh, &along, &across)
+    }
+
+    /// Evaluates the functions where two lines of the parameters meet.
+    pub fn of(mesh: &Mesh, along: &LineBasis, across: &LineBasis) -> Self {
+        let [p1, p2] = mesh.degree;
+        let first = [along.first, across.first];
+        let (mut functions, mut sums) = ([[0.0; MOST]; 6], [0.0; 6]);
+        let count = (p1 + 1) * (p2 + 1);
+        for (a, index) in mesh.window(first).enumerate() {
+            let weight = mesh.control_points[index][3];
+            let place = [a / (p2 + 1), a % (p2 + 1)];
+            let products = tensor_derivatives(&along.derivatives, &across.derivatives, [p1, p2], place);
             for k in 0..6 {
-                weighted[k].push(weight * products[k]);
+                functions[k][a] = weight * products[k];
                 sums[k] += weight * products[k];
             }
         }
+        for a in 0..count {
+            let rational = quotient_derivatives([0, 1, 2, 3, 4, 5].map(|k| functions[k][a]), sums);
+            for k in 0..6 {
+                functions[k][a] = rational[k];
+            }
+        }
+        Self { first, functions, count }
     }
-    for a in 0..(p1 + 1) * (p2 + 1) {
-        let rational = quotient_derivatives([0, 1, 2, 3, 4, 5].map(|k| weighted[k][a]), sums);
-        for k in 0..6 {
-            weighted[k][a] = rational[k];
+
+    /// The point of the surface whose control points are moved by `displacement` (in their order; empty for the undeformed
+    /// surface).
+    pub fn point(&self, mesh: &Mesh, displacement: &[[f64; 3]]) -> SurfacePoint {
+        let mut sums = [[0.0; 3]; 6];
+        for (a, index) in mesh.window(self.first).enumerate() {
+            let position = moved(mesh, displacement, index);
+            for k in 0..6 {
+                for c in 0..3 {
+                    sums[k][c] += self.functions[k][a] * position[c];
+                }
+            }
+        }
+        SurfacePoint { position: sums[0], derivatives: [sums[1], sums[2], sums[3], sums[4], sums[5]] }
+    }
+}
+
+/// Evaluates the position, mm, of a surface where two lines of the parameters meet; [`SurfaceBasis::point`] gives the same.
+pub fn position_on_lines(mesh: &Mesh, displacement: &[[f64; 3]], [along, across]: [&LineBasis; 2]) -> [f64; 3] {
+    let columns = mesh.degree[1] + 1;
+    let (mut weighted, mut sum) = ([0.0; MOST], 0.0);
+    for (a, index) in mesh.window([along.first, across.first]).enumerate() {
+        let product = along.derivatives[a / columns] * across.derivatives[a % columns];
+        weighted[a] = mesh.control_points[index][3] * product;
+        sum += weighted[a];
+    }
+    let mut position = [0.0; 3];
+    for (a, index) in mesh.window([along.first, across.first]).enumerate() {
+        let (function, point) = (weighted[a] / sum, moved(mesh, displacement, index));
+        for c in 0..3 {
+            position[c] += function * point[c];
         }
     }
-    (first, weighted)
+    position
+}
+
+/// A control point where its displacement takes it, mm.
+fn moved(mesh: &Mesh, displacement: &[[f64; 3]], index: usize) -> [f64; 3] {
+    let [x, y, z] = mesh.point(index);
+    let shift = displacement.get(index).copied().unwrap_or_default();
+    [x + shift[0], y + shift[1], z + shift[2]]
+}
+
+/// Evaluates the rational basis functions at a point: `(first control index in each direction, values and five
+/// derivatives)`. `functions[k][a₁ (p₂ + 1) + a₂]`, k = value, ,1 ,2 ,11 ,22 ,12.
+pub fn evaluate_surface(mesh: &Mesh, parameters: [f64; 2]) -> ([usize; 2], [Vec<f64>; 6]) {
+    let SurfaceBasis { first, functions, count } = SurfaceBasis::at(mesh, parameters);
+    (first, functions.map(|values| values[..count].to_vec()))
 }
 
 /// Computes a product N₁N₂ of basis functions and its derivatives ,1 ,2 ,11 ,22 ,12.
@@ -65,8 +148,7 @@ pub fn quotient_derivatives(f: [f64; 6], w: [f64; 6]) -> [f64; 6] {
 /// Evaluates a point of the surface whose control points are moved by `displacement` (in their order; empty for the
 /// undeformed surface).
 pub fn mid_surface_point(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) -> SurfacePoint {
-    let [point] = mid_surface_points(mesh, [displacement], parameters);
-    point
+    SurfaceBasis::at(mesh, parameters).point(mesh, displacement)
 }
 
 /// Evaluates the same point of several surfaces that differ by the displacement of their control points.
@@ -75,22 +157,6 @@ pub fn mid_surface_points<const N: usize>(
     displacements: [&[[f64; 3]]; N],
     parameters: [f64; 2],
 ) -> [SurfacePoint; N] {
-    let (first, functions) = evaluate_surface(mesh, parameters);
-    displacements.map(|displacement| sum(mesh, displacement, first, &functions))
-}
-
-/// The sum of the control points around a point, moved by `displacement`, with their functions there.
-fn sum(mesh: &Mesh, displacement: &[[f64; 3]], first: [usize; 2], functions: &[Vec<f64>; 6]) -> SurfacePoint {
-    let mut sums = [[0.0; 3]; 6];
-    for (a, index) in mesh.window(first).enumerate() {
-        let [x, y, z] = mesh.point(index);
-        let shift = displacement.get(index).copied().unwrap_or_default();
-        let position = [x + shift[0], y + shift[1], z + shift[2]];
-        for k in 0..6 {
-            for c in 0..3 {
-                sums[k][c] += functions[k][a] * position[c];
-            }
-        }
-    }
-    SurfacePoint { position: sums[0], derivatives: [sums[1], sums[2], sums[3], sums[4], sums[5]] }
+    let basis = SurfaceBasis::at(mesh, parameters);
+    displacements.map(|displacement| basis.point(mesh, displacement))
 }

@@ -1,10 +1,12 @@
 //! The deformed shell as samples for pictures: the whole of it, whatever part is modelled.
 
+use rayon::prelude::*;
+
 use super::fields::{Field, ShellFields};
 use super::samples::{SamplesError, SurfaceSamples, cells_of};
 use crate::scene::Scene;
 use crate::shell::{cross, dot, norm};
-use crate::spline::{Grid, Mesh, SurfacePoint, mid_surface_point, mid_surface_points};
+use crate::spline::{Grid, LineBasis, Mesh, SurfaceBasis, SurfacePoint, position_on_lines};
 use crate::state::State;
 
 /// Points and values on a grid that follows the elements.
@@ -16,8 +18,8 @@ struct SampleGrid {
 
 /// What the cells of a sampled surface show.
 struct Shown<'v> {
-    /// Value at a point of the parameters.
-    value: &'v dyn Fn([f64; 2]) -> f64,
+    /// Value where two lines of the parameters meet.
+    value: &'v (dyn Fn([&LineBasis; 2]) -> f64 + Sync),
     /// Sign of the value at images in the planes of symmetry across the length and through the apex.
     image: [f64; 2],
     /// Its name, with its unit.
@@ -25,7 +27,7 @@ struct Shown<'v> {
 }
 
 /// Samples the shell of `scene` on `mesh`, displaced by `displacement` (mm, one vector for each control point), with
-/// `cells_per_element` cells each way in every element. The value of a cell is the larger of the physical bending
+/// `cells_per_element` cells along u and along v in every element. The value of a cell is the larger of the physical bending
 /// strains |κᵢᵢ|/|Aᵢ|² along the length and along the arc at its middle, 1/mm. Symmetric parts are reflected.
 ///
 /// # Errors
@@ -37,9 +39,10 @@ pub fn deformed_surface(
     scene: &Scene,
     mesh: &Mesh,
     displacement: &[[f64; 3]],
-    cells_per_element: usize,
+    cells_per_element: [usize; 2],
 ) -> Result<SurfaceSamples, SamplesError> {
-    let value = |at: [f64; 2]| bending_strain(mesh, displacement, at);
+    let value =
+        |[along, across]: [&LineBasis; 2]| bending_strain(mesh, displacement, &SurfaceBasis::of(mesh, along, across));
     let shown = Shown { value: &value, image: [1.0; 2], quantity: "bending strain max|κ| (1/mm)".to_owned() };
     sampled(scene, mesh, displacement, cells_per_element, shown)
 }
@@ -53,11 +56,11 @@ pub fn coloured_surface(
     state: &State,
     field: &Field,
     component: Option<usize>,
-    cells_per_element: usize,
+    cells_per_element: [usize; 2],
 ) -> Result<SurfaceSamples, SamplesError> {
     let fields = ShellFields::new(scene, state);
     let of = |value: [f64; 3]| component.map_or_else(|| norm(value), |index| value[index]);
-    let value = |at: [f64; 2]| of(fields.at(at).value(field));
+    let value = |lines: [&LineBasis; 2]| of(fields.at(lines.map(|line| line.parameter)).value(field));
     let image = [0, 1].map(|direction| of(field.mirrored([1.0; 3], direction)).signum());
     let shown = Shown { value: &value, image, quantity: field.title_of(component) };
     sampled(scene, &state.mesh, &state.displacement, cells_per_element, shown)
@@ -67,17 +70,15 @@ fn sampled(
     scene: &Scene,
     mesh: &Mesh,
     displacement: &[[f64; 3]],
-    cells_per_element: usize,
+    cells_per_element: [usize; 2],
     shown: Shown,
 ) -> Result<SurfaceSamples, SamplesError> {
     assert_eq!(displacement.len(), mesh.control_points.len());
-    let parts = cells_per_element.max(1);
-    let [along, across] = [0, 1].map(|direction| divided(&mesh.knots[direction], parts));
-    let at = |parameters| mid_surface_point(mesh, displacement, parameters).position;
-    let points = along.iter().flat_map(|u| across.iter().map(|v| at([*u, *v]))).collect();
-    let middle = |pair: &[f64]| 0.5 * (pair[0] + pair[1]);
-    let value = |u: &[f64], v: &[f64]| (shown.value)([middle(u), middle(v)]);
-    let values = along.windows(2).flat_map(|u| across.windows(2).map(|v| value(u, v)).collect::<Vec<_>>()).collect();
+    let parts = cells_per_element.map(|cells| cells.max(1));
+    let [along, across] = [0, 1].map(|direction| divided(&mesh.knots[direction], parts[direction]));
+    let points = on_grid(mesh, [&along, &across], &|lines| position_on_lines(mesh, displacement, lines));
+    let middles = |lines: &[f64]| lines.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect::<Vec<f64>>();
+    let values = on_grid(mesh, [&middles(&along), &middles(&across)], shown.value);
     let mut grid = SampleGrid { counts: [along.len(), across.len()], points, values };
     let [cut_at_middle, cut_at_apex] = scene.symmetry.cuts();
     if cut_at_middle {
@@ -91,6 +92,16 @@ fn sampled(
     SurfaceSamples::new(counts, points, values, lines, &shown.quantity)
 }
 
+/// What is found where lines of the parameters meet, the second direction fastest.
+fn on_grid<T: Send>(mesh: &Mesh, lines: [&[f64]; 2], find: &(dyn Fn([&LineBasis; 2]) -> T + Sync)) -> Vec<T> {
+    let [along, across] = [0, 1].map(|direction| {
+        let at = |parameter: &f64| LineBasis::at(mesh, direction, *parameter);
+        lines[direction].iter().map(at).collect::<Vec<_>>()
+    });
+    let row = |along: &LineBasis| across.iter().map(|across| find([along, across])).collect::<Vec<T>>();
+    along.par_iter().map(row).collect::<Vec<_>>().into_iter().flatten().collect()
+}
+
 /// Every element's parameters, divided into equal parts.
 fn divided(knots: &[f64], parts: usize) -> Vec<f64> {
     let spans = knots.windows(2).filter(|span| span[0] < span[1]);
@@ -99,13 +110,13 @@ fn divided(knots: &[f64], parts: usize) -> Vec<f64> {
 }
 
 /// The larger of |B₁₁ − b₁₁|/A₁₁ and |B₂₂ − b₂₂|/A₂₂ at a point.
-fn bending_strain(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) -> f64 {
+fn bending_strain(mesh: &Mesh, displacement: &[[f64; 3]], basis: &SurfaceBasis) -> f64 {
     let curvatures = |surface: &SurfacePoint| {
         let [a1, a2, a11, a22, _] = surface.derivatives;
         let normal = cross(a1, a2);
         [a11, a22].map(|second| dot(second, normal) / norm(normal))
     };
-    let [undeformed, deformed] = mid_surface_points(mesh, [&[], displacement], parameters);
+    let [undeformed, deformed] = [&[][..], displacement].map(|moved| basis.point(mesh, moved));
     let [before, after] = [&undeformed, &deformed].map(curvatures);
     let physical = |i: usize| {
         let tangent = undeformed.derivatives[i];
@@ -159,10 +170,12 @@ impl SampleGrid {
         Self { counts: self.counts_doubled(1), points, values }
     }
 
-    /// Every `parts`-th line of the grid each way.
-    fn knot_lines(&self, parts: usize) -> Vec<Vec<[f64; 3]>> {
+    /// Every `parts`-th line of the grid in each direction.
+    fn knot_lines(&self, parts: [usize; 2]) -> Vec<Vec<[f64; 3]>> {
         let lines = |direction: usize| {
-            (0..self.counts[direction]).step_by(parts).map(move |along| self.line(direction, along).collect())
+            (0..self.counts[direction])
+                .step_by(parts[direction])
+                .map(move |along| self.line(direction, along).collect())
         };
         lines(0).chain(lines(1)).collect()
     }
@@ -201,7 +214,7 @@ mod tests {
         let scene = Scene { symmetry, ..scene::parse(SCENE, "test").unwrap() };
         let mesh = starting_mesh(&scene).unwrap();
         let displacement = vec![[0.0; 3]; mesh.control_points.len()];
-        deformed_surface(&scene, &mesh, &displacement, cells_per_element).unwrap()
+        deformed_surface(&scene, &mesh, &displacement, [cells_per_element; 2]).unwrap()
     }
 
     #[test]
@@ -228,7 +241,7 @@ mod tests {
         // Onto the tangent plane at the apex, along the z axis.
         let apex = mesh.points().map(|[_, _, z]| z).fold(f64::MIN, f64::max);
         let displacement: Vec<_> = mesh.points().map(|[_, _, z]| [0.0, 0.0, apex - z]).collect();
-        let samples = deformed_surface(&scene, &mesh, &displacement, 3).unwrap();
+        let samples = deformed_surface(&scene, &mesh, &displacement, [3; 2]).unwrap();
         assert!(samples.points.iter().all(|point| (point[2] - apex).abs() < 1e-12));
         assert!(samples.cell_values.iter().all(|value| (value - 0.1).abs() < 1e-12), "{:?}", samples.cell_values);
     }

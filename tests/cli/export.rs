@@ -114,6 +114,42 @@ fn triangles_and_nurbs_of_the_deformed_surface() {
     assert_eq!(step.matches("ORIENTED_EDGE").count(), 4);
 }
 
+/// What viewers are shown of a log that has no mesh history: a picture a load step, reports and lines of every stage.
+#[test]
+fn a_file_for_viewers() {
+    let place = sandbox();
+    let said = place.foldline("export run.mcap --to mcap").ends(0);
+    assert_eq!(said.out, "run-view.mcap\n");
+    let seen = |file: &str, topic: &str| -> Vec<(u64, serde_json::Value)> {
+        let bytes = place.read(file);
+        let messages = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+        let of_topic = messages.filter(|message| message.channel.topic == topic);
+        of_topic.map(|message| (message.log_time, serde_json::from_slice(&message.data).unwrap())).collect()
+    };
+    let log = place.log("run.mcap");
+    let steps: std::collections::BTreeSet<u64> = log.entries().iter().map(|entry| entry.record.report.step).collect();
+    let pictures = seen("run-view.mcap", "/foldline/scene");
+    let times: Vec<u64> = pictures.iter().map(|(time, _)| *time / 100_000_000).collect();
+    assert_eq!(times, steps.iter().copied().collect::<Vec<_>>(), "a tenth of a second each");
+    let reports = seen("run-view.mcap", "/foldline/report");
+    assert_eq!(reports.len(), log.commits());
+    assert!(reports.is_sorted_by_key(|(time, _)| *time));
+    let lines = seen("run-view.mcap", "/foldline/log");
+    let words: Vec<&str> = lines.iter().map(|(_, line)| line["message"].as_str().unwrap()).collect();
+    let text = words.join("\n");
+    pin("export-mcap-lines", &text);
+
+    place.foldline("export run.mcap --to mcap -o wall.mcap --times wall --every 2 --fields energy_density").ends(0);
+    let wall = seen("wall.mcap", "/foldline/scene");
+    assert!(wall.len() < pictures.len() && wall.is_sorted_by_key(|(time, _)| *time));
+    let all: f64 = log.entries().iter().map(|entry| entry.record.wall_s + entry.record.kept_s).sum();
+    assert!((wall.last().unwrap().0 as f64 * 1e-9 - all).abs() < 1e-3 * all);
+    let legend = wall[0].1["entities"][0]["texts"][0]["text"].as_str().unwrap();
+    assert!(legend.starts_with("energy density (N·mm/mm²): "), "{legend}");
+    // Colours mean the same in every picture.
+    assert!(wall.iter().all(|(_, scene)| scene["entities"][0]["texts"][0]["text"] == legend));
+}
+
 #[test]
 fn what_cannot_be_written_is_refused_before_anything_is() {
     let place = sandbox();
@@ -122,6 +158,8 @@ fn what_cannot_be_written_is_refused_before_anything_is() {
         ("--to vtu --steps 400", "has no load step 400; it has 1 to"),
         ("--to step -o a.step --every 2", "a.step is one file, and"),
         ("--to stl --steps 3-1", "beyond its last one"),
+        ("--to mcap --fields thickness,indicator", "2 fields are chosen, and one colours the mesh"),
+        ("--to mcap --times noon", "invalid value 'noon'"),
         ("--to csv --points 1", "1 is not in 2..=100"),
         ("--to obj", "invalid value 'obj'"),
         ("", "--to <FORMAT>"),

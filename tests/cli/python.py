@@ -39,12 +39,23 @@ with tempfile.TemporaryDirectory() as folder:
     scene.write_text((root / "tests/restart/small.toml").read_text() + "\n[output]\nmesh_history = true\n")
     history = Path(folder) / "history.mcap"
     run("run", "-q", scene, "-o", history)
-    shown = list(make_reader(open(history, "rb")).iter_messages(topics=["/foldline/scene"]))
-    assert shown
-    for schema, _, message in shown:
-        schema = json.loads(schema.data)
-        assert schema["title"] == "foxglove.SceneUpdate" and "triangles" in json.dumps(schema), "no official schema"
-        jsonschema.validate(json.loads(message.data), schema)
+    afterwards = Path(folder) / "afterwards.mcap"
+    run("export", log, "--to", "mcap", "-o", afterwards)
+    shown = {}
+    for file in (history, afterwards):
+        for topic, title, entry in (("/foldline/scene", "SceneUpdate", "triangles"), ("/foldline/log", "Log", "level")):
+            messages = list(make_reader(open(file, "rb"), validate_crcs=True).iter_messages(topics=[topic]))
+            assert messages, (file, topic)
+            for schema, _, message in messages:
+                schema = json.loads(schema.data)
+                assert schema["title"] == f"foxglove.{title}" and f'"{entry}"' in json.dumps(schema), "no official schema"
+                jsonschema.validate(json.loads(message.data), schema)
+            shown[file.stem, topic] = [json.loads(message.data) for _, _, message in messages]
+    lines = [[line["message"] for line in shown[name, "/foldline/log"]] for name in ("history", "afterwards")]
+    assert lines[0] == lines[1] and len(lines[0]) >= len(stages)
+    # The same pictures, where a run shows those on the way to a refined mesh, too.
+    places = [[scene["entities"][0]["triangles"] for scene in shown[name, "/foldline/scene"]][-1][0]["points"] for name in ("history", "afterwards")]
+    assert places[0] == places[1]
 
     # States as arrays.
     run("export", log, "--to", "npz", "-o", Path(folder) / "states")
@@ -52,4 +63,4 @@ with tempfile.TemporaryDirectory() as folder:
     arrays = numpy.load(sorted(files)[-1])
     shape = arrays["control_points"].shape
     assert arrays["displacement"].shape[1:] == (shape[0], shape[1], 3), arrays["displacement"].shape
-    print(f"{len(table)} stages as a table; {len(shown)} messages fit their schema; {len(files)} files of arrays, {sorted(arrays.files)}")
+    print(f"{len(table)} stages as a table; {sum(map(len, shown.values()))} messages fit their schemas; {len(files)} files of arrays, {sorted(arrays.files)}")

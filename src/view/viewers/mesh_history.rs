@@ -6,11 +6,17 @@ use super::{Topics, message};
 use crate::journal::{ViewerMessage, ViewerTopics, format::log_time_ns};
 use crate::record::{Outcome, Record};
 use crate::scene::{Geometry, Scene};
+use crate::spline::Mesh;
 use crate::state::State;
 use crate::view::deformed_surface;
 
-/// Cells of a picture for each element, each way.
-pub(super) const CELLS_PER_ELEMENT: usize = 2;
+/// Cells of a picture for each element along u and v: two, and one where there are so many elements that a viewer shows no more
+/// by two.
+pub(super) fn cells_per_element(mesh: &Mesh) -> [usize; 2] {
+    const MANY: usize = 48;
+    mesh.element_counts().map(|elements| if elements < MANY { 2 } else { 1 })
+}
+
 /// Bending strain at the bright end of the colours, in units of 1/R: a fold has 1.
 const BRIGHTEST: f64 = 1.1;
 
@@ -31,7 +37,8 @@ impl MeshHistory {
     /// The deformed mesh.
     fn picture(&self, state: &State, time_ns: u64) -> Option<ViewerMessage> {
         // A state in a log is finite, so samples of it are too; a picture is no reason to stop a run.
-        let samples = deformed_surface(&self.scene, &state.mesh, &state.displacement, CELLS_PER_ELEMENT).ok()?;
+        let samples =
+            deformed_surface(&self.scene, &state.mesh, &state.displacement, cells_per_element(&state.mesh)).ok()?;
         let mut coloured = Coloured::new(samples);
         coloured.range = match self.scene.geometry {
             // A tape spring keeps its colours from state to state; other shells have no curvature to measure by.

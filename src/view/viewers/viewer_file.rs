@@ -2,7 +2,7 @@
 //! that play well. A file of its own, without states: no run continues from it.
 
 use super::log_lines::log_lines;
-use super::mesh_history::CELLS_PER_ELEMENT;
+use super::mesh_history::cells_per_element;
 use super::scene_update::{Coloured, scene_update};
 use super::{Topics, message};
 use crate::journal::{TimedMessages, TimedMessagesError};
@@ -95,9 +95,10 @@ impl ViewerFile {
     }
 
     fn coloured(&self, scene: &Scene, state: &State) -> Result<Coloured, SamplesError> {
+        let cells = cells_per_element(&state.mesh);
         let samples = match &self.shown {
-            None => deformed_surface(scene, &state.mesh, &state.displacement, CELLS_PER_ELEMENT),
-            Some((field, component)) => coloured_surface(scene, state, field, *component, CELLS_PER_ELEMENT),
+            None => deformed_surface(scene, &state.mesh, &state.displacement, cells),
+            Some((field, component)) => coloured_surface(scene, state, field, *component, cells),
         };
         samples.map(Coloured::new)
     }
