@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::Timestamp;
 use crate::record::{Outcome, Parameter, Record, Report, released_in_words};
+use crate::scene::Stage;
 use crate::units::{count, reading};
 
 /// A message.
@@ -39,7 +40,7 @@ pub(super) fn log_lines(record: &Record, loads_follow: bool, time_ns: u64) -> Ve
 /// What a stage did.
 fn in_words(report: &Report, loads_follow: bool) -> String {
     let at = |parameter: f64| report.driven_by.shown_short(parameter);
-    let mut words = format!("load step {}, {}", report.step, at(report.parameter));
+    let mut words = format!("load step {}, {}, {}", report.step, report.stage.name(), at(report.parameter));
     if report.driven_by == Parameter::Rotation {
         words += &format!(", {} N·mm", reading(report.moment_n_mm, 3).trim());
     }
@@ -57,9 +58,9 @@ fn in_words(report: &Report, loads_follow: bool) -> String {
     if report.jumped {
         words += &format!(": snapped, {}", released_in_words(report.energy_released_n_mm, loads_follow, 3));
     }
-    match report.marked {
-        [0, 0] => {}
-        [u, v] => words += &format!(", marked {} along u and {v} along v", count(u, "span")),
+    if report.stage == Stage::EvaluateIndicators {
+        let marked = report.marked.iter().zip(["u", "v"]).filter(|(spans, _)| **spans > 0);
+        marked.for_each(|(spans, way)| words += &format!(", {} to refine along {way}", count(*spans, "span")));
     }
     if report.iterations > 0 {
         words += &format!(", {}", count(report.iterations, "iteration"));
