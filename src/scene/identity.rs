@@ -80,7 +80,8 @@ impl Scene {
         let mut leaves = BTreeMap::new();
         // A scene is structs of numbers, words and lists, which always have a JSON form.
         collect("", serde_json::to_value(self).unwrap_or_default(), &mut leaves);
-        if let Some(free) = leaves.get_mut("material.plies").and_then(Value::as_array_mut).and_then(take_free_of_plies)
+        if let Some(free) =
+            leaves.get_mut("material.plies").and_then(Value::as_array_mut).and_then(|plies| take_free_of_plies(plies))
         {
             leaves.insert(FREE_OF_PLIES.to_owned(), free);
         }
@@ -92,7 +93,7 @@ impl Scene {
 }
 
 /// Takes from each ply what reaches nothing, where there is any.
-fn take_free_of_plies(plies: &mut Vec<Value>) -> Option<Value> {
+fn take_free_of_plies(plies: &mut [Value]) -> Option<Value> {
     let is_free = |name: &String| reach(SECTIONS, &format!("ply.{name}")) == Reach::Free;
     let take = |ply: &mut Map<String, Value>| {
         let (free, kept) = std::mem::take(ply).into_iter().partition(|(name, _)| is_free(name));

@@ -37,11 +37,11 @@ pub struct Measured {
 
 /// The end of a load step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct CurvePoint {
-    parameter: f64,
-    value: f64,
+pub(super) struct CurvePoint {
+    pub(super) parameter: f64,
+    pub(super) value: f64,
     /// Whether the shell has jumped before, or to get here.
-    behind: bool,
+    pub(super) behind: bool,
 }
 
 /// The errors of one run, relative to a reference run.
