@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
-//! | `report` | runs as one page |
+//! | `report`, `compare` | runs as one page, and next to each other in a table |
 //! | `export`, `export_choice` | states in the formats of other programs; which of them, and of what |
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
@@ -24,6 +24,7 @@ mod asked;
 mod bench;
 mod bisect;
 mod calibrate;
+mod compare;
 mod converge;
 mod export;
 mod export_choice;
@@ -83,6 +84,7 @@ enum Command {
     Inspect(inspect::Arguments),
     Plot(plot::Arguments),
     Report(report::Arguments),
+    Compare(compare::Arguments),
     Export(export::Arguments),
     Replay(replay::Arguments),
     Bisect(bisect::Arguments),
@@ -108,6 +110,7 @@ impl Command {
             self,
             Command::Plot(_)
                 | Command::Report(_)
+                | Command::Compare(_)
                 | Command::Export(_)
                 | Command::Bisect(_)
                 | Command::Stability(_)
@@ -122,6 +125,7 @@ impl Command {
             Command::Inspect(arguments) => arguments.run().map(|()| 0),
             Command::Plot(arguments) => arguments.run().map(|()| 0),
             Command::Report(arguments) => arguments.run().map(|()| 0),
+            Command::Compare(arguments) => arguments.run().map(|()| 0),
             Command::Export(arguments) => arguments.run().map(|()| 0),
             Command::Replay(arguments) => arguments.run(),
             Command::Bisect(arguments) => arguments.run(),

@@ -34,12 +34,17 @@ impl Arguments {
             return Err(Failure::StudyIsNoLog { study: study.clone() });
         }
         let output = output.unwrap_or_else(|| logs[0].with_extension("html"));
-        let runs: Vec<ReportedRun> = logs.iter().map(|log| reported(log)).collect::<Result<_, _>>()?;
-        let names: Vec<String> = logs.iter().map(|log| name_of(log)).collect();
-        let page = report_page(&names.join(", "), &runs).map_err(|cause| PlotError::Drawing(cause.to_string()))?;
-        write_files(&[(output.clone(), page.into_bytes())])?;
+        write_page(&logs, &output)?;
         print(&format!("{}\n", path_in_line(&output)))
     }
+}
+
+/// Writes the page of some logs.
+pub(super) fn write_page(logs: &[PathBuf], output: &Path) -> Result<(), Failure> {
+    let runs: Vec<ReportedRun> = logs.iter().map(|log| reported(log)).collect::<Result<_, _>>()?;
+    let names: Vec<String> = logs.iter().map(|log| name_of(log)).collect();
+    let page = report_page(&names.join(", "), &runs).map_err(|cause| PlotError::Drawing(cause.to_string()))?;
+    write_files(&[(output.to_path_buf(), page.into_bytes())])
 }
 
 /// What the page shows of a log.

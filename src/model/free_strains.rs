@@ -20,6 +20,8 @@ pub struct NaturalState {
     pub strain: FreeStrain,
     /// Energy that layers lock in each other in that state, over the whole model, N·mm.
     pub locked_n_mm: f64,
+    /// Change of temperature, K.
+    pub change_k: f64,
 }
 
 /// An action on the free strain, at factor 1.
@@ -52,6 +54,7 @@ impl FreeStrains {
         let per_kelvin = thermal.map_or_else(NaturalState::default, |(strain, locked_n_per_mm)| NaturalState {
             strain,
             locked_n_mm: locked_n_per_mm * reference_area(mesh),
+            change_k: 1.0,
         });
         Self { per_kelvin, sources }
     }
@@ -77,13 +80,13 @@ impl FreeStrains {
             change_k += factor * source.change_k;
             (0..3).for_each(|i| curvature[i] += factor * source.bending[i]);
         }
-        let NaturalState { strain: FreeStrain { membrane, bending }, locked_n_mm } = self.per_kelvin;
+        let NaturalState { strain: FreeStrain { membrane, bending }, locked_n_mm, .. } = self.per_kelvin;
         let strain = FreeStrain {
             membrane: membrane.map(|strain| change_k * strain),
             bending: [0, 1, 2].map(|i| change_k * bending[i] + curvature[i]),
         };
         // A natural curvature locks no energy: its strain z κ is that of a shell that bends.
-        Some(NaturalState { strain, locked_n_mm: change_k * change_k * locked_n_mm })
+        Some(NaturalState { strain, locked_n_mm: change_k * change_k * locked_n_mm, change_k })
     }
 }
 

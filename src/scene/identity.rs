@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 
 use super::data::{Indicator, Probe, Scene};
 use super::difference::{Difference, of_tables};
@@ -22,12 +22,15 @@ const RENAMED: [(&str, &str); 3] = [
 /// Path of the first probe where its error decides how the mesh is refined.
 const REFINED_BY: &str = "adapt: the first probe";
 
+/// Path of what of the plies changes no state: their strengths.
+const FREE_OF_PLIES: &str = "ply: strengths";
+
 /// What the hash of a scene begins with; changes when the meaning of a scene does.
 const DOMAIN: &str = "foldline scene 1";
 
 impl Scene {
     /// Hashes everything that decides states: all keys but those that reach nothing ([`Reach::Free`]: outputs, expectations, the
-    /// target, probes; though of these the first, without its name, where a tolerance asks for its error). Those may
+    /// target, strengths, probes; though of these the first, without its name, where a tolerance asks for its error). Those may
     /// change, so that a run can be extended, or written with more output, and every stage done so far is found again.
     ///
     /// Fed are the domain string and then, in the order of their paths, each key and its value as JSON, each with its
@@ -77,11 +80,28 @@ impl Scene {
         let mut leaves = BTreeMap::new();
         // A scene is structs of numbers, words and lists, which always have a JSON form.
         collect("", serde_json::to_value(self).unwrap_or_default(), &mut leaves);
+        if let Some(free) =
+            leaves.get_mut("material.plies").and_then(Value::as_array_mut).and_then(|plies| take_free_of_plies(plies))
+        {
+            leaves.insert(FREE_OF_PLIES.to_owned(), free);
+        }
         if let Some(probe) = self.probe_that_refines() {
             leaves.insert(REFINED_BY.to_owned(), serde_json::to_value(&probe.kind).unwrap_or_default());
         }
         leaves
     }
+}
+
+/// Takes from each ply what reaches nothing, where there is any.
+fn take_free_of_plies(plies: &mut [Value]) -> Option<Value> {
+    let is_free = |name: &String| reach(SECTIONS, &format!("ply.{name}")) == Reach::Free;
+    let take = |ply: &mut Map<String, Value>| {
+        let (free, kept) = std::mem::take(ply).into_iter().partition(|(name, _)| is_free(name));
+        *ply = kept;
+        free
+    };
+    let free: Vec<Map<String, Value>> = plies.iter_mut().filter_map(Value::as_object_mut).map(take).collect();
+    free.iter().any(|ply| !ply.is_empty()).then(|| json!(free))
 }
 
 fn collect(path: &str, value: Value, leaves: &mut BTreeMap<String, Value>) {
@@ -103,8 +123,10 @@ fn collect(path: &str, value: Value, leaves: &mut BTreeMap<String, Value>) {
 /// How far a change of a value reaches; the whole of an array of tables as far as any of its keys.
 pub(super) fn reach(sections: &'static [Section], path: &str) -> Reach {
     let array = path.strip_suffix('s').and_then(|name| sections.iter().find(|it| it.many && it.name == name));
-    if path == REFINED_BY {
-        return Reach::Steps;
+    match path {
+        REFINED_BY => return Reach::Steps,
+        FREE_OF_PLIES => return Reach::Free,
+        _ => {}
     }
     let key = || sections.iter().flat_map(|section| section.keys).find(|key| key.path() == path).map(|key| key.reach);
     array.map(Section::reach).or_else(key).unwrap_or(Reach::Everything)

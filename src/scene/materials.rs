@@ -13,6 +13,15 @@ const OF_EACH_PLY: [&str; 4] =
 /// Keys of a layer's law that come in pairs.
 const EXPANSIONS: [&str; 2] = ["thermal_expansion_1_per_k", "thermal_expansion_2_per_k"];
 
+/// Keys of a layer's strengths, which come together.
+const STRENGTHS: [&str; 5] = [
+    "tensile_strength_1_mpa",
+    "compressive_strength_1_mpa",
+    "tensile_strength_2_mpa",
+    "compressive_strength_2_mpa",
+    "shear_strength_12_mpa",
+];
+
 /// The material of a scene.
 pub(super) fn material(table: &Table, plies: Vec<&Table>) -> Checked<Material> {
     if table.kind() != "isotropic" {
@@ -59,6 +68,14 @@ fn check_law(table: &Table, values: &Map<String, Value>) -> Checked<()> {
             given,
             format!("`{given}` is given and `{other}` is not"),
             format!("write both; `{other} = 0.0` does not expand that way"),
+        ));
+    }
+    let (given, missing): (Vec<&str>, Vec<&str>) = STRENGTHS.into_iter().partition(|name| number(name).is_some());
+    if let (Some(given), false) = (given.first(), missing.is_empty()) {
+        return Err(table.wrong_at(
+            given,
+            format!("of the strengths of a layer these are missing: {}", missing.join(", ")),
+            "write all five or none: a criterion of failure needs them all",
         ));
     }
     let [e1, e2, nu, _] = OF_EACH_PLY.map(number);

@@ -70,8 +70,8 @@ pub use data::{
     Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Component, Edge, EndRotation, Expectation,
     ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, LengthLimit, Load, LoadSteps,
     LoadedArea, Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Ply, Probe,
-    ProbeKind, Quadrature, Reaction, Region, Scene, Seam, Sense, Solver, Splitting, Stage, Support, SurfaceDirection,
-    Symmetry, SyncPolicy,
+    ProbeKind, Quadrature, Reaction, Region, Scene, Seam, Sense, Solver, Splitting, Stage, Strengths, Support,
+    SurfaceDirection, Symmetry, SyncPolicy,
 };
 pub use difference::Difference;
 pub(crate) use difference::shown_values;

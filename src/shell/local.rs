@@ -1,7 +1,7 @@
 //! Strains and stress resultants at a point of the shell in its own axes: e₁ along A₁, e₂ = n × e₁ in the undeformed surface.
 
-use crate::scene::{Material, Ply};
-use crate::shell::material::{cartesian_strains, heights, shell_stiffness};
+use crate::scene::Material;
+use crate::shell::material::{cartesian_strains, shell_stiffness};
 use crate::shell::{FreeStrain, PointReference, dot, sub};
 
 /// What a point of the shell is under, in its own axes, order (11, 22, 12).
@@ -11,6 +11,10 @@ pub struct LocalPoint {
     pub membrane: [f64; 3],
     /// Bending strains κ₁₁, κ₂₂, 2κ₁₂ from the undeformed shell, 1/mm.
     pub bending: [f64; 3],
+    /// The part of the membrane strains from which the resultants come: without free strains.
+    pub elastic_membrane: [f64; 3],
+    /// The same of the bending strains, 1/mm.
+    pub elastic_bending: [f64; 3],
     /// Membrane forces n₁₁, n₂₂, n₁₂, N/mm.
     pub forces: [f64; 3],
     /// Bending moments m₁₁, m₂₂, m₁₂, N·mm/mm.
@@ -45,6 +49,8 @@ pub fn local_point(
     LocalPoint {
         membrane: local(strains.membrane),
         bending: local(strains.bending),
+        elastic_membrane: membrane,
+        elastic_bending: bending,
         forces,
         moments,
         energy: 0.5 * (dot(forces, membrane) + dot(moments, bending)),
@@ -55,31 +61,28 @@ impl LocalPoint {
     /// Strains ε₁₁, ε₂₂, 2ε₁₂ at a height above the surface of the geometry along its normal, mm, in axes turned by an angle
     /// from e₁ towards e₂, degrees.
     pub fn strains_at(&self, height: f64, angle_deg: f64) -> [f64; 3] {
-        let [xx, yy, shear] = [0, 1, 2].map(|i| self.membrane[i] + height * self.bending[i]);
-        let (s, c) = angle_deg.to_radians().sin_cos();
-        [
-            c * c * xx + s * s * yy + c * s * shear,
-            s * s * xx + c * c * yy - c * s * shear,
-            2.0 * c * s * (yy - xx) + (c * c - s * s) * shear,
-        ]
+        turned_strains(at_height(self.membrane, self.bending, height), angle_deg)
+    }
+
+    /// The same of the elastic strains, as far as layers lock none in each other.
+    pub fn elastic_strains_at(&self, height: f64, angle_deg: f64) -> [f64; 3] {
+        turned_strains(at_height(self.elastic_membrane, self.elastic_bending, height), angle_deg)
     }
 }
 
-/// Heights of the bottom and the top of each layer above the surface of the geometry, mm, with the angle of its first material
-/// axis, degrees: one layer unless the material is a laminate.
-pub fn layers(material: &Material) -> Vec<([f64; 2], f64)> {
-    let whole = |thickness: f64, angle_deg: f64| {
-        let middle = -material.offset_mm();
-        vec![([middle - 0.5 * thickness, middle + 0.5 * thickness], angle_deg)]
-    };
-    match material {
-        Material::Isotropic { thickness_mm, .. } => whole(*thickness_mm, 0.0),
-        Material::Orthotropic { thickness_mm, angle_deg, .. } => whole(*thickness_mm, *angle_deg),
-        Material::Laminate { plies, offset_mm } => {
-            let angle = |ply: &Ply| ply.angle_deg;
-            heights(plies, *offset_mm).zip(plies.iter().map(angle)).collect()
-        }
-    }
+/// ε + z κ.
+pub(super) fn at_height(membrane: [f64; 3], bending: [f64; 3], height: f64) -> [f64; 3] {
+    [0, 1, 2].map(|i| membrane[i] + height * bending[i])
+}
+
+/// Strains ε₁₁, ε₂₂, 2ε₁₂ in axes turned by an angle from axis 1 towards axis 2, degrees.
+pub(super) fn turned_strains([xx, yy, shear]: [f64; 3], angle_deg: f64) -> [f64; 3] {
+    let (s, c) = angle_deg.to_radians().sin_cos();
+    [
+        c * c * xx + s * s * yy + c * s * shear,
+        s * s * xx + c * c * yy - c * s * shear,
+        2.0 * c * s * (yy - xx) + (c * c - s * s) * shear,
+    ]
 }
 
 /// Principal values of a symmetric tensor (11, 22, 12), the larger first.

@@ -92,19 +92,23 @@ fn layered(plies: &[Ply], offset: f64, tangents: [[f64; 3]; 2]) -> ShellStiffnes
 /// Plane-stress stiffness of a ply in axes (e₁ along A₁, e₂ = n × e₁), order (11, 22, 12) with engineering shear (Reddy,
 /// eq. 2.4.8 and 2.3.17).
 pub(super) fn ply_stiffness(ply: &Ply) -> [[f64; 3]; 3] {
+    // Strains in the material axes from those in the surface's axes.
+    let (s, c) = ply.angle_deg.to_radians().sin_cos();
+    let map = [[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2.0 * c * s, 2.0 * c * s, c * c - s * s]];
+    turned(&plane_stress_stiffness(&ply.law), &map)
+}
+
+/// The same in the axes of the material.
+pub(super) fn plane_stress_stiffness(law: &OrthotropicLaw) -> [[f64; 3]; 3] {
     let OrthotropicLaw {
         youngs_modulus_1_mpa: e1,
         youngs_modulus_2_mpa: e2,
         poissons_ratio_12: nu,
         shear_modulus_12_mpa: g,
         ..
-    } = ply.law;
+    } = *law;
     let scale = 1.0 / (1.0 - nu * nu * e2 / e1);
-    let along = [[scale * e1, scale * nu * e2, 0.0], [scale * nu * e2, scale * e2, 0.0], [0.0, 0.0, g]];
-    // Strains in the material axes from those in the surface's axes.
-    let (s, c) = ply.angle_deg.to_radians().sin_cos();
-    let map = [[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2.0 * c * s, 2.0 * c * s, c * c - s * s]];
-    turned(&along, &map)
+    [[scale * e1, scale * nu * e2, 0.0], [scale * nu * e2, scale * e2, 0.0], [0.0, 0.0, g]]
 }
 
 /// (ε₁₁, ε₂₂, 2ε₁₂) in the axes e₁, e₂ from the covariant components, with ε_ij = ε_αβ (A^α·e_i)(A^β·e_j).
@@ -175,6 +179,7 @@ mod tests {
         shear_modulus_12_mpa: 5e3,
         thermal_expansion_1_per_k: None,
         thermal_expansion_2_per_k: None,
+        strengths: None,
     };
     const TANGENTS: [[f64; 3]; 2] = [[2.0, 0.1, 0.3], [-0.4, 1.5, 0.2]];
 

@@ -8,17 +8,20 @@
 //! | `quadrature` | Gauss–Legendre rules |
 //! | `point` | a point: energy, gradient, Hessian |
 //! | `local` | its strains and resultants in its own axes |
+//! | `layer`, `failure` | layers of the shell, and how near they are to failing |
 //! | `lanes`, `lanes_x86` | several numbers at once |
 //! | `lane_vector` | vectors whose components are such lanes |
 //! | `batch` | four points at once: what both kinds share |
 //! | `point_batch`, `stretching_batch` | bending and stretching; stretching alone |
 
 mod batch;
+mod failure;
 mod free_strain;
 mod lane_vector;
 pub(crate) mod lanes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes_x86;
+mod layer;
 mod local;
 mod material;
 mod point;
@@ -29,7 +32,8 @@ mod vector;
 
 pub(crate) use batch::{BatchGradient, BatchHessian, PointKernel};
 pub use free_strain::{FreeStrain, thermal_strain};
-pub use local::{LocalPoint, layers, local_point, principal};
+pub use layer::{Criterion, Layer, layers};
+pub use local::{LocalPoint, local_point, principal};
 pub use material::{ShellStiffness, shell_stiffness};
 pub use point::{Hessian, PointReference, Strains};
 pub use point_batch::PointBatch;

@@ -365,6 +365,7 @@ pub(super) mod tests {
             shear_modulus_12_mpa: 15.0,
             thermal_expansion_1_per_k: None,
             thermal_expansion_2_per_k: None,
+            strengths: None,
         };
         let ply = |angle_deg: f64, modulus: f64| crate::scene::Ply {
             thickness_mm: 0.3,

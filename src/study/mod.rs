@@ -8,6 +8,7 @@
 //! | `summary`, `summary_text` | what a run found |
 //! | `timed_run`, `bench` | what it costs |
 //! | `accuracy`, `convergence` | error against that |
+//! | `comparison` | runs next to each other |
 //! | `archive` | runs by the hash of their scene, each in a log |
 //! | `study_file`, `speed_up` | studies of structures, and what they show |
 //! | `calibration` | the threshold of the bending indicator |
@@ -17,6 +18,7 @@ mod accuracy;
 mod archive;
 mod bench;
 mod calibration;
+mod comparison;
 mod convergence;
 mod extremes;
 mod extremes_curve;
@@ -38,6 +40,7 @@ pub use calibration::{
     Calibrated, Calibration, CalibrationError, CalibrationPoint, CoarseIn, EndedBy, Verdict, calibrate,
     check_calibratable, fine_elements,
 };
+pub use comparison::{Curve, CurveError, Deviation, Finding};
 pub use convergence::{ConvergenceError, ConvergenceRow, check_spring, converge};
 pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;

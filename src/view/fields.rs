@@ -5,7 +5,7 @@
 
 use crate::model::{FreeStrains, NaturalState};
 use crate::scene::{Material, Scene};
-use crate::shell::{LocalPoint, gauss_legendre, layers, local_point, norm, principal, sub};
+use crate::shell::{Criterion, Layer, LocalPoint, gauss_legendre, layers, local_point, norm, principal, sub};
 use crate::spline::{Grid, Mesh, Spans, mid_surface_point, mid_surface_points};
 use crate::state::State;
 
@@ -42,6 +42,8 @@ enum Quantity {
     Thickness,
     /// Strain of the layer with this number, from the bottom.
     Ply(usize),
+    /// How near to failing a layer is, or that of all which is nearest.
+    Failure(Criterion, Option<usize>),
 }
 
 const XYZ: &[&str] = &["x", "y", "z"];
@@ -82,7 +84,22 @@ const FIELDS: [Row; 14] = [
     ("thickness", "mm", SCALAR, "thickness of the shell", Quantity::Thickness),
 ];
 
-/// All fields of the shell of a scene: those of any shell, and the strains of every ply of a laminate.
+const FAILURES: [(&str, &str, Criterion); 2] = [
+    (
+        "failure_tsai_wu",
+        "load over the load at failure by Tsai and Wu (1/R, the inverse reserve factor, if all stresses grow alike; fails from 1 \
+         on), at the ply and face where it is largest",
+        Criterion::TsaiWu,
+    ),
+    (
+        "failure_max_strain",
+        "strain over the strain at failure (strength over modulus; fails from 1 on), at the ply and face where it is largest",
+        Criterion::MaximumStrain,
+    ),
+];
+
+/// All fields of the shell of a scene: those of any shell, the strains of every ply of a laminate, and where strengths are given
+/// how near to failing the shell and every ply is.
 pub fn fields_of(scene: &Scene) -> Vec<Field> {
     let of_row = |(name, unit, components, means, quantity): Row| Field {
         name: name.to_owned(),
@@ -91,11 +108,12 @@ pub fn fields_of(scene: &Scene) -> Vec<Field> {
         means,
         quantity,
     };
+    let layers = layers(&scene.material);
     let plies = match &scene.material {
-        Material::Laminate { plies, .. } => plies.len(),
-        Material::Isotropic { .. } | Material::Orthotropic { .. } => 0,
+        Material::Laminate { .. } => &layers[..],
+        Material::Isotropic { .. } | Material::Orthotropic { .. } => &[],
     };
-    let of_ply = |ply: usize| Field {
+    let strain_of = |ply: usize| Field {
         name: format!("ply_{}_strain", ply + 1),
         unit: "",
         components: TENSOR,
@@ -103,7 +121,20 @@ pub fn fields_of(scene: &Scene) -> Vec<Field> {
                 plies are counted from the bottom",
         quantity: Quantity::Ply(ply),
     };
-    FIELDS.into_iter().map(of_row).chain((0..plies).map(of_ply)).collect()
+    let failures = |ply: Option<usize>| {
+        let prefix = ply.map_or(String::new(), |ply| format!("ply_{}_", ply + 1));
+        FAILURES.map(|(name, means, criterion)| Field {
+            name: format!("{prefix}{name}"),
+            unit: "",
+            components: SCALAR,
+            means,
+            quantity: Quantity::Failure(criterion, ply),
+        })
+    };
+    let of_all = layers.iter().all(Layer::has_strengths).then(|| failures(None));
+    let of_each = (0..plies.len()).filter(|ply| plies[*ply].has_strengths()).flat_map(|ply| failures(Some(ply)));
+    let of_any_shell = FIELDS.into_iter().map(of_row);
+    of_any_shell.chain((0..plies.len()).map(strain_of)).chain(of_all.into_iter().flatten()).chain(of_each).collect()
 }
 
 impl Field {
@@ -141,7 +172,7 @@ pub struct ShellFields<'a> {
     spans: [Spans; 2],
     /// Undeformed lengths of the elements through their middles, mm, the second direction fastest.
     lengths: Vec<[f64; 2]>,
-    layers: Vec<([f64; 2], f64)>,
+    layers: Vec<Layer>,
 }
 
 impl<'a> ShellFields<'a> {
@@ -233,9 +264,14 @@ impl FieldPoint<'_> {
             Quantity::ElementSize => pair(lengths),
             Quantity::Thickness => scalar(shell.scene.material.thickness_mm()),
             Quantity::Ply(ply) => {
-                let Some((heights, angle_deg)) = shell.layers.get(ply) else { return [0.0; 3] };
+                let Some(Layer { heights, angle_deg, .. }) = shell.layers.get(ply) else { return [0.0; 3] };
                 let [bottom, top] = heights.map(|height| local.strains_at(height, *angle_deg));
                 [0, 1, 2].map(|i| if bottom[i].abs() > top[i].abs() { bottom[i] } else { top[i] })
+            }
+            Quantity::Failure(criterion, ply) => {
+                let change_k = shell.natural.map_or(0.0, |natural| natural.change_k);
+                let asked = ply.map_or(&shell.layers[..], |ply| shell.layers.get(ply..=ply).unwrap_or_default());
+                scalar(asked.iter().map(|layer| layer.failure(criterion, local, change_k)).fold(0.0, f64::max))
             }
         }
     }

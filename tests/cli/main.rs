@@ -2,6 +2,7 @@
 
 mod binary;
 mod calibrate;
+mod compare;
 mod export;
 mod extremes;
 mod folded;

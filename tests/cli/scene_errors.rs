@@ -430,6 +430,19 @@ fn offset_expansion_and_free_strain() {
     pin("offset_expansion_and_free_strain", &(general + "\n" + &errors.join("\n")));
 }
 
+#[test]
+fn strengths() {
+    let all = "tensile_strength_1_mpa = 1500.0\ncompressive_strength_1_mpa = 1200.0\ntensile_strength_2_mpa = 50.0\n\
+               compressive_strength_2_mpa = 200.0\nshear_strength_12_mpa = 80.0\n[[ply]]";
+    let errors = general_errors(&[
+        ("[[ply]]", &all.replace("shear_strength_12_mpa = 80.0\n", "")),
+        ("[[ply]]", &all.replace("compressive_strength_1_mpa = 1200.0", "compressive_strength_1_mpa = -1200.0")),
+        ("[[ply]]", &all.replace("tensile_strength_2_mpa = 50.0\ncompressive_strength_2_mpa", "yt = 50.0\nyc_mpa")),
+        ("[[ply]]", "[[ply]]\nshear_strength_12_mpa = 80.0"),
+    ]);
+    pin("strengths", &errors);
+}
+
 /// A plate and a laminate with supports, actions and probes of their own.
 const GENERAL: &str = r#"# A plate.
 [geometry]

@@ -241,6 +241,29 @@ fn free_are_the_outputs_the_target_and_what_is_expected_alone() {
     );
 }
 
+/// Strengths change no state: those of a layer, of all plies, and of one.
+#[test]
+fn strengths_are_free() {
+    const STRENGTHS: &str = "tensile_strength_1_mpa = 1500.0\ncompressive_strength_1_mpa = 1200.0\n\
+                             tensile_strength_2_mpa = 50.0\ncompressive_strength_2_mpa = 200.0\nshear_strength_12_mpa = 80.0\n";
+    let laminate = include_str!("../verification/scenes/laminate-quarter.toml");
+    let ply = laminate.find("[[ply]]").unwrap();
+    let of_material = format!("{}{STRENGTHS}{}", &laminate[..ply], &laminate[ply..]);
+    let of_one = format!("{}[[ply]]\n{STRENGTHS}{}", &laminate[..ply], &laminate[ply + "[[ply]]\n".len()..]);
+    let without = parse(laminate, "laminate.toml").unwrap();
+    for text in [of_material, of_one] {
+        let with = parse(&text, "laminate.toml").unwrap();
+        assert_ne!(with, without);
+        assert_eq!(with.hash(), without.hash());
+        let differences = without.differences(&with);
+        assert!(!differences.is_empty() && differences.iter().all(|it| it.reach == Reach::Free), "{differences:?}");
+        assert_eq!(parse(&with.to_toml(), "written.toml").unwrap(), with);
+        // The rest of a ply decides states as ever.
+        let turned = parse(&text.replace("angle_deg = 45.0", "angle_deg = 44.0"), "laminate.toml").unwrap();
+        assert_ne!(turned.hash(), with.hash());
+    }
+}
+
 /// Where a tolerance asks for the error of the first probe, that probe decides states; its name does not, nor do the others.
 #[test]
 fn the_first_probe_is_part_of_the_identity_under_a_tolerance() {

@@ -1,5 +1,5 @@
-//! Fields against closed forms: pressurised tube, rolled strip, plate bending, a laminate under given strains, images in planes of
-//! symmetry.
+//! Fields against closed forms: pressurised tube, rolled strip, plate bending, a laminate under given strains and under forces and
+//! moments that break it, images in planes of symmetry.
 
 use foldline::model::starting_mesh;
 use foldline::scene::{Scene, Symmetry, parse};
@@ -97,24 +97,36 @@ const LAMINATE: &str = "[geometry]\nkind = \"plate\"\nlength_mm = 10.0\nwidth_mm
     [mesh]\ndegree = [2, 2]\nelements = [1, 1]\n[load]\nkind = \"steps\"\nincrement = 1.0\n\
     [[support]]\non = \"u-start\"\nkind = \"clamped\"\n[[action]]\nkind = \"pressure\"\npressure_mpa = 1e-6\n";
 
-/// Given u = (e x + g y, f y) and w = ½ k x² + ½ l y² + c x y, which one biquadratic element shows exactly, at the corner where the
-/// slopes of w are zero.
-#[test]
-fn a_laminate_under_given_strains() {
-    let laminate = parse(LAMINATE, "laminate").unwrap();
-    let mut state = State::undeformed(starting_mesh(&laminate).unwrap());
-    let [e, f, g, k, l, c] = [1e-5, -2e-5, 3e-5, 2e-4, -1e-4, 5e-5];
+/// A plate of 10 × 6 mm with u = (e x + g y, f y) and w = ½ k x² + ½ l y² + c x y, which one biquadratic element shows exactly; at
+/// the corner the slopes of w are zero.
+fn strained(plate: &Scene, [e, f, g]: [f64; 3], [k, l, c]: [f64; 3]) -> State {
+    let mut state = State::undeformed(starting_mesh(plate).unwrap());
     let corner = state.mesh.point(0);
     let places: Vec<[f64; 2]> = state.mesh.points().map(|[x, y, _]| [x - corner[0], y - corner[1]]).collect();
     // The Bézier coefficients of x² on [0, a] are 0, 0, a².
     let squared = |place: f64, side: f64| if place > 0.9 * side { side * side } else { 0.0 };
-    state.displacement = places
-        .iter()
-        .map(|[x, y]| {
-            let w = 0.5 * k * squared(*x, 10.0) + 0.5 * l * squared(*y, 6.0) + c * x * y;
-            [e * x + g * y, f * y, w]
-        })
-        .collect();
+    let moved = |[x, y]: &[f64; 2]| {
+        let w = 0.5 * k * squared(*x, 10.0) + 0.5 * l * squared(*y, 6.0) + c * x * y;
+        [e * x + g * y, f * y, w]
+    };
+    state.displacement = places.iter().map(moved).collect();
+    state
+}
+
+/// The same with these Green–Lagrange strains ε₁₁, ε₂₂, 2ε₁₂ and changes of curvature κ₁₁, κ₂₂, 2κ₁₂ at the corner.
+fn under(plate: &Scene, [e11, e22, shear]: [f64; 3], [k11, k22, twice_k12]: [f64; 3]) -> State {
+    let e = (1.0 + 2.0 * e11).sqrt() - 1.0;
+    let g = shear / (1.0 + e);
+    let f = (1.0 + 2.0 * e22 - g * g).sqrt() - 1.0;
+    // κ = B − b, and b is that of a surface whose normal is +z.
+    strained(plate, [e, f, g], [-k11, -k22, -0.5 * twice_k12])
+}
+
+#[test]
+fn a_laminate_under_given_strains() {
+    let laminate = parse(LAMINATE, "laminate").unwrap();
+    let [e, f, g, k, l, c] = [1e-5, -2e-5, 3e-5, 2e-4, -1e-4, 5e-5];
+    let state = strained(&laminate, [e, f, g], [k, l, c]);
     let at = [0.0, 0.0];
     let [e11, e22, shear] = [e, f, g];
     let [n11, n22, n12] = value(&laminate, &state, "membrane_force", at);
@@ -134,6 +146,138 @@ fn a_laminate_under_given_strains() {
     assert_close(in_shear, shear + 0.01775 * twice_k12, 3e-5, "shear of ply 4");
     let [fibre, ..] = value(&laminate, &state, "ply_3_strain", at);
     assert_close(fibre, e22, 2e-5, "along the fibres of ply 3");
+}
+
+const STRENGTHS: &str = "tensile_strength_1_mpa = 1500.0\ncompressive_strength_1_mpa = 1200.0\n\
+    tensile_strength_2_mpa = 50.0\ncompressive_strength_2_mpa = 200.0\nshear_strength_12_mpa = 80.0\n";
+const XT: f64 = 1500.0;
+const XC: f64 = 1200.0;
+const YT: f64 = 50.0;
+const YC: f64 = 200.0;
+const S: f64 = 80.0;
+
+/// R of Tsai and Wu's criterion: how much larger stresses lie on the surface F = 1, by halving.
+fn reserve([s1, s2, s12]: [f64; 3]) -> f64 {
+    let (f11, f22) = (1.0 / (XT * XC), 1.0 / (YT * YC));
+    let exceeds = |r: f64| {
+        let linear = (1.0 / XT - 1.0 / XC) * s1 + (1.0 / YT - 1.0 / YC) * s2;
+        let quadratic = f11 * s1 * s1 + f22 * s2 * s2 - (f11 * f22).sqrt() * s1 * s2 + s12 * s12 / (S * S);
+        r * linear + r * r * quadratic > 1.0
+    };
+    let halve = |[low, high]: [f64; 2], _| {
+        let middle = 0.5 * (low + high);
+        if exceeds(middle) { [low, middle] } else { [middle, high] }
+    };
+    (0..100).fold([0.0, 1e6], halve)[0]
+}
+
+/// One layer under each of its strengths alone: both criteria say 1.
+#[test]
+fn a_layer_fails_at_its_strengths() {
+    let (e1, e2, nu, g) = (128e3, 6.5e3, 0.35, 7.5e3);
+    for angle in [0.0, 90.0] {
+        let moduli = LAMINATE.split("[material]").nth(1).unwrap().split("[[ply]]").next().unwrap();
+        let layer = LAMINATE.split("[material]").next().unwrap().to_owned()
+            + "[material]"
+            + &moduli.replace("laminate", "orthotropic")
+            + STRENGTHS
+            + &format!("thickness_mm = 0.1\nangle_deg = {angle:?}\n[mesh]")
+            + LAMINATE.split("[mesh]").nth(1).unwrap();
+        let layer = parse(&layer, "layer").unwrap();
+        for stress in [[XT, 0.0, 0.0], [-XC, 0.0, 0.0], [0.0, YT, 0.0], [0.0, -YC, 0.0], [0.0, 0.0, S]] {
+            let own = [stress[0] / e1 - nu * stress[1] / e1, stress[1] / e2 - nu * stress[0] / e1, stress[2] / g];
+            let strain = if angle == 0.0 { own } else { [own[1], own[0], -own[2]] };
+            let state = under(&layer, strain, [0.0; 3]);
+            assert_close(value(&layer, &state, "failure_tsai_wu", [0.0; 2])[0], 1.0, 1.0, "Tsai and Wu");
+            assert_close(value(&layer, &state, "failure_max_strain", [0.0; 2])[0], 1.0, 1.0, "maximum strain");
+        }
+    }
+}
+
+/// [0/90]s under n and m: stresses of every ply by lamination theory, as by hand.
+#[test]
+fn plies_fail_under_forces_and_moments() {
+    let laminate = parse(&LAMINATE.replacen("[[ply]]", &format!("{STRENGTHS}[[ply]]"), 1), "laminate").unwrap();
+    let (e1, e2, nu, g, t) = (128e3, 6.5e3, 0.35, 7.5e3, 0.01775);
+    let scale = 1.0 / (1.0 - nu * nu * e2 / e1);
+    let (q11, q22, q12) = (scale * e1, scale * e2, scale * nu * e2);
+    // Of the plies at 0° (outside) and 90° (inside), by their shares of 4 t and of 16 t³/3 = (4 t)³/12.
+    let (a11, a12, a66) = (2.0 * t * (q11 + q22), 4.0 * t * q12, 4.0 * t * g);
+    let inertia = 16.0 * t * t * t / 3.0;
+    let (d11, d22) = (inertia * (7.0 * q11 + q22) / 8.0, inertia * (q11 + 7.0 * q22) / 8.0);
+    let (d12, d66) = (inertia * q12, inertia * g);
+    let ([n1, n2, n12], [m1, m2, m12]) = ([12.0, -3.0, 1.5], [0.2, 0.05, 0.03]);
+    let solved =
+        |a: f64, b: f64, c: f64, x: f64, y: f64| [(c * x - b * y) / (a * c - b * b), (a * y - b * x) / (a * c - b * b)];
+    let ([x1, x2], [k1, k2]) = (solved(a11, a12, a11, n1, n2), solved(d11, d12, d22, m1, m2));
+    let (strain, bending) = ([x1, x2, n12 / a66], [k1, k2, m12 / d66]);
+    let state = under(&laminate, strain, bending);
+    let at = [0.0; 2];
+    for (c, expected) in [n1, n2, n12].into_iter().enumerate() {
+        assert_close(value(&laminate, &state, "membrane_force", at)[c], expected, n1, "membrane force");
+    }
+    for (c, expected) in [m1, m2, m12].into_iter().enumerate() {
+        assert_close(value(&laminate, &state, "bending_moment", at)[c], expected, m1, "bending moment");
+    }
+    let (mut nearest, mut most_strained) = (0.0_f64, 0.0_f64);
+    for ply in 0..4 {
+        let (mut tsai_wu, mut max_strain) = (0.0_f64, 0.0_f64);
+        for height in [t * (ply as f64 - 2.0), t * (ply as f64 - 1.0)] {
+            let [xx, yy, shear] = [0, 1, 2].map(|i| strain[i] + height * bending[i]);
+            let [e_1, e_2, e_12] = if ply == 0 || ply == 3 { [xx, yy, shear] } else { [yy, xx, -shear] };
+            let stress = [q11 * e_1 + q12 * e_2, q12 * e_1 + q22 * e_2, g * e_12];
+            tsai_wu = tsai_wu.max(1.0 / reserve(stress));
+            let along = e_1 * e1 / if e_1 > 0.0 { XT } else { -XC };
+            let across = e_2 * e2 / if e_2 > 0.0 { YT } else { -YC };
+            max_strain = max_strain.max(along).max(across).max((e_12 * g / S).abs());
+        }
+        let own = |name: &str| value(&laminate, &state, &format!("ply_{}_failure_{name}", ply + 1), at)[0];
+        assert_close(own("tsai_wu"), tsai_wu, tsai_wu, "Tsai and Wu");
+        assert_close(own("max_strain"), max_strain, max_strain, "maximum strain");
+        (nearest, most_strained) = (nearest.max(tsai_wu), most_strained.max(max_strain));
+    }
+    assert_close(value(&laminate, &state, "failure_tsai_wu", at)[0], nearest, nearest, "Tsai and Wu of all plies");
+    let found = value(&laminate, &state, "failure_max_strain", at)[0];
+    assert_close(found, most_strained, most_strained, "maximum strain of all plies");
+}
+
+/// Where nothing can expand, a ply has the stresses of its own expansion, whatever the others do.
+#[test]
+fn plies_fail_by_heat_alone() {
+    let (e1, e2, nu, alpha, change) = (128e3, 6.5e3, 0.35, [0.02e-6, 22.5e-6], -120.0);
+    let expansion = "thermal_expansion_1_per_k = 0.02e-6\nthermal_expansion_2_per_k = 22.5e-6\n";
+    let heated = LAMINATE
+        .replacen("[[ply]]", &format!("{STRENGTHS}{expansion}[[ply]]"), 1)
+        .replace("kind = \"pressure\"\npressure_mpa = 1e-6", "kind = \"temperature\"\nchange_k = -120.0");
+    let heated = parse(&heated, "heated").unwrap();
+    let mut state = State::undeformed(starting_mesh(&heated).unwrap());
+    let scale = 1.0 / (1.0 - nu * nu * e2 / e1);
+    let along = -scale * (e1 * alpha[0] + nu * e2 * alpha[1]) * change;
+    let across = -scale * (nu * e2 * alpha[0] + e2 * alpha[1]) * change;
+    for factor in [1.0, 0.5] {
+        state.parameter = factor;
+        for name in ["ply_1_failure_tsai_wu", "ply_3_failure_tsai_wu", "failure_tsai_wu"] {
+            let expected = factor / reserve([along, across, 0.0]);
+            assert_close(value(&heated, &state, name, [0.3, 0.6])[0], expected, expected, name);
+        }
+        let strained = -alpha[1] * change * e2 / YT * factor;
+        assert_close(value(&heated, &state, "failure_max_strain", [0.3, 0.6])[0], strained, strained, "maximum strain");
+    }
+}
+
+/// Fields of failure are there where strengths are: of a laminate as a whole where every ply has them.
+#[test]
+fn failure_needs_strengths() {
+    let names = |text: &str| {
+        let fields = fields_of(&parse(text, "laminate").unwrap()).into_iter().map(|field| field.name);
+        fields.filter(|name| name.contains("failure")).collect::<Vec<_>>()
+    };
+    assert!(names(LAMINATE).is_empty());
+    let one_ply =
+        LAMINATE.replace("thickness_mm = 0.01775\n[mesh]", &format!("thickness_mm = 0.01775\n{STRENGTHS}[mesh]"));
+    assert_eq!(names(&one_ply), ["ply_4_failure_tsai_wu", "ply_4_failure_max_strain"]);
+    let all = LAMINATE.replacen("[[ply]]", &format!("{STRENGTHS}[[ply]]"), 1);
+    assert_eq!(names(&all).len(), 10);
 }
 
 /// Moments of Navier's plate under an even pressure: at the middle of a simply supported square D (κ₁₁ + ν κ₂₂) = 0.0479 p a²

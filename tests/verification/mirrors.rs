@@ -13,6 +13,7 @@ const LAW: OrthotropicLaw = OrthotropicLaw {
     shear_modulus_12_mpa: 5_000.0,
     thermal_expansion_1_per_k: None,
     thermal_expansion_2_per_k: None,
+    strengths: None,
 };
 
 fn laminate(angles: &[f64]) -> foldline::scene::Material {

@@ -116,6 +116,24 @@ pub struct OrthotropicLaw {
     /// Thermal expansion across material axis 1, 1/K.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal_expansion_2_per_k: Option<f64>,
+    /// Stresses at which the layer fails; no state depends on them.
+    #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
+    pub strengths: Option<Strengths>,
+}
+
+/// Stresses at which an orthotropic layer fails where each acts alone; all positive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Strengths {
+    /// Tension along material axis 1 (the fibres), Xₜ.
+    pub tensile_strength_1_mpa: f64,
+    /// Compression along it, X_c.
+    pub compressive_strength_1_mpa: f64,
+    /// Tension across, Yₜ.
+    pub tensile_strength_2_mpa: f64,
+    /// Compression across, Y_c.
+    pub compressive_strength_2_mpa: f64,
+    /// Shear in the plane of the layer, S.
+    pub shear_strength_12_mpa: f64,
 }
 
 impl OrthotropicLaw {

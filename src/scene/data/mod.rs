@@ -20,7 +20,7 @@ pub use boundary::{
 };
 pub use expectation::{Expectation, ExpectedOutcome};
 pub use geometry::{Geometry, NurbsPatch, Seam};
-pub use material::{Material, OrthotropicLaw, Ply};
+pub use material::{Material, OrthotropicLaw, Ply, Strengths};
 pub use probe::{Axis, Component, Probe, ProbeKind, Reaction};
 
 use serde::{Deserialize, Serialize};

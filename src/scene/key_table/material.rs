@@ -2,7 +2,7 @@
 
 use super::geometry::SHELL_LENGTH;
 use crate::scene::keys::Presence::{Default, Follows};
-use crate::scene::keys::{Key, Kind, Limit, Limits, Presence, choice};
+use crate::scene::keys::{Key, Kind, Limit, Limits, Presence, Reach, choice};
 
 const fn material(name: &'static str, kind: Kind, example: &'static str) -> Key {
     Key::new("material", name, kind, example)
@@ -76,6 +76,11 @@ pub(super) static MATERIAL: &[Key] = &[
         .also_called(&["cte", "expansion", "thermal_expansion", "expansion_per_k"]),
     THERMAL_EXPANSION_1.in_table("material", &["orthotropic", "laminate"], NO_EXPANSION),
     THERMAL_EXPANSION_2.in_table("material", &["orthotropic", "laminate"], NO_EXPANSION),
+    TENSILE_STRENGTH_1.in_table("material", &["orthotropic", "laminate"], NO_STRENGTH),
+    COMPRESSIVE_STRENGTH_1.in_table("material", &["orthotropic", "laminate"], NO_STRENGTH),
+    TENSILE_STRENGTH_2.in_table("material", &["orthotropic", "laminate"], NO_STRENGTH),
+    COMPRESSIVE_STRENGTH_2.in_table("material", &["orthotropic", "laminate"], NO_STRENGTH),
+    SHEAR_STRENGTH_12.in_table("material", &["orthotropic", "laminate"], NO_STRENGTH),
 ];
 
 pub(super) static PLY: &[Key] = &[
@@ -101,12 +106,18 @@ pub(super) static PLY: &[Key] = &[
     ]),
     THERMAL_EXPANSION_1.in_table("ply", &[], OF_MATERIAL),
     THERMAL_EXPANSION_2.in_table("ply", &[], OF_MATERIAL),
+    TENSILE_STRENGTH_1.in_table("ply", &[], OF_MATERIAL),
+    COMPRESSIVE_STRENGTH_1.in_table("ply", &[], OF_MATERIAL),
+    TENSILE_STRENGTH_2.in_table("ply", &[], OF_MATERIAL),
+    COMPRESSIVE_STRENGTH_2.in_table("ply", &[], OF_MATERIAL),
+    SHEAR_STRENGTH_12.in_table("ply", &[], OF_MATERIAL),
 ];
 
 /// Of a ply that has none of its own.
 const OF_MATERIAL: Presence = Follows("that of [material]");
 /// Of a laminate whose plies have their own.
 const OF_EACH_PLY: Presence = Follows("each [[ply]] has its own");
+const NO_STRENGTH: Presence = Follows("none, and no failure fields; all five or none");
 const NO_EXPANSION: Presence = Follows("none; actions of kind \"temperature\" need both");
 
 // Keys of an orthotropic layer, whichever table gives them.
@@ -136,6 +147,35 @@ const THERMAL_EXPANSION_2: Key = ply("thermal_expansion_2_per_k", Kind::Number(E
     .means("The same across.")
     .also_called(&["cte2", "cte_2", "alpha2", "alpha_2"]);
 
+const TENSILE_STRENGTH_1: Key = strength("tensile_strength_1_mpa", "1500.0")
+    .means("Stress along the fibres at which the layer fails in tension, Xt: for the fields `failure_...` of exports and pictures. \
+          Strengths change no state.")
+    .also_called(&["xt", "x_t", "tensile_strength", "longitudinal_tensile_strength"]);
+const COMPRESSIVE_STRENGTH_1: Key = strength("compressive_strength_1_mpa", "1200.0")
+    .means("The same in compression, Xc; positive.")
+    .also_called(&["xc", "x_c", "compressive_strength", "longitudinal_compressive_strength"]);
+const TENSILE_STRENGTH_2: Key = strength("tensile_strength_2_mpa", "50.0")
+    .means("The same across the fibres in tension, Yt.")
+    .also_called(&["yt", "y_t", "transverse_tensile_strength"]);
+const COMPRESSIVE_STRENGTH_2: Key = strength("compressive_strength_2_mpa", "200.0")
+    .means("The same across the fibres in compression, Yc; positive.")
+    .also_called(&["yc", "y_c", "transverse_compressive_strength"]);
+const SHEAR_STRENGTH_12: Key = strength("shear_strength_12_mpa", "80.0")
+    .means("The same in shear in the plane of the layer, S.")
+    .also_called(&["s", "s12", "s_12", "sl", "shear_strength", "in_plane_shear_strength"]);
+
+/// A key of what a layer bears.
+const fn strength(name: &'static str, example: &'static str) -> Key {
+    ply(name, Kind::Number(STRENGTH), example).reaches(Reach::Free)
+}
+
+const STRENGTH: Limits = Limits {
+    low: Limit::excluded(
+        0.0,
+        "strengths are the sizes of stresses, in compression too; leave all five out where they are not known",
+    ),
+    high: Limit::included(1e13, "far stronger than anything"),
+};
 const MODULUS: Limits = Limits {
     low: Limit::excluded(0.0, "without stiffness there is no equilibrium to find"),
     high: Limit::included(1e13, "far stiffer than anything (diamond: 1.2e6 MPa)"),
