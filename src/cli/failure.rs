@@ -32,8 +32,8 @@ pub(super) enum Failure {
     NotText { path: PathBuf, reason: String },
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: io::Error },
-    #[error("{} is no log: the page of a study is written by `foldline study {} --report page.html`", study.display(), study.display())]
-    StudyIsNoLog { study: PathBuf },
+    #[error("{} is a study, and others of these are logs: a page is of logs or of studies; write one of each", study.display())]
+    StudyAmongLogs { study: PathBuf },
     #[error("{} exists and is not overwritten: remove it, or choose another place for what is written", path.display())]
     InTheWay { path: PathBuf },
     #[error("cannot write to standard output")]
@@ -138,7 +138,7 @@ impl Failure {
             Failure::Read { .. }
             | Failure::NotText { .. }
             | Failure::InTheWay { .. }
-            | Failure::StudyIsNoLog { .. }
+            | Failure::StudyAmongLogs { .. }
             | Failure::WrongScene { .. }
             | Failure::UntilBeyondScene { .. }
             | Failure::NoSuchStep { .. }

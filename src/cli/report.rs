@@ -8,6 +8,8 @@ use super::asked::{Ends, ordinal};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
 use super::output::{file_name, path_in_line, print, write_files};
+use super::session::use_threads;
+use super::speed_ups;
 use crate::history::States;
 use crate::journal::Manifest;
 use crate::scene::Parameter;
@@ -18,22 +20,30 @@ use crate::view::{FrameAt, PlotError, ReportedRun, Shape, Told, chosen_frames, r
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
-    /// Logs to read (MCAP); several are drawn in one picture
-    #[arg(required = true, value_name = "LOG")]
+    /// Logs to read (MCAP), several drawn in one picture; or study files (TOML), of which those runs are run that are not logged yet
+    #[arg(required = true, value_name = "LOG|STUDY")]
     logs: Vec<PathBuf>,
     /// Page to write [default: the first log's name with .html]
     #[arg(short, long, value_name = "FILE", value_parser = file_name())]
     output: Option<PathBuf>,
+    /// Of studies: folder of the logs of their runs
+    #[arg(long, value_name = "DIR", default_value = "checkpoints/studies")]
+    study_logs: PathBuf,
 }
 
 impl Arguments {
     /// Reads the logs, writes the page, and names it.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Self { logs, output } = self;
-        if let Some(study) = logs.iter().find(|path| path.extension().is_some_and(|extension| extension == "toml")) {
-            return Err(Failure::StudyIsNoLog { study: study.clone() });
-        }
+        let Self { logs, output, study_logs } = self;
         let output = output.unwrap_or_else(|| logs[0].with_extension("html"));
+        let is_study = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "toml");
+        match logs.iter().find(|path| is_study(path)) {
+            None => {}
+            Some(_) if logs.iter().all(is_study) => {
+                return speed_ups::run(&logs, &[], &study_logs, use_threads(None)?, false, Some(&output));
+            }
+            Some(study) => return Err(Failure::StudyAmongLogs { study: study.clone() }),
+        }
         write_page(&logs, &output)?;
         print(&format!("{}\n", path_in_line(&output)))
     }

@@ -55,7 +55,15 @@ fn the_page_of_a_study_holds_its_rows() {
     let rows: Vec<Value> = printed.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!(held, rows);
     place.foldline(&format!("{COMMAND} --report page.html")).ends(2).says(&["page.html exists"]);
-    place.foldline("report study.toml").ends(2).says(&["study.toml is no log", "--report"]);
+    // Of logged runs, by the other command, in no time.
+    place.foldline("report study.toml --study-logs logs -o again.html").ends(0);
+    let again = String::from_utf8(place.read("again.html")).unwrap();
+    assert!(
+        again.contains("id=\"data\">")
+            && again.matches("\"role\":\"adaptive\"").count() == page.matches("\"role\":\"adaptive\"").count()
+    );
+    place.write("a.mcap", "");
+    place.foldline("report study.toml a.mcap").ends(2).says(&["study.toml is a study", "one of each"]);
 }
 
 /// The rows of a study without what differs between two runs of it.

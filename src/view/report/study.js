@@ -34,16 +34,20 @@ function drawn(name, canvas) {
     const front = [...points].sort((a, b) => a.x - b.x).filter((point) => point.y < best && ((best = point.y), true));
     const sets = [...families].map(([label, data], index) => ({
         label, data: data.sort((a, b) => a.x - b.x), showLine: data.length > 1, borderColor: hues[index % hues.length], backgroundColor: hues[index % hues.length],
-        pointStyle: data[0].run.role === "adaptive" ? "rectRot" : "circle", pointRadius: data[0].run.role === "adaptive" ? 8 : 4, borderWidth: 1.5,
+        pointStyle: data[0].run.role === "adaptive" ? "rectRot" : "circle", pointRadius: data[0].run.role === "adaptive" && families.size <= 14 ? 8 : 4, borderWidth: 1.5,
     }));
     sets.push({ label: "best for its time", data: front, showLine: true, borderColor: css("--soft"), borderDash: [4, 4], pointRadius: 0, borderWidth: 1.5 });
-    const axis = (text) => ({ type: "logarithmic", title: { display: true, text, color: css("--ink") }, ticks: { color: css("--soft") }, grid: { color: css("--line") } });
+    // Round numbers, as many digits as they need.
+    const tick = (value) => [1, 2, 5].some((digit) => value.toExponential(0).startsWith(`${digit}e`)) ? String(Number(value.toPrecision(2))) : "";
+    const axis = (text) => ({ type: "logarithmic", title: { display: true, text, color: css("--ink") }, ticks: { color: css("--soft"), callback: tick }, grid: { color: css("--line") } });
+    // Names that are too many for a legend stand in the table, and beside the point that is touched.
+    const legend = { display: sets.length <= 14, labels: { color: css("--ink"), usePointStyle: true } };
     charts.push(new Chart(canvas, {
         type: "scatter", data: { datasets: sets },
         options: {
             animation: false, maintainAspectRatio: false, parsing: false,
             scales: { x: axis("wall time (s)"), y: axis("error (%)") },
-            plugins: { legend: { labels: { color: css("--ink"), usePointStyle: true } }, tooltip: { callbacks: { label: (item) => item.raw.note } } },
+            plugins: { legend, tooltip: { callbacks: { label: (item) => item.raw.note } } },
         },
     }));
 }
@@ -59,7 +63,7 @@ function table(name, parent) {
             role === "reference" ? "" : percent(row.error_after), row.steps, row.iterations, role === "uniform" || role === "adaptive" ? row.wall_s.toFixed(2) : ""];
         for (const cell of cells) element("td", cell, line);
     }
-    const speeds = rows.filter((row) => row.structure === name && row.speed_up);
+    const speeds = rows.filter((row) => row.structure === name && Object.keys(row.speed_up ?? {}).length);
     if (!speeds.length) return;
     const of = element("table", undefined, holder), first = element("tr", undefined, of), columns = Object.keys(speeds[0].speed_up);
     for (const title of ["speed-up over uniform", ...columns, "published"]) element("th", title, first);
