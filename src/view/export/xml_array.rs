@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn an_array_is_blocks_with_their_lengths_in_front() {
-        let bytes: Vec<u8> = (0..2 * BLOCK + 5).map(|k| (k * k >> 7) as u8).collect();
+        let bytes: Vec<u8> = (0..2 * BLOCK + 5).map(|k| ((k * k) >> 7) as u8).collect();
         let text = compressed(&bytes);
         let front = base64(&[0; 8 * 6]).len();
         let decoded = |text: &str| {
