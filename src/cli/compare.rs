@@ -183,7 +183,7 @@ fn shown(value: Option<f64>) -> String {
 
 /// A difference in percent of where it is from.
 fn difference(from: f64, to: f64) -> String {
-    match 100.0 * (to - from) / from.abs() {
+    match 100.0 * (to - from) / from {
         _ if from == to => "=".into(),
         percent if percent.abs() < 1000.0 => format!("{} %", signed(percent, 2)),
         percent if percent.abs() < 1e6 => format!("{} %", signed(percent, 0)),

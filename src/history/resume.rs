@@ -67,8 +67,8 @@ pub struct NothingKept {
 
 /// Decides how many stages of a log written for `old` are kept when it is continued with `new`.
 ///
-/// Output, probes and names may change freely. The target may: what was cut short at the old target goes, and what lies beyond a
-/// nearer one. A change of what steps are made with keeps every complete step and drops a step in hand; one of a history keeps what
+/// Output, probes, strengths and names may change freely. The target may: what was cut short at the old target goes, and what lies
+/// beyond a nearer one. A change of what steps are made with keeps every complete step and drops a step in hand; one of a history keeps what
 /// lies before the load where it sets in. A change of geometry, material, mesh, symmetry or sense keeps nothing.
 ///
 /// # Errors

@@ -32,16 +32,20 @@ impl Summary {
         let finding = |name: &'static str, unit: &'static str, value: Option<f64>| {
             value.map(|value| Finding { name: name.into(), unit: unit.into(), value })
         };
-        let (snap, passed) = (self.snaps.first(), self.passed.first());
+        let snap = self.snaps.first();
+        let limit = self.passed.iter().find(|passed| passed.critical.name().starts_with("limit point"));
+        let bifurcation = self.passed.iter().find(|passed| passed.critical.is_bifurcation());
         let moment = |value: Option<f64>| value.filter(|_| turns);
         let of_curve = [
             finding("stiffness", "N·mm/rad", moment(self.initial_stiffness_n_mm)),
             finding("peak moment", "N·mm", moment(self.peak.map(|peak| peak.moment_n_mm))),
             finding("peak at", at, moment(self.peak.map(|peak| peak.parameter))),
-            passed.and_then(|passed| match passed.critical.name() {
-                name if name.starts_with("limit") => finding("limit point at", at, Some(passed.parameter)),
-                _ => finding("bifurcation at", at, Some(passed.parameter)),
+            finding("limit point at", at, limit.map(|limit| limit.parameter)),
+            finding("moment there", "N·mm", moment(limit.map(|limit| limit.moment_n_mm))),
+            limit.filter(|_| !turns).and_then(|limit| limit.probe).zip(self.probes.first()).map(|(value, first)| {
+                Finding { name: "probe there".into(), unit: first.unit.to_string().into(), value }
             }),
+            finding("bifurcation at", at, bifurcation.map(|bifurcation| bifurcation.parameter)),
             finding("jumps", "", Some(self.snaps.len() as f64)),
             finding("jump from", at, snap.map(|snap| snap.before)),
             finding("jump to", at, snap.map(|snap| snap.after)),

@@ -88,12 +88,12 @@ const FAILURES: [(&str, &str, Criterion); 2] = [
     (
         "failure_tsai_wu",
         "load over the load at failure by Tsai and Wu (1/R, the inverse reserve factor, if all stresses grow alike; fails from 1 \
-         on), at the ply and face where it is largest",
+         on), at that face of a ply where it is largest",
         Criterion::TsaiWu,
     ),
     (
         "failure_max_strain",
-        "strain over the strain at failure (strength over modulus; fails from 1 on), at the ply and face where it is largest",
+        "strain over the strain at failure (strength over modulus; fails from 1 on), at that face of a ply where it is largest",
         Criterion::MaximumStrain,
     ),
 ];
