@@ -63,6 +63,16 @@ pub(super) enum Failure {
     NoSuchTopic { topic: String, known: Vec<String> },
     #[error("no field `{field}`; there are {}{}", known.join(", "), did_you_mean(field, known))]
     NoSuchField { field: String, known: Vec<String> },
+    #[error("{} has no `{quantity}` to draw; there are {}{}", log.display(), known.join(", "), did_you_mean(quantity, known))]
+    NoSuchQuantity { log: PathBuf, quantity: String, known: Vec<String> },
+    #[error("{option} is for the mesh, which is drawn of one log, and {logs} are given")]
+    MeshOfOneLog { option: &'static str, logs: usize },
+    #[error(
+        "these logs have no curve in common, since the ends of some turn and those of others do not: choose one with --x and --y"
+    )]
+    NoCommonCurve,
+    #[error("{} has no probe to draw the load factor over: choose a curve with --x and --y", log.display())]
+    NoProbe { log: PathBuf },
     #[error(
         "{} is one file, and {steps} load steps are chosen: name a folder, or one step with --steps", file.display()
     )]
@@ -149,6 +159,10 @@ impl Failure {
             | Failure::WrongStudy { .. }
             | Failure::NoSuchTopic { .. }
             | Failure::NoSuchField { .. }
+            | Failure::NoSuchQuantity { .. }
+            | Failure::MeshOfOneLog { .. }
+            | Failure::NoCommonCurve
+            | Failure::NoProbe { .. }
             | Failure::StepsInOneFile { .. }
             | Failure::MeshesInOneFile { .. }
             | Failure::NoSuchScene { .. } => 2,

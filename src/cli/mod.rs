@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
+//! | `plotted` | logs, as curves are drawn of them |
 //! | `report` | runs as one page |
 //! | `export`, `export_choice` | states in the formats of other programs; which of them, and of what |
 //! | `recover`, `thin` | a log written again |
@@ -36,6 +37,7 @@ mod load_step;
 mod log_file;
 mod output;
 mod plot;
+mod plotted;
 mod probe_table;
 mod progress;
 mod recover;

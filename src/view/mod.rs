@@ -36,7 +36,9 @@ pub use fields::{Field, ShellFields, fields_of};
 pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};
 #[cfg(feature = "pictures")]
-pub use plot::{PlotError, load_probe_plot, moment_rotation_plot};
+pub use plot::{
+    PlotError, PlottedRun, Quantity, curve_plot, load_probe, moment_rotation_plot, quantities_of, quantity_named,
+};
 pub use report::{FrameAt, ReportedRun, Shape, Told, chosen_frames, report_page, study_page};
 pub use samples::{SamplesError, SurfaceSamples};
 pub use vtu::vtu;
