@@ -9,7 +9,7 @@ use crate::printable::one_line;
 use crate::record::Parameter;
 use crate::scene::{Scene, Stage};
 use crate::study::{AccuracyError, BenchError, CalibrationError, ConvergenceError, TaskError};
-use crate::view::{PlotError, SamplesError};
+use crate::view::{AnimationError, PlotError, SamplesError};
 
 /// Stopped by a signal; nothing is wrong.
 pub(super) const INTERRUPTED: u8 = 75;
@@ -59,6 +59,10 @@ pub(super) enum Failure {
     Plot(#[from] PlotError),
     #[error(transparent)]
     Samples(#[from] SamplesError),
+    #[error(transparent)]
+    Animation(#[from] AnimationError),
+    #[error("{frames} frames are more than the {most} of an animation: take fewer load steps with --every {enough}")]
+    TooManyFrames { frames: usize, most: usize, enough: u64 },
     #[error("no help on `{topic}`; there is help on {}{}", known.join(", "), did_you_mean(topic, known))]
     NoSuchTopic { topic: String, known: Vec<String> },
     #[error("no field `{field}`; there are {}{}", known.join(", "), did_you_mean(field, known))]
@@ -162,6 +166,7 @@ impl Failure {
             | Failure::NoSuchQuantity { .. }
             | Failure::MeshOfOneLog { .. }
             | Failure::NoCommonCurve
+            | Failure::TooManyFrames { .. }
             | Failure::NoProbe { .. }
             | Failure::StepsInOneFile { .. }
             | Failure::MeshesInOneFile { .. }

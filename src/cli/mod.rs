@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
-//! | `plotted` | logs, as curves are drawn of them |
+//! | `plotted`, `pictured`, `animated` | logs, as curves are drawn of them; a state as a picture; load steps as an animation |
 //! | `report` | runs as one page |
 //! | `export`, `export_choice` | states in the formats of other programs; which of them, and of what |
 //! | `recover`, `thin` | a log written again |
@@ -21,6 +21,7 @@
 //! | `trace` | iterates of replayed stages |
 //! | `output`, `failure` | streams and files; what can stop a command |
 
+mod animated;
 mod asked;
 mod bench;
 mod bisect;
@@ -36,6 +37,7 @@ mod json_line;
 mod load_step;
 mod log_file;
 mod output;
+mod pictured;
 mod plot;
 mod plotted;
 mod probe_table;

@@ -4,20 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::animated::animation;
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::first_and_last;
 use super::output::{file_name, path_in_line, print, write_files};
-use super::plotted::{Chosen, PlottedLog, curve, name_of};
+use super::pictured::{Look, pictured};
+use super::plotted::{Chosen, PlottedLog, curve};
 use crate::history::States;
-use crate::record::{Parameter, Report};
-use crate::scene::Scene;
-use crate::spline::Mesh;
-use crate::state::State;
-use crate::units::rounded;
-use crate::view::{Field, Picture, ViewDirection, coloured_surface, deformed_surface, fields_of, mesh_picture, vtu};
-
-/// Cells along a picture that look smooth.
-const SMOOTH: usize = 120;
+use crate::record::Report;
+use crate::view::{ViewDirection, mesh_picture, vtu};
 
 /// Draw the moment–rotation curve, or the load factor over the first probe, and the deformed mesh of a log; of several logs their
 /// curves in one picture
@@ -49,6 +44,12 @@ pub(super) struct Arguments {
     /// all of them [default: the larger bending strain]
     #[arg(long, value_name = "FIELD[.COMPONENT]")]
     field: Option<String>,
+    /// Draw the mesh over the load steps instead, as an animation (mesh.gif): one view, and colours over the values of all steps
+    #[arg(long, conflicts_with_all = ["x", "y", "step"])]
+    animate: bool,
+    /// Animate every N-th load step, and the last [default: up to 40 that are evenly spread, and those around jumps]
+    #[arg(long, value_name = "N", requires = "animate", value_parser = clap::value_parser!(u64).range(1..))]
+    every: Option<u64>,
 }
 
 /// A file with its content.
@@ -60,6 +61,7 @@ impl Arguments {
         let folder = self.output.take().unwrap_or_else(|| self.logs[0].with_extension(""));
         let chosen = Chosen { x: self.x.take(), y: self.y.take() };
         let files = match &self.logs[..] {
+            [log] if self.animate => vec![("mesh.gif".to_owned(), animation(log, self.every, &self.look())?)],
             [log] if chosen.is_none() => self.curve_and_mesh(log, &chosen)?,
             logs => {
                 self.refuse_what_is_of_one_log()?;
@@ -72,10 +74,19 @@ impl Arguments {
         print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
     }
 
+    /// How the mesh is shown.
+    fn look(&self) -> Look<'_> {
+        Look { direction: self.view.unwrap_or_default(), field: self.field.as_deref() }
+    }
+
     /// What only the mesh of one log has a use for.
     fn refuse_what_is_of_one_log(&self) -> Result<(), Failure> {
-        let given =
-            [("--step", self.step.is_some()), ("--view", self.view.is_some()), ("--field", self.field.is_some())];
+        let given = [
+            ("--animate", self.animate),
+            ("--step", self.step.is_some()),
+            ("--view", self.view.is_some()),
+            ("--field", self.field.is_some()),
+        ];
         match given.into_iter().find(|(_, is_given)| *is_given) {
             Some((option, _)) => Err(Failure::MeshOfOneLog { option, logs: self.logs.len() }),
             None => Ok(()),
@@ -108,65 +119,11 @@ impl Arguments {
         let read = if state.is_err() { read.whole(log)? } else { read };
         let unusable = |source| Failure::WrongLog { log: log.to_path_buf(), source: Box::new(source) };
         let state = state.or_else(|_| States::of(&read.log).at(ordinal)).map_err(unusable)?;
-        let picture = Picture {
-            direction: self.view.unwrap_or_default(),
-            title: format!("{}, load step {}", name_of(log), report.step),
-            subtitle: subtitle(&report),
-            ..Picture::default()
-        };
-        files.extend(surface(&read.scene, &state, &picture, self.field.as_deref())?);
+        let (samples, picture) = pictured(log, &read.scene, &state, &report, &self.look())?;
+        files.push(("mesh.svg".to_owned(), mesh_picture(&samples, &picture).into_bytes()));
+        files.push(("mesh.vtu".to_owned(), vtu(&samples).into_bytes()));
         Ok(files)
     }
-}
-
-/// The deformed surface as a picture and for ParaView.
-fn surface(scene: &Scene, state: &State, picture: &Picture, field: Option<&str>) -> Result<[File; 2], Failure> {
-    let State { mesh, displacement, .. } = state;
-    let samples = match field {
-        None => deformed_surface(scene, mesh, displacement, cells_per_element(mesh))?,
-        Some(name) => {
-            let (field, component) = named(scene, name)?;
-            coloured_surface(scene, state, &field, component, cells_per_element(mesh))?
-        }
-    };
-    let files = [("mesh.svg", mesh_picture(&samples, picture)), ("mesh.vtu", vtu(&samples))];
-    Ok(files.map(|(file, text)| (file.to_owned(), text.into_bytes())))
-}
-
-/// The field of this name, with the component that is named behind a point.
-fn named(scene: &Scene, name: &str) -> Result<(Field, Option<usize>), Failure> {
-    let (of_field, of_component) = name.split_once('.').map_or((name, None), |(field, part)| (field, Some(part)));
-    let fields = fields_of(scene);
-    let found = fields.iter().find(|field| field.name == of_field).and_then(|field| match of_component {
-        Some(component) => Some((field.clone(), Some(field.components.iter().position(|known| *known == component)?))),
-        // One component is the value itself; of more the length is shown.
-        None => Some((field.clone(), (field.components.len() == 1).then_some(0))),
-    });
-    found.ok_or_else(|| Failure::NoSuchField { field: name.to_owned(), known: fields.iter().map(listed).collect() })
-}
-
-/// A field with its components: `bending_moment.11/22/12`.
-fn listed(field: &Field) -> String {
-    match field.components {
-        [_] => field.name.clone(),
-        components => format!("{}.{}", field.name, components.join("/")),
-    }
-}
-
-/// Cells that make a coarse mesh look smooth and a fine one no larger than need be.
-pub(super) fn cells_per_element(mesh: &Mesh) -> usize {
-    let [n1, n2] = mesh.element_counts();
-    SMOOTH.div_ceil(n1.max(n2)).clamp(2, 12)
-}
-
-/// The numbers of the state that a picture shows.
-fn subtitle(report: &Report) -> String {
-    let Report { parameter, moment_n_mm, elements: [n1, n2], .. } = report;
-    let reached = match report.driven_by {
-        Parameter::Rotation => format!("θ {}°, M {moment_n_mm:.2} N·mm", rounded(*parameter)),
-        Parameter::LoadFactor => format!("load factor {}", rounded(*parameter)),
-    };
-    format!("{reached}, {n1} × {n2} elements in the model")
 }
 
 /// "AZIMUTH,ELEVATION".

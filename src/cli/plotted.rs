@@ -9,7 +9,7 @@ use crate::history::{redefined_probes, remove_redefined};
 use crate::journal::Portion;
 use crate::record::{Record, Report};
 use crate::scene::Scene;
-use crate::study::{TapeSpring, equilibria};
+use crate::study::equilibria;
 use crate::view::{PlottedRun, Quantity, curve_plot, load_probe, moment_rotation_plot, quantities_of, quantity_named};
 
 /// What `--x` and `--y` name.
@@ -27,7 +27,7 @@ impl Chosen {
 
     /// Both names, with the scene's own where one is not given.
     fn names(&self, scene: &Scene) -> [String; 2] {
-        let [parameter, response] = match TapeSpring::of_scene(scene) {
+        let [parameter, response] = match scene.end_rotation() {
             Some(_) => ["rotation", "moment"],
             None => ["load_factor", "load_factor"],
         };
@@ -77,7 +77,7 @@ impl PlottedLog {
         let mut records = gathered.records;
         remove_redefined(&redefined_probes(&read.log), &mut records);
         let drawn = match chosen.is_none() {
-            true if TapeSpring::of_scene(&read.scene).is_some() => Vec::new(),
+            true if read.scene.end_rotation().is_some() => Vec::new(),
             true => read.scene.probes.first().map(|probe| probe.name.clone()).into_iter().collect(),
             false => {
                 let quantities = chosen.quantities(path, &read.scene)?;
@@ -102,15 +102,15 @@ pub(super) fn curve(logs: &[PlottedLog], chosen: &Chosen) -> Result<Option<(Stri
     let runs: Vec<PlottedRun> =
         named.map(|(name, log)| PlottedRun { name, scene: &log.read.scene, records: &log.records }).collect();
     let title = if let [only] = &runs[..] { only.name.clone() } else { String::new() };
-    let springs = logs.iter().filter(|log| TapeSpring::of_scene(&log.read.scene).is_some()).count();
+    let turned = logs.iter().filter(|log| log.read.scene.end_rotation().is_some()).count();
     let drawn = if !chosen.is_none() {
         let quantities = logs.iter().map(|log| chosen.quantities(&log.path, &log.read.scene));
         let [x, y] = quantities.reduce(|first, next| next.and(first)).ok_or(Failure::NoCommonCurve)??;
         let file = format!("{}-over-{}.svg", y.in_file_name(), x.in_file_name());
         (file, curve_plot(&runs, &x, &y, &title)?)
-    } else if springs == logs.len() {
+    } else if turned == logs.len() {
         ("moment-rotation.svg".to_owned(), moment_rotation_plot(&runs, &title)?)
-    } else if springs > 0 {
+    } else if turned > 0 {
         return Err(Failure::NoCommonCurve);
     } else {
         let Some([x, y]) = load_probe(&runs) else {

@@ -3,7 +3,7 @@
 use super::fields::{Field, ShellFields};
 use super::samples::{SamplesError, SurfaceSamples, cells_of};
 use crate::scene::Scene;
-use crate::shell::{cross, dot, norm};
+use crate::shell::{add, cross, dot, norm, sub};
 use crate::spline::{Grid, Mesh, SurfacePoint, mid_surface_point};
 use crate::state::State;
 
@@ -61,6 +61,29 @@ pub fn coloured_surface(
     let image = [0, 1].map(|direction| of(field.mirrored([1.0; 3], direction)).signum());
     let shown = Shown { value: &value, image, quantity: field.title_of(component) };
     sampled(scene, &state.mesh, &state.displacement, cells_per_element, shown)
+}
+
+/// The shell of a state moved by `mode` (mm, one vector for each control point), with the motion relative to the largest as the
+/// value of a cell.
+///
+/// # Errors
+/// Where a displacement is not finite.
+pub fn mode_surface(
+    scene: &Scene,
+    state: &State,
+    mode: &[[f64; 3]],
+    cells_per_element: usize,
+) -> Result<SurfaceSamples, SamplesError> {
+    let motion = |at: [f64; 2]| {
+        let [to, from] = [mode, &[]].map(|moved| mid_surface_point(&state.mesh, moved, at).position);
+        norm(sub(to, from))
+    };
+    let moved: Vec<[f64; 3]> = state.displacement.iter().zip(mode).map(|(u, motion)| add(*u, *motion)).collect();
+    let shown = Shown { value: &motion, image: [1.0; 2], quantity: "motion in the mode, relative".to_owned() };
+    let mut samples = sampled(scene, &state.mesh, &moved, cells_per_element, shown)?;
+    let largest = samples.value_range().map_or(1.0, |[_, largest]| largest.max(f64::MIN_POSITIVE));
+    samples.cell_values.iter_mut().for_each(|value| *value /= largest);
+    Ok(samples)
 }
 
 fn sampled(

@@ -7,32 +7,44 @@
 //! | `deformed_surface` | the deformed shell as one |
 //! | `camera`, `colour`, `ticks` | projection, colours, round numbers |
 //! | `plot` | curves |
-//! | `mesh_picture` | the mesh as a picture |
+//! | `mesh_picture`, `marks`, `glyphs` | the mesh as a picture; supports, loads and the outline before, and their signs |
+//! | `drawing`, `raster` | shapes on a canvas, as SVG and as pixels |
+//! | `animation` | the mesh over the load steps as a GIF |
 //! | `mesh_history` | the mesh for viewers of logs |
 //! | `report` | runs as a page |
 //! | `vtu` | the mesh as drawn, for ParaView |
 //! | `export` | states in the formats of other programs |
 
+#[cfg(feature = "pictures")]
+mod animation;
 mod camera;
 mod colour;
 mod deformed_surface;
+mod drawing;
 mod export;
 mod fields;
+mod glyphs;
+mod marks;
 mod mesh_history;
 mod mesh_picture;
 #[cfg(feature = "pictures")]
 mod plot;
+#[cfg(feature = "pictures")]
+mod raster;
 mod report;
 mod samples;
 mod ticks;
 mod vtu;
 
+#[cfg(feature = "pictures")]
+pub use animation::{AnimationError, mesh_animation};
 pub use camera::ViewDirection;
-pub use deformed_surface::{coloured_surface, deformed_surface};
+pub use deformed_surface::{coloured_surface, deformed_surface, mode_surface};
 pub use export::{
     Instant, StatesOnMesh, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl, surface_vtu, time_steps,
 };
 pub use fields::{Field, ShellFields, fields_of};
+pub use marks::Marks;
 pub use mesh_history::{MESH_HISTORY_TOPIC, MeshHistory};
 pub use mesh_picture::{Picture, mesh_picture};
 #[cfg(feature = "pictures")]

@@ -33,7 +33,8 @@ fn folded_mesh() {
         let svg = mesh_picture(&samples, &Picture { direction, ..picture.clone() });
         keep(name, &svg);
         assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN") && !svg.contains("inf"));
-        assert_eq!(svg.matches("<path fill=\"#").count(), 120 * 32);
+        // The faces, and those of the colour bar.
+        assert_eq!(svg.matches("<path fill=\"#").count(), 120 * 32 + 64);
     }
 }
 

@@ -35,7 +35,7 @@ pub enum PlotError {
     #[error("there is no equilibrium to plot: the run has not finished its first load step")]
     NoEquilibrium,
     /// No moment over rotation.
-    #[error("only a tape spring whose ends turn has a moment to plot over a rotation")]
+    #[error("only a shell whose ends turn has a moment to plot over a rotation")]
     NoMoment,
     /// A number that no picture can show: axes would never be done with their marks.
     #[error(

@@ -21,16 +21,14 @@ const RIGHT: u32 = 28;
 const LEFT: u32 = 70;
 const LAW_DASHES: [u32; 2] = [7, 5];
 
-/// Plots the curves of runs of tape springs as SVG text: measured moments, the jumps; where all springs are the same, Wuest's law
-/// for uniform curvature (dashed) and the equal-energy plateau; below, elements of the models on a logarithmic axis. `title` is
-/// printed on top.
+/// Plots the curves of runs whose ends turn as SVG text: measured moments, the jumps; where all are of the same tape spring, Wuest's
+/// law for uniform curvature (dashed) and the equal-energy plateau; below, elements of the models on a logarithmic axis. `title`
+/// is printed on top.
 ///
 /// # Errors
 /// Where a run has no equilibrium yet, or no end that turns.
 pub fn moment_rotation_plot(runs: &[PlottedRun], title: &str) -> Result<String, PlotError> {
     let paths = runs.iter().map(PlottedRun::points).collect::<Result<Vec<_>, _>>()?;
-    let springs = runs.iter().map(|run| TapeSpring::of_scene(run.scene).ok_or(PlotError::NoMoment));
-    let springs = springs.collect::<Result<Vec<_>, _>>()?;
     let first = runs.first().ok_or(PlotError::NoEquilibrium)?;
     let [rotation, moment] = ["rotation", "moment"].map(|name| quantity_named(first.scene, name));
     let (rotation, moment) = rotation.zip(moment).ok_or(PlotError::NoMoment)?;
@@ -40,10 +38,11 @@ pub fn moment_rotation_plot(runs: &[PlottedRun], title: &str) -> Result<String, 
     };
     let lines = runs.iter().zip(&paths).enumerate().map(line).collect::<Result<Vec<_>, PlotError>>()?;
     let rotations = Axis::showing(lines.iter().flat_map(|line| line.points.iter().map(|point| point.at.0)));
-    let spring = springs.first().filter(|first| springs.iter().all(|spring| spring == *first));
+    let spring = TapeSpring::of_scene(first.scene);
+    let spring = spring.filter(|_| runs.iter().all(|run| TapeSpring::of_scene(run.scene) == spring));
     on_sheet(SIZE, |area| {
         let (upper, lower) = area.split_vertically(UPPER_HEIGHT * PX);
-        draw_moments(&upper, &rotations, &lines, spring, runs, title)?;
+        draw_moments(&upper, &rotations, &lines, spring.as_ref(), runs, title)?;
         draw_elements(&lower, &rotations, &lines, &paths)
     })
 }
