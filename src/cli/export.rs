@@ -10,7 +10,7 @@ use super::export_choice::{Format, StepRange, Steps, Target, Times, chosen_field
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::scene_at;
 use super::output::{file_name, path_in_line, print, refuse_what_is_there, write_files};
-use super::plot::named;
+use super::pictured::named;
 use crate::history::States;
 use crate::record::{Parameter, Record};
 use crate::scene::Scene;

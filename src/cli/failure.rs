@@ -9,7 +9,7 @@ use crate::printable::one_line;
 use crate::record::Parameter;
 use crate::scene::{Scene, Stage};
 use crate::study::{AccuracyError, BenchError, CalibrationError, ConvergenceError, TaskError};
-use crate::view::{PlotError, SamplesError};
+use crate::view::{AnimationError, PlotError, SamplesError};
 
 /// Stopped by a signal; nothing is wrong.
 pub(super) const INTERRUPTED: u8 = 75;
@@ -59,10 +59,24 @@ pub(super) enum Failure {
     Plot(#[from] PlotError),
     #[error(transparent)]
     Samples(#[from] SamplesError),
+    #[error(transparent)]
+    Animation(#[from] AnimationError),
+    #[error("{frames} frames are more than the {most} of an animation: take fewer load steps with --every {enough}")]
+    TooManyFrames { frames: usize, most: usize, enough: u64 },
     #[error("no help on `{topic}`; there is help on {}{}", known.join(", "), did_you_mean(topic, known))]
     NoSuchTopic { topic: String, known: Vec<String> },
     #[error("no field `{field}`; there are {}{}", known.join(", "), did_you_mean(field, known))]
     NoSuchField { field: String, known: Vec<String> },
+    #[error("{} has no `{quantity}` to draw; there are {}{}", log.display(), known.join(", "), did_you_mean(quantity, known))]
+    NoSuchQuantity { log: PathBuf, quantity: String, known: Vec<String> },
+    #[error("{option} is for the mesh, which is drawn of one log, and {logs} are given")]
+    MeshOfOneLog { option: &'static str, logs: usize },
+    #[error(
+        "these logs have no curve in common, since the ends of some turn and those of others do not: choose one with --x and --y"
+    )]
+    NoCommonCurve,
+    #[error("{} has no probe to draw the load factor over: choose a curve with --x and --y", log.display())]
+    NoProbe { log: PathBuf },
     #[error(
         "{} is one file, and {steps} load steps are chosen: name a folder, or one step with --steps", file.display()
     )]
@@ -151,6 +165,11 @@ impl Failure {
             | Failure::WrongStudy { .. }
             | Failure::NoSuchTopic { .. }
             | Failure::NoSuchField { .. }
+            | Failure::NoSuchQuantity { .. }
+            | Failure::MeshOfOneLog { .. }
+            | Failure::NoCommonCurve
+            | Failure::TooManyFrames { .. }
+            | Failure::NoProbe { .. }
             | Failure::StepsInOneFile { .. }
             | Failure::MeshesInOneFile { .. }
             | Failure::FieldsForViewers { .. }

@@ -94,15 +94,23 @@ impl ReadLog {
     }
 }
 
-/// The stages of a run for tables, curves and summaries: of the probes of each the first alone, but all of the last ones.
+/// The stages of a run for tables, curves and summaries: of the probes of each the first and those that are wanted, but all of the
+/// last ones.
 #[derive(Default)]
 pub(super) struct Gathered {
     pub(super) records: Vec<Record>,
+    /// Names of the wanted probes.
+    wanted: Vec<String>,
     /// The last record that has probes.
     probed: Option<usize>,
 }
 
 impl Gathered {
+    /// Of the probes of each stage, those with these names are wanted too.
+    pub(super) fn with_probes(wanted: Vec<String>) -> Self {
+        Self { wanted, ..Self::default() }
+    }
+
     /// Takes the stages that follow.
     pub(super) fn take(&mut self, portion: &Portion) {
         for entry in portion.entries() {
@@ -110,7 +118,8 @@ impl Gathered {
                 && let Some(before) = self.probed.replace(self.records.len())
             {
                 let probes = &mut self.records[before].report.probes;
-                probes.truncate(1);
+                let mut is_first = true;
+                probes.retain(|reading| std::mem::take(&mut is_first) || self.wanted.contains(&reading.name));
                 probes.shrink_to_fit();
             }
             self.records.push(entry.record.clone());

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
+//! | `plotted`, `pictured`, `animated` | logs, as curves are drawn of them; a state as a picture; load steps as an animation |
 //! | `report`, `compare` | runs as one page, and next to each other in a table |
 //! | `export`, `export_choice` | states in the formats of other programs; which of them, and of what |
 //! | `recover`, `thin` | a log written again |
@@ -20,6 +21,7 @@
 //! | `trace` | iterates of replayed stages |
 //! | `output`, `failure` | streams and files; what can stop a command |
 
+mod animated;
 mod asked;
 mod bench;
 mod bisect;
@@ -36,7 +38,9 @@ mod json_line;
 mod load_step;
 mod log_file;
 mod output;
+mod pictured;
 mod plot;
+mod plotted;
 mod probe_table;
 mod progress;
 mod recover;

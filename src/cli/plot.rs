@@ -1,37 +1,39 @@
-//! `foldline plot`: pictures from a log.
+//! `foldline plot`: pictures from logs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::animated::animation;
 use super::failure::{EXIT_CODES, Failure};
-use super::log_file::{Gathered, first_and_last, read_through};
+use super::log_file::first_and_last;
 use super::output::{file_name, path_in_line, print, write_files};
-use crate::history::{States, redefined_probes, remove_redefined};
-use crate::record::{Parameter, Record, Report};
-use crate::scene::Scene;
-use crate::spline::Mesh;
-use crate::state::State;
-use crate::study::{TapeSpring, equilibria};
-use crate::units::rounded;
-use crate::view::{
-    Field, Picture, ViewDirection, coloured_surface, deformed_surface, fields_of, load_probe_plot, mesh_picture,
-    moment_rotation_plot, vtu,
-};
+use super::pictured::{Look, pictured};
+use super::plotted::{Chosen, PlottedLog, curve};
+use crate::history::States;
+use crate::record::Report;
+use crate::view::{ViewDirection, mesh_picture, vtu};
 
-/// Cells along a picture that look smooth.
-const SMOOTH: usize = 120;
-
-/// Draw the moment–rotation curve, or the load factor over the first probe, and the deformed mesh of a log
+/// Draw the moment–rotation curve, or the load factor over the first probe, and the deformed mesh of a log; of several logs their
+/// curves in one picture
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
-    /// Log to read (MCAP)
-    log: PathBuf,
+    /// Logs to read (MCAP); the mesh is drawn of one
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
     /// Folder for moment-rotation.svg (other shells: load-probe.svg, the load factor over the first probe), mesh.svg and
-    /// mesh.vtu [default: the log's name without .mcap]
+    /// mesh.vtu [default: the first log's name without .mcap]
     #[arg(short, long, value_name = "DIR", value_parser = file_name())]
     output: Option<PathBuf>,
+    /// Draw a curve over this instead (Y-over-X.svg, without the mesh): a probe, or a number of the reports such as rotation,
+    /// load_factor, strain_energy, elements or time; with a minus in front, its other sign; a wrong name lists all of them
+    /// [default: the rotation or the load factor]
+    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true, conflicts_with_all = ["step", "view", "field"])]
+    x: Option<String>,
+    /// Draw this upwards [default: the moment or the load factor]
+    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true, conflicts_with_all = ["step", "view", "field"])]
+    y: Option<String>,
     /// Show the mesh at the end of this load step [default: the last one]
     #[arg(long, value_name = "K")]
     step: Option<u64>,
@@ -42,124 +44,86 @@ pub(super) struct Arguments {
     /// all of them [default: the larger bending strain]
     #[arg(long, value_name = "FIELD[.COMPONENT]")]
     field: Option<String>,
+    /// Draw the mesh over the load steps instead, as an animation (mesh.gif): one view, and colours over the values of all steps
+    #[arg(long, conflicts_with_all = ["x", "y", "step"])]
+    animate: bool,
+    /// Animate every N-th load step, and the last [default: up to 40 that are evenly spread, and those around jumps]
+    #[arg(long, value_name = "N", requires = "animate", value_parser = clap::value_parser!(u64).range(1..))]
+    every: Option<u64>,
 }
 
+/// A file with its content.
+type File = (String, Vec<u8>);
+
 impl Arguments {
-    /// Reads the log, draws, and names the files.
-    pub(super) fn run(self) -> Result<(), Failure> {
-        let Self { log, output, step, view, field } = self;
-        let (mut gathered, mut shown) = (Gathered::default(), None);
-        let read = read_through(&log, |portion| {
-            let is_wanted = |report: &Report| step.is_none_or(|step| report.step == step);
+    /// Reads the logs, draws, and names the files.
+    pub(super) fn run(mut self) -> Result<(), Failure> {
+        let folder = self.output.take().unwrap_or_else(|| self.logs[0].with_extension(""));
+        let chosen = Chosen { x: self.x.take(), y: self.y.take() };
+        let files = match &self.logs[..] {
+            [log] if self.animate => vec![("mesh.gif".to_owned(), animation(log, self.every, &self.look())?)],
+            [log] if chosen.is_none() => self.curve_and_mesh(log, &chosen)?,
+            logs => {
+                self.refuse_what_is_of_one_log()?;
+                let logs = logs.iter().map(|log| PlottedLog::read(log, &chosen, |_| {}));
+                curve(&logs.collect::<Result<Vec<_>, _>>()?, &chosen)?.into_iter().collect()
+            }
+        };
+        let files: Vec<_> = files.into_iter().map(|(file, content)| (folder.join(file), content)).collect();
+        write_files(&files)?;
+        print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
+    }
+
+    /// How the mesh is shown.
+    fn look(&self) -> Look<'_> {
+        Look { direction: self.view.unwrap_or_default(), field: self.field.as_deref() }
+    }
+
+    /// What only the mesh of one log has a use for.
+    fn refuse_what_is_of_one_log(&self) -> Result<(), Failure> {
+        let given = [
+            ("--animate", self.animate),
+            ("--step", self.step.is_some()),
+            ("--view", self.view.is_some()),
+            ("--field", self.field.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(Failure::MeshOfOneLog { option, logs: self.logs.len() }),
+            None => Ok(()),
+        }
+    }
+
+    /// The pictures of one log. Everything is drawn before anything is written.
+    fn curve_and_mesh(&self, log: &Path, chosen: &Chosen) -> Result<Vec<File>, Failure> {
+        let mut shown = None;
+        let plotted = PlottedLog::read(log, chosen, |portion| {
+            let is_wanted = |report: &Report| self.step.is_none_or(|step| report.step == step);
             if let Some(last) = portion.entries().iter().rfind(|entry| is_wanted(&entry.record.report)) {
                 let ordinal = last.record.commit.ordinal as usize;
                 shown = Some((ordinal, last.record.report.clone(), portion.log().state(ordinal)));
             }
-            gathered.take(portion);
         })?;
-        let mut records = std::mem::take(&mut gathered.records);
-        remove_redefined(&redefined_probes(&read.log), &mut records);
-        let folder = output.unwrap_or_else(|| log.with_extension(""));
-        let name = log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let Some((ordinal, report, state)) = shown else {
-            return Err(match step {
-                Some(step) => Failure::NoSuchStep { log, step, known: first_and_last(records.iter()) },
+            return Err(match self.step {
+                Some(step) => {
+                    let known = first_and_last(plotted.records.iter());
+                    Failure::NoSuchStep { log: log.to_path_buf(), step, known }
+                }
                 None => crate::view::PlotError::NoEquilibrium.into(),
             });
         };
-        let unprobed = equilibria(&records).any(|record| lacks_first_probe(&read.scene, &record.report));
-        // Readings and states that the log has not are made from the states that it has.
-        let read = if unprobed || state.is_err() { read.whole(&log)? } else { read };
-        if unprobed {
-            records = read.records_of_scene(&log)?;
-        }
-        let unusable = |source| Failure::WrongLog { log: log.clone(), source: Box::new(source) };
+        let logs = [plotted];
+        let mut files: Vec<File> = curve(&logs, chosen)?.into_iter().collect();
+        let [PlottedLog { read, .. }] = logs;
+        // States that the log has not are made from those that it has.
+        let read = if state.is_err() { read.whole(log)? } else { read };
+        let unusable = |source| Failure::WrongLog { log: log.to_path_buf(), source: Box::new(source) };
         let state = state.or_else(|_| States::of(&read.log).at(ordinal)).map_err(unusable)?;
-        let picture = Picture {
-            direction: view.unwrap_or_default(),
-            title: format!("{name}, load step {}", report.step),
-            subtitle: subtitle(&report),
-            ..Picture::default()
-        };
-        // Everything is drawn before anything is written.
-        let files = curve(&read.scene, &records, &name)?.into_iter().chain(surface(
-            &read.scene,
-            &state,
-            &picture,
-            field.as_deref(),
-        )?);
-        let files: Vec<_> = files.map(|(file, text)| (folder.join(file), text.into_bytes())).collect();
-        write_files(&files)?;
-        print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
+        let (samples, picture) = pictured(log, &read.scene, &state, &report, &self.look())?;
+        files.push(("mesh.svg".to_owned(), mesh_picture(&samples, &picture).into_bytes()));
+        files.push(("mesh.vtu".to_owned(), vtu(&samples).into_bytes()));
+        Ok(files)
     }
-}
-
-/// The curve of a run, if it has one.
-fn curve(scene: &Scene, records: &[Record], name: &str) -> Result<Option<(&'static str, String)>, Failure> {
-    Ok(match TapeSpring::of_scene(scene) {
-        Some(_) => Some(("moment-rotation.svg", moment_rotation_plot(scene, records, name)?)),
-        None => load_probe_plot(scene, records, name)?.map(|text| ("load-probe.svg", text)),
-    })
-}
-
-/// The deformed surface as a picture and for ParaView.
-fn surface(
-    scene: &Scene,
-    state: &State,
-    picture: &Picture,
-    field: Option<&str>,
-) -> Result<[(&'static str, String); 2], Failure> {
-    let State { mesh, displacement, .. } = state;
-    let samples = match field {
-        None => deformed_surface(scene, mesh, displacement, cells_per_element(mesh))?,
-        Some(name) => {
-            let (field, component) = named(scene, name)?;
-            coloured_surface(scene, state, &field, component, cells_per_element(mesh))?
-        }
-    };
-    Ok([("mesh.svg", mesh_picture(&samples, picture)), ("mesh.vtu", vtu(&samples))])
-}
-
-/// The field of this name, with the component that is named behind a point.
-pub(super) fn named(scene: &Scene, name: &str) -> Result<(Field, Option<usize>), Failure> {
-    let (of_field, of_component) = name.split_once('.').map_or((name, None), |(field, part)| (field, Some(part)));
-    let fields = fields_of(scene);
-    let found = fields.iter().find(|field| field.name == of_field).and_then(|field| match of_component {
-        Some(component) => Some((field.clone(), Some(field.components.iter().position(|known| *known == component)?))),
-        // One component is the value itself; of more the length is shown.
-        None => Some((field.clone(), (field.components.len() == 1).then_some(0))),
-    });
-    found.ok_or_else(|| Failure::NoSuchField { field: name.to_owned(), known: fields.iter().map(listed).collect() })
-}
-
-/// A field with its components: `bending_moment.11/22/12`.
-fn listed(field: &Field) -> String {
-    match field.components {
-        [_] => field.name.clone(),
-        components => format!("{}.{}", field.name, components.join("/")),
-    }
-}
-
-/// Whether a report has no reading of the probe that is drawn, as where the run began without it.
-fn lacks_first_probe(scene: &Scene, report: &Report) -> bool {
-    let first = scene.probes.first().filter(|_| TapeSpring::of_scene(scene).is_none());
-    first.is_some_and(|first| report.probes.iter().all(|reading| reading.name != first.name))
-}
-
-/// Cells that make a coarse mesh look smooth and a fine one no larger than need be.
-pub(super) fn cells_per_element(mesh: &Mesh) -> [usize; 2] {
-    let [n1, n2] = mesh.element_counts();
-    [SMOOTH.div_ceil(n1.max(n2)).clamp(2, 12); 2]
-}
-
-/// The numbers of the state that a picture shows.
-fn subtitle(report: &Report) -> String {
-    let Report { parameter, moment_n_mm, elements: [n1, n2], .. } = report;
-    let reached = match report.driven_by {
-        Parameter::Rotation => format!("θ {}°, M {moment_n_mm:.2} N·mm", rounded(*parameter)),
-        Parameter::LoadFactor => format!("load factor {}", rounded(*parameter)),
-    };
-    format!("{reached}, {n1} × {n2} elements in the model")
 }
 
 /// "AZIMUTH,ELEVATION".

@@ -8,13 +8,14 @@ use super::asked::{Asked, Ends};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::scene_at;
 use super::output::{file_name, path_in_line, print, refuse_what_is_there, write_files};
-use super::plot::cells_per_element;
+use super::pictured::cells_per_element;
 use crate::history::{StabilityReport, States, stability_at};
 use crate::record::Record;
 use crate::scene::Scene;
 use crate::shell::{add, norm, scaled, sub};
-use crate::units::{count, place, unsigned_zero};
-use crate::view::{Picture, deformed_surface, mesh_picture, vtu};
+use crate::state::State;
+use crate::units::{count, place, significant, unsigned_zero};
+use crate::view::{Marks, Picture, mesh_picture, mode_surface, vtu};
 
 /// Largest motion of a mode in its picture, relative to the size of the shell.
 const SHOWN_AMPLITUDE: f64 = 0.05;
@@ -28,7 +29,8 @@ pub(super) struct Arguments {
     /// Only the equilibrium that this load step ended with, with its mode
     #[arg(long, value_name = "K")]
     step: Option<u64>,
-    /// Folder for mode.svg and mode.vtu: the shell of --step with the mode added, as large as 5 % of the shell
+    /// Folder for mode.svg and mode.vtu: the shell of --step moved by the mode, whose size is arbitrary: it is drawn as 5 % of the
+    /// shell
     #[arg(short, long, value_name = "DIR", requires = "step", value_parser = file_name())]
     output: Option<PathBuf>,
 }
@@ -110,18 +112,20 @@ fn draw(folder: &Path, scene: &Scene, record: &Record, report: &StabilityReport)
     let first = mesh.control_points[0];
     let corner = [0, 1, 2].map(|c| first[c] / first[3]);
     let size = points.map(|point| norm(sub(point, corner))).fold(0.0, f64::max);
-    let moved: Vec<[f64; 3]> = report
-        .state
-        .displacement
-        .iter()
-        .zip(&report.mode.shape)
-        .map(|(u, mode)| add(*u, scaled(SHOWN_AMPLITUDE * size, *mode)))
-        .collect();
-    let samples = deformed_surface(scene, mesh, &moved, cells_per_element(mesh))?;
-    let at = record.report.driven_by.shown(record.report.parameter);
+    let mode: Vec<[f64; 3]> = report.mode.shape.iter().map(|mode| scaled(SHOWN_AMPLITUDE * size, *mode)).collect();
+    let displacement = report.state.displacement.iter().zip(&mode).map(|(u, mode)| add(*u, *mode)).collect();
+    let moved = State { displacement, ..report.state.clone() };
+    let samples = mode_surface(scene, &report.state, &mode, cells_per_element(mesh))?;
+    let at = record.report.driven_by.shown_short(record.report.parameter);
+    let eigenvalue = significant(report.mode.eigenvalue, 4);
     let picture = Picture {
-        title: format!("Softest mode, load step {}", record.report.step),
-        subtitle: format!("at {at}, eigenvalue {:.3e} N/mm; not to scale", report.mode.eigenvalue),
+        title: format!("Mode of the lowest eigenvalue, {eigenvalue} N/mm"),
+        subtitle: format!(
+            "load step {}, {at}; a mode has no size: its motion is drawn as {:.0} % of the shell",
+            record.report.step,
+            100.0 * SHOWN_AMPLITUDE
+        ),
+        marks: Marks::of_mode(scene, &report.state, &moved),
         ..Picture::default()
     };
     let texts = [mesh_picture(&samples, &picture), vtu(&samples)];

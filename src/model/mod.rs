@@ -86,6 +86,7 @@ pub use placement::Placement;
 pub(crate) use quadrature::PointCounts;
 pub use reactions::{Exerted, PointForces};
 pub(crate) use rigid_motion::{HELD, free_motions};
+pub(crate) use scene_supports::supports_of;
 pub use start::starting_mesh;
 pub use supports::Supports;
 pub(crate) use tables::{BATCH, LANES};

@@ -45,7 +45,7 @@ pub use convergence::{ConvergenceError, ConvergenceRow, check_spring, converge};
 pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;
-pub use path::{Passed, PathPoint, Snap, equilibria, equilibrium_path, snaps};
+pub use path::{OnPath, Passed, PathPoint, Snap, equilibria, equilibrium_path, records_on_path, snaps};
 pub use speed_up::{Errors, MeshPoint, SpeedUp, error_of_finer, speed_up};
 pub use study_file::{Adaptive, Family, Planned, ReferenceMesh, Role, Structure, StudyError, StudyFile};
 pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, StageWork, Summary, WarningCount};

@@ -1,6 +1,6 @@
 //! The equilibrium path of a run: which of its stages are points of the moment–rotation curve, and where it jumped.
 
-use crate::record::{CriticalPoint, Outcome, Record};
+use crate::record::{CriticalPoint, Outcome, Record, Report};
 
 /// A point of the moment–rotation curve: the last equilibrium of a load step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,43 +54,66 @@ pub struct Snap {
     pub energy_released_n_mm: Option<f64>,
 }
 
-/// Extracts the moment–rotation curve: the last equilibrium of every load step, and where a step jumped after it had
-/// found one (on a finer mesh), the one before the jump too. What a coarser mesh found where the finer one jumps before it is
-/// no part of it.
-pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
-    let mut path: Vec<PathPoint> = Vec::new();
-    for report in equilibria(records).map(|record| &record.report) {
+/// An equilibrium of the path of a run, in the record of its stage.
+#[derive(Clone, Copy, Debug)]
+pub struct OnPath<'r> {
+    /// The record.
+    pub record: &'r Record,
+    /// Whether the shell jumped to get here.
+    pub jumped: bool,
+    /// What the path passed in this load step, and the first equilibrium behind it.
+    pub passed: Option<(CriticalPoint, &'r Report)>,
+}
+
+/// Extracts the equilibria of the path: the last one of every load step, and where a step jumped after it had found one (on a
+/// finer mesh), the one before the jump too. What a coarser mesh found where the finer one jumps before it is no part of it.
+pub fn records_on_path(records: &[Record]) -> Vec<OnPath<'_>> {
+    let mut path: Vec<OnPath> = Vec::new();
+    for record in equilibria(records) {
+        let report = &record.report;
         if report.returned_from().is_some() {
-            while path.last().is_some_and(|last| last.parameter >= report.parameter && !last.jumped) {
+            while path.last().is_some_and(|last| last.record.report.parameter >= report.parameter && !last.jumped) {
                 path.pop();
             }
         }
-        let same_step = path.last().is_some_and(|last| last.step == report.step);
+        let same_step = path.last().is_some_and(|last| last.record.report.step == report.step);
         let jumped_before = same_step && path.last().is_some_and(|last| last.jumped);
         let mut passed_before = None;
         if same_step && (jumped_before || !report.jumped) {
             passed_before = path.pop().and_then(|last| last.passed);
         }
-        let probe = report.probes.first().map(|reading| reading.value);
-        let passed = report.critical_point.map(|critical| Passed {
-            critical,
-            parameter: report.parameter,
-            moment_n_mm: report.moment_n_mm,
-            probe,
-        });
-        path.push(PathPoint {
+        let passed = report.critical_point.map(|critical| (critical, report)).or(passed_before);
+        path.push(OnPath { record, jumped: report.jumped || jumped_before, passed });
+    }
+    path
+}
+
+/// Extracts the moment–rotation curve from the equilibria of the path.
+pub fn equilibrium_path(records: &[Record]) -> Vec<PathPoint> {
+    records_on_path(records).iter().map(PathPoint::of).collect()
+}
+
+impl PathPoint {
+    fn of(OnPath { record, jumped, passed }: &OnPath) -> Self {
+        let report = &record.report;
+        let probe = |report: &Report| report.probes.first().map(|reading| reading.value);
+        Self {
             step: report.step,
             parameter: report.parameter,
             moment_n_mm: report.moment_n_mm,
             strain_energy_n_mm: report.strain_energy_n_mm,
             elements: report.elements,
             negative_pivots: report.negative_pivots,
-            jumped: report.jumped || jumped_before,
-            probe,
-            passed: passed.or(passed_before),
-        });
+            jumped: *jumped,
+            probe: probe(report),
+            passed: passed.map(|(critical, report)| Passed {
+                critical,
+                parameter: report.parameter,
+                moment_n_mm: report.moment_n_mm,
+                probe: probe(report),
+            }),
+        }
     }
-    path
 }
 
 /// Extracts the jumps of a run, in order, at most one for each load step. A jump in the first solve of `records` counts

@@ -36,10 +36,22 @@ pub(super) struct Projected {
     pub(super) near: f64,
 }
 
+impl Projected {
+    /// Half way to another point.
+    pub(super) fn middle(&self, other: &Self) -> Self {
+        let half = |one: f64, other: f64| 0.5 * (one + other);
+        Self { x: half(self.x, other.x), y: half(self.y, other.y), near: half(self.near, other.near) }
+    }
+}
+
 impl Camera {
     /// Looks from `direction` so that `points` fill the width of the box `[left, top, width, most height]` (or its
     /// height, where that is less). Gives the camera and the height that the points take, pixels.
-    pub(super) fn fitted(direction: ViewDirection, points: &[[f64; 3]], frame: [f64; 4]) -> (Self, f64) {
+    pub(super) fn fitted(
+        direction: ViewDirection,
+        points: impl Iterator<Item = [f64; 3]>,
+        frame: [f64; 4],
+    ) -> (Self, f64) {
         let (sin_a, cos_a) = direction.azimuth_deg.to_radians().sin_cos();
         let (sin_e, cos_e) = direction.elevation_deg.to_radians().sin_cos();
         let mut camera = Self {
@@ -50,7 +62,7 @@ impl Camera {
             offset: [0.0, 0.0],
         };
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in points.iter().map(|point| camera.project(*point)) {
+        for point in points.map(|point| camera.project(point)) {
             for (k, value) in [point.x, point.y].into_iter().enumerate() {
                 low[k] = low[k].min(value);
                 high[k] = high[k].max(value);

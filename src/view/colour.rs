@@ -14,6 +14,13 @@ pub(super) struct Colour(pub(super) [f64; 3]);
 impl Colour {
     /// For cells without a value.
     pub(super) const NONE: Colour = Colour([0.75, 0.75, 0.75]);
+    pub(super) const INK: Colour = Colour([0.102, 0.102, 0.102]);
+    pub(super) const WHITE: Colour = Colour([1.0, 1.0, 1.0]);
+    /// Of the shell as it was.
+    pub(super) const GREY: Colour = Colour([0.45, 0.45, 0.45]);
+    /// Of loads, and of motions that supports are given; neither is in the map.
+    pub(super) const LOAD: Colour = Colour([0.85, 0.16, 0.11]);
+    pub(super) const MOTION: Colour = Colour([0.93, 0.47, 0.0]);
 
     /// The colour of `fraction`, from 0 to 1; beyond, the end colours.
     pub(super) fn viridis(fraction: f64) -> Self {
@@ -30,14 +37,10 @@ impl Colour {
         )
     }
 
-    /// The colour under `light` from 0 (darker) through ½ (as it is) to 1 (brighter).
+    /// The colour under `light` from 0 (darkest) to 1 (as it is).
     pub(super) fn lit(self, light: f64) -> Self {
-        const DARKEST: f64 = 0.25;
-        const BRIGHTEST: f64 = 0.26;
-        let above = (2.0 * light - 1.0).clamp(-1.0, 1.0);
-        Self(self.0.map(|channel| {
-            if above < 0.0 { channel * (1.0 + DARKEST * above) } else { channel + (1.0 - channel) * BRIGHTEST * above }
-        }))
+        const DARKEST: f64 = 0.35;
+        Self(self.0.map(|channel| channel * (1.0 - DARKEST * (1.0 - light.clamp(0.0, 1.0)))))
     }
 
     /// Perceived lightness from 0 to 1 (Rec. 709 weights on sRGB values: good enough to choose ink by).
@@ -46,9 +49,14 @@ impl Colour {
         0.2126 * red + 0.7152 * green + 0.0722 * blue
     }
 
+    /// Red, green and blue from 0 to 255.
+    pub(super) fn bytes(self) -> [u8; 3] {
+        self.0.map(|channel| (channel * 255.0).round() as u8)
+    }
+
     /// As `#rrggbb`.
     pub(super) fn hex(self) -> String {
-        let [red, green, blue] = self.0.map(|channel| (channel * 255.0).round() as u8);
+        let [red, green, blue] = self.bytes();
         format!("#{red:02x}{green:02x}{blue:02x}")
     }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::fields::{Field, ShellFields};
 use super::samples::{SamplesError, SurfaceSamples, cells_of};
 use crate::scene::Scene;
-use crate::shell::{cross, dot, norm};
+use crate::shell::{add, cross, dot, norm, sub};
 use crate::spline::{Grid, LineBasis, Mesh, SurfaceBasis, SurfacePoint, position_on_lines};
 use crate::state::State;
 
@@ -64,6 +64,29 @@ pub fn coloured_surface(
     let image = [0, 1].map(|direction| of(field.mirrored([1.0; 3], direction)).signum());
     let shown = Shown { value: &value, image, quantity: field.title_of(component) };
     sampled(scene, &state.mesh, &state.displacement, cells_per_element, shown)
+}
+
+/// The shell of a state moved by `mode` (mm, one vector for each control point), with the motion relative to the largest as the
+/// value of a cell.
+///
+/// # Errors
+/// Where a displacement is not finite.
+pub fn mode_surface(
+    scene: &Scene,
+    state: &State,
+    mode: &[[f64; 3]],
+    cells_per_element: [usize; 2],
+) -> Result<SurfaceSamples, SamplesError> {
+    let motion = |lines: [&LineBasis; 2]| {
+        let [to, from] = [mode, &[]].map(|moved| position_on_lines(&state.mesh, moved, lines));
+        norm(sub(to, from))
+    };
+    let moved: Vec<[f64; 3]> = state.displacement.iter().zip(mode).map(|(u, motion)| add(*u, *motion)).collect();
+    let shown = Shown { value: &motion, image: [1.0; 2], quantity: "motion in the mode, relative".to_owned() };
+    let mut samples = sampled(scene, &state.mesh, &moved, cells_per_element, shown)?;
+    let largest = samples.value_range().map_or(1.0, |[_, largest]| largest.max(f64::MIN_POSITIVE));
+    samples.cell_values.iter_mut().for_each(|value| *value /= largest);
+    Ok(samples)
 }
 
 fn sampled(

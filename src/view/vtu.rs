@@ -4,8 +4,8 @@
 
 use std::fmt::Write as _;
 
+use super::drawing::escaped;
 use super::export::{OPENING, XmlArray};
-use super::mesh_picture::escaped;
 use super::samples::SurfaceSamples;
 
 /// VTK cell types.

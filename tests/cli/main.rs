@@ -7,6 +7,7 @@ mod export;
 mod extremes;
 mod folded;
 mod pictures;
+mod plot;
 mod progress;
 mod report;
 mod stability;

@@ -1,6 +1,10 @@
 //! Pictures of made-up runs and surfaces. `FOLDLINE_PICTURES=DIR` keeps them, to be looked at.
 
-use foldline::view::{Picture, PlotError, ViewDirection, mesh_picture, moment_rotation_plot, vtu};
+use foldline::record::Record;
+use foldline::scene::{Material, Scene};
+use foldline::view::{
+    Picture, PlotError, PlottedRun, ViewDirection, curve_plot, mesh_picture, moment_rotation_plot, quantity_named, vtu,
+};
 
 use crate::folded;
 use crate::synthetic::{self, CURVE, Script};
@@ -29,7 +33,8 @@ fn folded_mesh() {
         let svg = mesh_picture(&samples, &Picture { direction, ..picture.clone() });
         keep(name, &svg);
         assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN") && !svg.contains("inf"));
-        assert_eq!(svg.matches("<path fill=\"#").count(), 120 * 32);
+        // The faces, and those of the colour bar.
+        assert_eq!(svg.matches("<path fill=\"#").count(), 120 * 32 + 64);
     }
 }
 
@@ -40,9 +45,15 @@ fn folded_mesh_for_paraview() {
     assert!(xml.contains("NumberOfCells=\"3870\""));
 }
 
+/// A run as it is drawn.
+fn run<'r>(name: &str, scene: &'r Scene, records: &'r [Record]) -> PlottedRun<'r> {
+    PlottedRun { name: name.to_owned(), scene, records }
+}
+
 #[test]
 fn moment_over_rotation() {
-    let svg = moment_rotation_plot(&synthetic::scene(), &synthetic::records(), "baseline, adaptive").unwrap();
+    let (scene, records) = (synthetic::scene(), synthetic::records());
+    let svg = moment_rotation_plot(&[run("baseline", &scene, &records)], "baseline, adaptive").unwrap();
     keep("curve.svg", &svg);
     for words in ["end moment M (N·mm)", "rotation of each end θ (degrees)", "elements", "snap at 9.62°", "this run"]
     {
@@ -51,16 +62,59 @@ fn moment_over_rotation() {
 }
 
 #[test]
+fn moments_of_several_runs_with_the_law_where_it_holds_for_all() {
+    let (scene, records, coarse) = (synthetic::scene(), synthetic::records(), synthetic::coarse_records());
+    let mut thicker = scene.clone();
+    if let Material::Isotropic { thickness_mm, .. } = &mut thicker.material {
+        *thickness_mm = 0.12;
+    }
+    let of_one_spring = [run("fine", &scene, &records), run("coarse", &scene, &coarse)];
+    let of_two = [run("fine", &scene, &records), run("thicker", &thicker, &coarse)];
+    let [same, other] = [of_one_spring, of_two].map(|runs| moment_rotation_plot(&runs, "").unwrap());
+    keep("curves.svg", &same);
+    keep("curves-of-two-springs.svg", &other);
+    for words in ["fine", "coarse", "jump", "Wuest 1954", "equal-energy plateau"] {
+        assert_eq!(same.matches(&format!("\n{words}")).count(), 1, "{words}");
+    }
+    assert!(!same.contains("this run") && !other.contains("Wuest") && !other.contains("plateau"));
+}
+
+#[test]
+fn any_quantity_over_any() {
+    let (scene, records) = (synthetic::scene(), synthetic::records());
+    let runs = [run("baseline", &scene, &records)];
+    let quantity = |name: &str| quantity_named(&scene, name).unwrap();
+    for [x, y] in [["rotation", "strain_energy"], ["-rotation", "moment"], ["time", "elements"], ["step", "iterations"]]
+    {
+        let [x, y] = [x, y].map(quantity);
+        let svg = curve_plot(&runs, &x, &y, "baseline").unwrap();
+        keep(&format!("{}-over-{}.svg", y.in_file_name(), x.in_file_name()), &svg);
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+    let svg = curve_plot(&runs, &quantity("-rotation_deg"), &quantity("strain_energy"), "baseline").unwrap();
+    for words in ["−rotation of each end θ (°)", "strain energy (N·mm)", "−10", "jump"] {
+        assert!(svg.contains(&format!("\n{words}\n")), "{words}");
+    }
+    let nothing = curve_plot(&runs, &quantity("rotation"), &quantity("path_length"), "baseline").unwrap_err();
+    assert_eq!(
+        nothing.to_string(),
+        "no equilibrium of baseline has both rotation and path_length: draw another quantity"
+    );
+}
+
+#[test]
 fn moment_over_rotation_of_a_run_that_has_just_begun() {
     let mut script = Script::new();
     script.step(CURVE[0]);
-    let svg = moment_rotation_plot(&synthetic::scene(), &script.records(), "baseline").unwrap();
+    let (scene, records) = (synthetic::scene(), script.records());
+    let svg = moment_rotation_plot(&[run("baseline", &scene, &records)], "baseline").unwrap();
     keep("curve-begun.svg", &svg);
     assert!(svg.contains("this run") && !svg.contains("snap"));
 }
 
 #[test]
 fn moment_over_rotation_of_nothing() {
-    let error = moment_rotation_plot(&synthetic::scene(), &[], "baseline").unwrap_err();
+    let scene = synthetic::scene();
+    let error = moment_rotation_plot(&[run("baseline", &scene, &[])], "baseline").unwrap_err();
     assert!(matches!(error, PlotError::NoEquilibrium));
 }

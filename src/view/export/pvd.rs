@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::instant::Instant;
-use crate::view::mesh_picture::escaped;
+use crate::view::drawing::escaped;
 
 /// Times of a series: the parameter of each instant, where it ascends; else the load steps, as ParaView sorts by time, and
 /// a path that turns back would play in another order than it was followed.

@@ -16,7 +16,7 @@ pub use shape::{FrameAt, Shape, chosen_frames};
 
 use serde_json::Value;
 
-use super::mesh_picture::escaped;
+use super::drawing::escaped;
 use crate::printable::one_line;
 
 const STYLE: &str = include_str!("page.css");

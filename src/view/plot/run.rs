@@ -1,0 +1,146 @@
+//! A run as it is drawn: the equilibria of its path, with what the run had spent by the end of their load steps.
+
+use std::collections::BTreeMap;
+
+use super::{PlotError, Quantity};
+use crate::record::{CriticalPoint, Outcome, Record, Report};
+use crate::scene::Scene;
+use crate::study::records_on_path;
+
+/// Largest number that is drawn.
+const LARGEST: f64 = 1e30;
+
+/// A run to be drawn.
+#[derive(Clone, Debug)]
+pub struct PlottedRun<'r> {
+    /// What the legend calls it.
+    pub name: String,
+    /// The scene that it is a run of.
+    pub scene: &'r Scene,
+    /// Its stages.
+    pub records: &'r [Record],
+}
+
+/// An equilibrium on the path of a run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlottedPoint<'r> {
+    pub(super) report: &'r Report,
+    pub(super) jumped: bool,
+    pub(super) passed: Option<CriticalPoint>,
+    /// What the run came to by the end of the load step.
+    pub(super) so_far: Spent,
+    /// What the load step itself took.
+    pub(super) in_step: Spent,
+}
+
+/// What stages came to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spent {
+    pub(super) wall_s: f64,
+    pub(super) iterations: f64,
+    pub(super) factorizations: f64,
+    pub(super) work_n_mm: f64,
+    /// `None` from the first jump on whose energy is not known.
+    pub(super) released_n_mm: Option<f64>,
+    /// That of the last evaluation.
+    pub(super) largest_indicator: Option<f64>,
+    /// That of the last estimate.
+    pub(super) estimated_error: Option<f64>,
+}
+
+impl Spent {
+    const NOTHING: Self = Self {
+        wall_s: 0.0,
+        iterations: 0.0,
+        factorizations: 0.0,
+        work_n_mm: 0.0,
+        released_n_mm: Some(0.0),
+        largest_indicator: None,
+        estimated_error: None,
+    };
+
+    fn with(self, Record { report, wall_s, .. }: &Record) -> Self {
+        let larger = |[one, other]: [f64; 2]| one.max(other);
+        let is_done = report.outcome == Outcome::Done;
+        let evaluated = (report.largest_indicator != [0.0; 2]).then_some(larger(report.largest_indicator));
+        Self {
+            wall_s: self.wall_s + wall_s,
+            iterations: self.iterations + report.iterations as f64,
+            factorizations: self.factorizations + report.factorizations as f64,
+            work_n_mm: self.work_n_mm + if is_done { report.work_n_mm } else { 0.0 },
+            released_n_mm: match is_done {
+                true => self.released_n_mm.zip(report.energy_released_n_mm).map(|(before, now)| before + now),
+                false => self.released_n_mm,
+            },
+            largest_indicator: evaluated.or(self.largest_indicator),
+            estimated_error: report.estimated_error.map(larger).or(self.estimated_error),
+        }
+    }
+}
+
+impl<'r> PlottedRun<'r> {
+    /// The equilibria of the path.
+    ///
+    /// # Errors
+    /// Where there is none yet.
+    pub(super) fn points(&self) -> Result<Vec<PlottedPoint<'r>>, PlotError> {
+        let mut so_far = Spent::NOTHING;
+        let mut by_step: BTreeMap<u64, [Spent; 2]> = BTreeMap::new();
+        for record in self.records {
+            so_far = so_far.with(record);
+            let [at_end, in_step] = by_step.entry(record.report.step).or_insert([Spent::NOTHING; 2]);
+            (*at_end, *in_step) = (so_far, in_step.with(record));
+        }
+        let point = |on: crate::study::OnPath<'r>| {
+            let report = &on.record.report;
+            let [so_far, in_step] = by_step.get(&report.step).copied().unwrap_or([Spent::NOTHING; 2]);
+            PlottedPoint { report, jumped: on.jumped, passed: on.passed.map(|(passed, _)| passed), so_far, in_step }
+        };
+        let points: Vec<_> = records_on_path(self.records).into_iter().map(point).collect();
+        if points.is_empty() { Err(PlotError::NoEquilibrium) } else { Ok(points) }
+    }
+}
+
+/// A point of a line in a chart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LinePoint {
+    pub(super) at: (f64, f64),
+    /// Whether it is the unloaded shell, which is no equilibrium that was computed.
+    pub(super) is_start: bool,
+    pub(super) is_stable: bool,
+    /// Whether the shell jumped to get here.
+    pub(super) jumped: bool,
+    pub(super) passed: Option<CriticalPoint>,
+}
+
+/// One quantity over another at the equilibria that have both, from the unloaded shell on where both are known there.
+///
+/// # Errors
+/// Where no equilibrium has both, or a value cannot be drawn.
+pub(super) fn line_points(
+    run: &str,
+    points: &[PlottedPoint],
+    x: &Quantity,
+    y: &Quantity,
+) -> Result<Vec<LinePoint>, PlotError> {
+    let start = x.at_rest().zip(y.at_rest()).map(|at| LinePoint {
+        at,
+        is_start: true,
+        is_stable: true,
+        jumped: false,
+        passed: None,
+    });
+    let mut line: Vec<LinePoint> = start.into_iter().collect();
+    for point in points {
+        let Some(at) = x.value(point).zip(y.value(point)) else { continue };
+        if let Some(value) = [at.0, at.1].into_iter().find(|value| value.is_nan() || value.abs() > LARGEST) {
+            return Err(PlotError::NotDrawable { step: point.report.step, value });
+        }
+        let is_stable = point.report.negative_pivots == 0;
+        line.push(LinePoint { at, is_start: false, is_stable, jumped: point.jumped, passed: point.passed });
+    }
+    match line.iter().all(|point| point.is_start) {
+        true => Err(PlotError::NothingInCommon { run: run.to_owned(), x: x.name.clone(), y: y.name.clone() }),
+        false => Ok(line),
+    }
+}
