@@ -65,8 +65,7 @@ impl Arguments {
             [log] if chosen.is_none() => self.curve_and_mesh(log, &chosen)?,
             logs => {
                 self.refuse_what_is_of_one_log()?;
-                let logs = logs.iter().map(|log| PlottedLog::read(log, &chosen, |_| {}));
-                curve(&logs.collect::<Result<Vec<_>, _>>()?, &chosen)?.into_iter().collect()
+                curve(&PlottedLog::read_all(logs, &chosen)?, &chosen)?.into_iter().collect()
             }
         };
         let files: Vec<_> = files.into_iter().map(|(file, content)| (folder.join(file), content)).collect();

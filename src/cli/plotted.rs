@@ -68,22 +68,43 @@ pub(super) struct PlottedLog {
 
 impl PlottedLog {
     /// Reads a log once, showing it to `see` portion by portion; readings that it lacks of the probes that are drawn are made.
-    pub(super) fn read(path: &Path, chosen: &Chosen, mut see: impl FnMut(&Portion)) -> Result<Self, Failure> {
-        let mut gathered = Gathered::with_probes(chosen.probes());
+    pub(super) fn read(path: &Path, chosen: &Chosen, see: impl FnMut(&Portion)) -> Result<Self, Failure> {
+        Self::read_with(path, chosen, None, see)
+    }
+
+    /// Reads logs that are drawn in one picture: where nothing is chosen, all of them for the first probe of the first.
+    pub(super) fn read_all(paths: &[PathBuf], chosen: &Chosen) -> Result<Vec<Self>, Failure> {
+        let mut logs: Vec<Self> = Vec::new();
+        for path in paths {
+            let probe = logs.first().and_then(|first| first.read.scene.probes.first()).map(|probe| probe.name.clone());
+            logs.push(Self::read_with(path, chosen, probe, |_| {})?);
+        }
+        Ok(logs)
+    }
+
+    /// Where nothing is chosen, `probe` is drawn, or the scene's first.
+    fn read_with(
+        path: &Path,
+        chosen: &Chosen,
+        probe: Option<String>,
+        mut see: impl FnMut(&Portion),
+    ) -> Result<Self, Failure> {
+        let mut gathered = Gathered::with_probes(chosen.probes().into_iter().chain(probe.clone()).collect());
         let read = read_through(path, |portion| {
             see(portion);
             gathered.take(portion);
         })?;
         let mut records = gathered.records;
         remove_redefined(&redefined_probes(&read.log), &mut records);
-        let drawn = match chosen.is_none() {
+        let mut drawn: Vec<String> = match chosen.is_none() {
             true if read.scene.end_rotation().is_some() => Vec::new(),
-            true => read.scene.probes.first().map(|probe| probe.name.clone()).into_iter().collect(),
+            true => probe.or_else(|| Some(read.scene.probes.first()?.name.clone())).into_iter().collect(),
             false => {
                 let quantities = chosen.quantities(path, &read.scene)?;
-                quantities.iter().filter_map(|quantity| Some(quantity.probe()?.to_owned())).collect::<Vec<_>>()
+                quantities.iter().filter_map(|quantity| Some(quantity.probe()?.to_owned())).collect()
             }
         };
+        drawn.retain(|name| read.scene.probes.iter().any(|probe| probe.name == *name));
         let lacks = |report: &Report, name: &String| report.probes.iter().all(|reading| reading.name != *name);
         // As where the run began without the probe.
         let is_unread = equilibria(&records).any(|record| drawn.iter().any(|name| lacks(&record.report, name)));
@@ -97,15 +118,18 @@ impl PlottedLog {
 
 /// The curve of some logs, if they have one, as a file.
 pub(super) fn curve(logs: &[PlottedLog], chosen: &Chosen) -> Result<Option<(String, Vec<u8>)>, Failure> {
-    let names = names_of(logs);
-    let named = names.into_iter().zip(logs);
+    let Some(first) = logs.first() else { return Ok(None) };
+    let named = names_of(logs).into_iter().zip(logs);
     let runs: Vec<PlottedRun> =
         named.map(|(name, log)| PlottedRun { name, scene: &log.read.scene, records: &log.records }).collect();
+    // Of several runs the legend has the names.
     let title = if let [only] = &runs[..] { only.name.clone() } else { String::new() };
+    let all_have =
+        |chosen: &Chosen| logs.iter().try_for_each(|log| chosen.quantities(&log.path, &log.read.scene).map(drop));
     let turned = logs.iter().filter(|log| log.read.scene.end_rotation().is_some()).count();
     let drawn = if !chosen.is_none() {
-        let quantities = logs.iter().map(|log| chosen.quantities(&log.path, &log.read.scene));
-        let [x, y] = quantities.reduce(|first, next| next.and(first)).ok_or(Failure::NoCommonCurve)??;
+        all_have(chosen)?;
+        let [x, y] = chosen.quantities(&first.path, &first.read.scene)?;
         let file = format!("{}-over-{}.svg", y.in_file_name(), x.in_file_name());
         (file, curve_plot(&runs, &x, &y, &title)?)
     } else if turned == logs.len() {
@@ -114,11 +138,9 @@ pub(super) fn curve(logs: &[PlottedLog], chosen: &Chosen) -> Result<Option<(Stri
         return Err(Failure::NoCommonCurve);
     } else {
         let Some([x, y]) = load_probe(&runs) else {
-            return if logs.len() > 1 { Err(Failure::NoProbe { log: logs[0].path.clone() }) } else { Ok(None) };
+            return if logs.len() > 1 { Err(Failure::NoProbe { log: first.path.clone() }) } else { Ok(None) };
         };
-        // All of them must have it.
-        let of_probe = Chosen { x: Some(format!("probe.{}", x.probe().unwrap_or_default())), y: None };
-        logs.iter().try_for_each(|log| of_probe.quantities(&log.path, &log.read.scene).map(drop))?;
+        all_have(&Chosen { x: x.probe().map(|name| format!("probe.{name}")), y: None })?;
         ("load-probe.svg".to_owned(), curve_plot(&runs, &x, &y, &title)?)
     };
     Ok(Some((drawn.0, drawn.1.into_bytes())))

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use color_quant::NeuQuant;
 use gif::{Encoder, Frame, Repeat};
+use rayon::prelude::*;
 
 use super::mesh_picture::{Picture, View, mesh_drawing};
 use super::raster::{Raster, raster};
@@ -30,6 +31,8 @@ const LAST_DELAY: u16 = 150;
 const COLOURS: usize = 256;
 /// Frames that the palette is chosen by.
 const JUDGED: usize = 6;
+/// Frames that are drawn at a time.
+const BATCH: usize = 16;
 /// One pixel in this many is looked at for the palette.
 const SAMPLING: i32 = 10;
 
@@ -55,12 +58,15 @@ pub fn mesh_animation(frames: &[(SurfaceSamples, Picture)]) -> Result<Vec<u8>, A
     let [width, height] = first.size.map(|length| u16::try_from(length).unwrap_or(u16::MAX));
     let mut encoder = Encoder::new(Vec::new(), width, height, &palette.colours)?;
     encoder.set_repeat(Repeat::Infinite)?;
-    for (index, frame) in frames.iter().enumerate() {
-        let Raster { pixels, .. } = pixels(frame)?;
-        let delay = if index + 1 == frames.len() { LAST_DELAY } else { DELAY };
-        let buffer =
-            Cow::Owned(pixels.chunks_exact(4).map(|pixel| palette.index([pixel[0], pixel[1], pixel[2]])).collect());
-        encoder.write_frame(&Frame { width, height, delay, buffer, ..Frame::default() })?;
+    let mut left = frames.len();
+    for batch in frames.chunks(BATCH) {
+        for Raster { pixels, .. } in batch.par_iter().map(pixels).collect::<Result<Vec<_>, _>>()? {
+            left -= 1;
+            let delay = if left == 0 { LAST_DELAY } else { DELAY };
+            let buffer =
+                Cow::Owned(pixels.chunks_exact(4).map(|pixel| palette.index([pixel[0], pixel[1], pixel[2]])).collect());
+            encoder.write_frame(&Frame { width, height, delay, buffer, ..Frame::default() })?;
+        }
     }
     Ok(encoder.into_inner()?)
 }

@@ -2,7 +2,7 @@
 
 use super::export::WholeShell;
 use crate::model::{Site, direction_at, parameters_of, supports_of};
-use crate::scene::{ActionKind, Edge, ForceVector, Hold, Motion, Region, Scene, Support, Symmetry};
+use crate::scene::{ActionKind, Edge, ForceVector, Hold, Motion, Region, Scene, Support, SurfaceDirection, Symmetry};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::{Mesh, mid_surface_point};
 use crate::state::State;
@@ -220,8 +220,11 @@ impl<'a> Place<'a> {
             }
             ActionKind::LineForce { on, force_n_per_mm } => {
                 let edge = if let Region::Edge(edge) = on { Some(*edge) } else { None };
-                let places = every(self.places(*on), ARROWS + 1);
-                places.filter_map(|at| onto(at, self.vector(force_n_per_mm, at, edge, factor), ON_LINE)).collect()
+                let pulls = matches!(force_n_per_mm, ForceVector::Along(size, SurfaceDirection::Outward) if size * factor > 0.0);
+                let head = || if pulls { Head::Away } else { Head::At };
+                let along = |at| self.vector(force_n_per_mm, at, edge, factor);
+                let arrow = |at| straight(ArrowKind::Load, self.position(at), along(at), ON_LINE * self.size, head());
+                every(self.places(*on), ARROWS + 1).filter_map(arrow).collect()
             }
             ActionKind::AreaForce { force_n_per_mm2, .. } => surface()
                 .filter_map(|at| onto(at, self.vector(force_n_per_mm2, at, None, factor), ON_SURFACE))
@@ -371,9 +374,22 @@ mod tests {
         assert!(way[2] < 0.0 && way[0] == 0.0 && way[1] == 0.0, "{way:?}");
     }
 
+    /// A sphere under pressure, with what its missing caps would pull at its edges.
     #[test]
-    fn a_pressure_acts_along_the_normal() {
+    fn a_pressure_acts_along_the_normal_and_edges_are_pulled_outward() {
         let marks = marks_of(include_str!("../../pipelines/verification/sphere-zone-pressure.toml"));
-        assert_eq!(marks.arrows.len(), ARROWS * ARROWS);
+        let (pressure, edges) = marks.arrows.split_at(ARROWS * ARROWS);
+        assert_eq!(edges.len(), 2 * (ARROWS + 1));
+        for Arrow { points, .. } in pressure {
+            // From the centre of the sphere outward, onto it.
+            let way = sub(points[1], points[0]);
+            assert!((norm(points[1]) - 100.0).abs() < 1e-9);
+            assert!((dot(way, points[1]) - norm(way) * 100.0).abs() < 1e-9 * norm(way));
+        }
+        for Arrow { points, .. } in edges {
+            assert!((norm(points[0]) - 100.0).abs() < 1e-9, "it begins at the edge");
+            assert!(dot(sub(points[1], points[0]), points[0]).abs() < 1e-9, "it is tangent to the sphere");
+        }
+        assert!(marks.held.is_empty(), "rigid motions alone are held");
     }
 }

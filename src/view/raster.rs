@@ -1,4 +1,5 @@
-//! A drawing as pixels. Words are in a font whose letters are all equally wide, and without letters that it lacks.
+//! A drawing as pixels. Words are in Noto Sans Mono (SIL Open Font License 1.1), which comes as pixels too; letters that it lacks
+//! are written in others.
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 use tiny_skia::{
