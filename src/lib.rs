@@ -1,5 +1,7 @@
 //! Thin-shell structures that fold, simulated on a mesh that refines itself, as a pipeline of restartable steps.
 //!
+//! [`guide`] has pages to read: a tutorial, the theory, the format of a log.
+//!
 //! # The pieces
 //!
 //! A [`scene`] describes what is simulated: a shell, its material, supports, loads and settings, as TOML. [`Stages`](pipeline::Stages) runs
@@ -74,6 +76,7 @@ pub mod cli;
 mod digest;
 pub mod energy;
 pub mod equilibrium;
+pub mod guide;
 pub mod history;
 pub mod journal;
 pub mod model;

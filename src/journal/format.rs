@@ -21,9 +21,8 @@
 //! |---|---|
 //! | 1 | |
 //! | 2 | commits and the end name the manifest of their stretch by its hash, so that none can be lost unseen; the manifest names the revision of the numerics that wrote the stretch; a chunk may lack a state, and a mesh or displacements that no state needs, in a log that was thinned and says so in a metadata record `foldline.thinned` |
-//!
 //! | 3 | a state names each of its fields by its own hash, and a commit names them all; before, the displacements and those of the equilibrium before were one |
-//! | 4 | what viewers are shown of a stage lies in a packed chunk right in front of the stage's own, which names it by the hash of its bytes; before, it lay among the stage's messages |
+//! | 4 | what viewers are shown of a stage lies in a packed chunk right in front of the stage's own, which names it by the hash of its bytes; before, it lay among the stage's messages; reports state what keeping the stage before took |
 //!
 //! A log may hold commits of several versions: one that is continued keeps those that it has.
 //!

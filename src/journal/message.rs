@@ -87,7 +87,7 @@ pub struct PackedHash {
 }
 
 impl PackedHash {
-    /// Hashes a packed chunk with its message indexes.
+    /// Hashes the records of a packed chunk and its message indexes, each with the nine bytes in front of it.
     pub fn of(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len() as u64, blake3: HexHash(blake3::hash(bytes)) }
     }

@@ -69,7 +69,8 @@
 //! ```
 //!
 //! A log that was neither finished nor closed has no summary; readers that go by the summary then need
-//! `foldline recover run.mcap copy.mcap` first, those that read front to back (`NonSeekingReader` in Python) do not.
+//! `foldline recover run.mcap -o copy.mcap` first. Those that read front to back (`NonSeekingReader` in Python, with
+//! `log_time_order=False`) give every message, and an error at the end.
 //!
 //! # Old logs
 //!

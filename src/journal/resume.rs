@@ -7,7 +7,7 @@
 //!
 //! That asks for a lock which no other process can hold at once. Where the file system has none, where bytes before the last
 //! commit are not as they were written, and where the run continues from an earlier commit, the good records are copied instead:
-//! to `LOG.new`, which is forced to disk while the run already continues, and takes the log's place before the first new commit
+//! to a file without a name, or a hidden one where there are none, which is forced to disk while the run already continues, and takes the log's place before the first new commit
 //! is added. A process that has lost the log only ever writes to the old file then.
 //!
 //! What a log loses when it is continued is kept next to it as `LOG.dropped-N` wherever it might still be worth something:

@@ -113,7 +113,7 @@ impl TapeSpring {
         2.0 * self.youngs_modulus_mpa * self.second_moment_mm4() / self.length_mm
     }
 
-    /// Uniform curvature 2 θ / L when each end has turned by `rotation_deg`, 1/mm.
+    /// Uniform curvature 2 θ / L when each end has turned by `parameter` degrees, 1/mm.
     pub fn curvature_at_rotation(&self, parameter: f64) -> f64 {
         2.0 * parameter.to_radians() / self.length_mm
     }
@@ -138,7 +138,7 @@ impl TapeSpring {
         0.5 * self.width_stiffness() * ((1.0 - nu * nu) * k * k + turned * turned * g)
     }
 
-    /// Moment of Wuest's law when each end has turned by `rotation_deg` ≥ 0 and the curvature is uniform, N·mm.
+    /// Moment of Wuest's law when each end has turned by `parameter` ≥ 0 degrees and the curvature is uniform, N·mm.
     pub fn moment_at_rotation(&self, parameter: f64) -> f64 {
         self.moment_at_curvature(self.curvature_at_rotation(parameter))
     }

@@ -3,7 +3,7 @@
 use crate::imports::{Import, Sources, Token, circles, imports, sources, tokens};
 
 /// From the bottom of the stack to its top: each folder imports only from those before it.
-const ORDER: [&str; 20] = [
+const ORDER: [&str; 21] = [
     "units",
     "printable",
     "digest",
@@ -23,6 +23,7 @@ const ORDER: [&str; 20] = [
     "study",
     "view",
     "cli",
+    "guide",
     "main",
 ];
 

@@ -1,0 +1,24 @@
+//! Pages to read.
+//!
+//! | page | what |
+//! |---|---|
+//! | [`tutorial`] | a tape spring of one's own, from nothing to a report |
+//! | [`theory`] | what is computed, with equations and sources |
+//! | [`log`] | the format of a log, for a reader in another language |
+//! | [`citing`] | how to cite the program and the papers behind it |
+//! | [`changes`] | what each version brought |
+
+#[doc = include_str!("changes.md")]
+pub mod changes {}
+
+#[doc = include_str!("citing.md")]
+pub mod citing {}
+
+#[doc = include_str!("log.md")]
+pub mod log {}
+
+#[doc = include_str!("theory.md")]
+pub mod theory {}
+
+#[doc = include_str!("tutorial.md")]
+pub mod tutorial {}
