@@ -4,8 +4,8 @@ use plotters::chart::ChartBuilder;
 
 use super::axis::{Axis, draw_axes};
 use super::legend::{draw_legend, entries};
-use super::line::RunLine;
-use super::run::{PlottedPoint, line_points};
+use super::line::{RunLine, line_points};
+use super::run::PlottedPoint;
 use super::style::{Area, PX, Pen, on_sheet, text};
 use super::{PlotError, PlottedRun, Quantity, quantity_named};
 use crate::printable::one_line;

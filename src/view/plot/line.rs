@@ -4,10 +4,11 @@ use plotters::element::{Circle, Cross};
 use plotters::series::{DashedLineSeries, LineSeries};
 use plotters::style::Color;
 
-use super::PlotError;
 use super::axis::Chart;
-use super::run::LinePoint;
+use super::run::PlottedPoint;
 use super::style::{PX, Pen, line};
+use super::{PlotError, Quantity};
+use crate::record::CriticalPoint;
 
 /// Pixels of dashes and gaps of unstable stretches, and of jumps.
 pub(super) const UNSTABLE: [u32; 2] = [5, 4];
@@ -17,6 +18,9 @@ pub(super) const MARK: u32 = 5;
 const DOT: u32 = 2;
 /// Gap between the dashes of stable stretches, pixels.
 pub(super) const GAP: u32 = 4;
+
+/// Largest number that is drawn.
+const LARGEST: f64 = 1e30;
 
 /// A run in a chart.
 #[derive(Clone, Debug)]
@@ -87,5 +91,49 @@ impl RunLine {
         };
         chart.draw_series(DashedLineSeries::new(points, dash * PX, gap * PX, style))?;
         Ok(())
+    }
+}
+
+/// A point of a line in a chart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LinePoint {
+    pub(super) at: (f64, f64),
+    /// Whether it is the unloaded shell, which is no equilibrium that was computed.
+    pub(super) is_start: bool,
+    pub(super) is_stable: bool,
+    /// Whether the shell jumped to get here.
+    pub(super) jumped: bool,
+    pub(super) passed: Option<CriticalPoint>,
+}
+
+/// One quantity over another at the equilibria that have both, from the unloaded shell on where both are known there.
+///
+/// # Errors
+/// Where no equilibrium has both, or a value cannot be drawn.
+pub(super) fn line_points(
+    run: &str,
+    points: &[PlottedPoint],
+    x: &Quantity,
+    y: &Quantity,
+) -> Result<Vec<LinePoint>, PlotError> {
+    let start = x.at_rest().zip(y.at_rest()).map(|at| LinePoint {
+        at,
+        is_start: true,
+        is_stable: true,
+        jumped: false,
+        passed: None,
+    });
+    let mut line: Vec<LinePoint> = start.into_iter().collect();
+    for point in points {
+        let Some(at) = x.value(point).zip(y.value(point)) else { continue };
+        if let Some(value) = [at.0, at.1].into_iter().find(|value| value.is_nan() || value.abs() > LARGEST) {
+            return Err(PlotError::NotDrawable { step: point.report.step, value });
+        }
+        let is_stable = point.report.negative_pivots == 0;
+        line.push(LinePoint { at, is_start: false, is_stable, jumped: point.jumped, passed: point.passed });
+    }
+    match line.iter().all(|point| point.is_start) {
+        true => Err(PlotError::NothingInCommon { run: run.to_owned(), x: x.name.clone(), y: y.name.clone() }),
+        false => Ok(line),
     }
 }

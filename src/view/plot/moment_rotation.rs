@@ -7,8 +7,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::axis::{Axis, Chart, draw_axes};
 use super::legend::{Sample, draw_legend, entries};
-use super::line::RunLine;
-use super::run::{PlottedPoint, line_points};
+use super::line::{RunLine, line_points};
+use super::run::PlottedPoint;
 use super::style::{Area, LAW, PLATEAU, PX, Pen, SNAP, line, on_sheet, text};
 use super::{PlotError, PlottedRun, quantity_named};
 use crate::printable::one_line;
@@ -93,6 +93,7 @@ fn draw_moments(
     legend.extend(entries(lines, lines.len() > 1));
     let mut drawn: Vec<_> = lines.iter().map(|line| line.points.iter().map(|point| point.at).collect()).collect();
     drawn.push(law);
+    drawn.extend(plateau.map(|level| vec![(from, level), (to, level)]));
     let size = [f64::from(SIZE.0 - LEFT - MARGIN - RIGHT), f64::from(UPPER_HEIGHT - 4 * MARGIN)];
     draw_legend(&mut chart, [rotations, &moments], size, &legend, &drawn)
 }

@@ -2,13 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{PlotError, Quantity};
+use super::PlotError;
 use crate::record::{CriticalPoint, Outcome, Record, Report};
 use crate::scene::Scene;
 use crate::study::records_on_path;
-
-/// Largest number that is drawn.
-const LARGEST: f64 = 1e30;
 
 /// A run to be drawn.
 #[derive(Clone, Debug)]
@@ -98,49 +95,5 @@ impl<'r> PlottedRun<'r> {
         };
         let points: Vec<_> = records_on_path(self.records).into_iter().map(point).collect();
         if points.is_empty() { Err(PlotError::NoEquilibrium) } else { Ok(points) }
-    }
-}
-
-/// A point of a line in a chart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LinePoint {
-    pub(super) at: (f64, f64),
-    /// Whether it is the unloaded shell, which is no equilibrium that was computed.
-    pub(super) is_start: bool,
-    pub(super) is_stable: bool,
-    /// Whether the shell jumped to get here.
-    pub(super) jumped: bool,
-    pub(super) passed: Option<CriticalPoint>,
-}
-
-/// One quantity over another at the equilibria that have both, from the unloaded shell on where both are known there.
-///
-/// # Errors
-/// Where no equilibrium has both, or a value cannot be drawn.
-pub(super) fn line_points(
-    run: &str,
-    points: &[PlottedPoint],
-    x: &Quantity,
-    y: &Quantity,
-) -> Result<Vec<LinePoint>, PlotError> {
-    let start = x.at_rest().zip(y.at_rest()).map(|at| LinePoint {
-        at,
-        is_start: true,
-        is_stable: true,
-        jumped: false,
-        passed: None,
-    });
-    let mut line: Vec<LinePoint> = start.into_iter().collect();
-    for point in points {
-        let Some(at) = x.value(point).zip(y.value(point)) else { continue };
-        if let Some(value) = [at.0, at.1].into_iter().find(|value| value.is_nan() || value.abs() > LARGEST) {
-            return Err(PlotError::NotDrawable { step: point.report.step, value });
-        }
-        let is_stable = point.report.negative_pivots == 0;
-        line.push(LinePoint { at, is_start: false, is_stable, jumped: point.jumped, passed: point.passed });
-    }
-    match line.iter().all(|point| point.is_start) {
-        true => Err(PlotError::NothingInCommon { run: run.to_owned(), x: x.name.clone(), y: y.name.clone() }),
-        false => Ok(line),
     }
 }
