@@ -8,7 +8,6 @@ use super::asked::{Ends, ordinal};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
 use super::output::{file_name, path_in_line, print, write_files};
-use super::session::use_threads;
 use super::speed_ups;
 use crate::history::States;
 use crate::journal::Manifest;
@@ -40,7 +39,7 @@ impl Arguments {
         match logs.iter().find(|path| is_study(path)) {
             None => {}
             Some(_) if logs.iter().all(is_study) => {
-                return speed_ups::run(&logs, &[], &study_logs, use_threads(None)?, false, Some(&output));
+                return speed_ups::run(&logs, &[], &study_logs, rayon::current_num_threads(), false, Some(&output));
             }
             Some(study) => return Err(Failure::StudyAmongLogs { study: study.clone() }),
         }

@@ -1,58 +1,27 @@
 //! Commits and manifests as MCAP bytes, in memory; nothing here touches a file, so nothing here can fail halfway.
 
 use std::collections::{BTreeMap, HashSet};
-use std::io::{self, Write};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use mcap::records::{MessageHeader, Metadata, Record as McapRecord};
 use mcap::write::NoSeek;
-use mcap::{McapError, WriteOptions, Writer};
+use mcap::{McapError, Writer};
 
 use super::chunk;
 use super::codec::EncodedField;
 use super::encode_error::EncodeError;
-use super::format::{
-    CHUNK_BYTES_LIMIT, DISPLACEMENT_TOPIC, OWN_TOPICS, PROFILE, REPORT_BYTES_LIMIT, log_time_ns, sequence,
-};
+use super::format::{CHUNK_BYTES_LIMIT, DISPLACEMENT_TOPIC, OWN_TOPICS, REPORT_BYTES_LIMIT, log_time_ns, sequence};
 use super::frame::{self, Frame, op};
 use super::index::{Mark, Piece};
 use super::ledger::{ChunkPlace, Ledger};
 use super::manifest::Manifest;
 use super::message::{CommitMessage, FinishedMessage, HexHash, MessageHash, PackedHash, ReportMessage, seal};
+use super::outbox::{Outbox, options};
 use super::packer::Packer;
 use super::summary;
-use super::topics::{OWN, ViewerMessage, ViewerTopic, binary_topic};
+use super::topics::{ChannelNumbers, OWN, ViewerMessage, ViewerTopic, binary_topic};
 use crate::record::{Commit, Record};
 use crate::state::Hash;
-
-/// The numbers under which a topic is described.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct ChannelNumbers {
-    pub schema: u16,
-    pub channel: u16,
-}
-
-/// Bytes on their way out, shared with MCAP's writer, which would not give them back.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Outbox(Arc<Mutex<Vec<u8>>>);
-
-impl Outbox {
-    pub(super) fn bytes(&self) -> MutexGuard<'_, Vec<u8>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Write for Outbox {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.bytes().extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
 
 /// Makes the bytes of a log. They are collected until [`Encoder::take`]; those of a record that failed, and the summary
 /// that MCAP's writer makes when it is dropped, go nowhere.
@@ -427,12 +396,6 @@ fn writer(library: &str) -> Result<(Writer<NoSeek<Outbox>>, Outbox), McapError> 
     let outbox = Outbox::default();
     let options = options().library(library).compression(None);
     Ok((options.create(NoSeek::new(outbox.clone()))?, outbox))
-}
-
-/// How chunks are written: each when it is flushed, and never gone back to.
-pub(super) fn options() -> WriteOptions {
-    let options = WriteOptions::new().profile(PROFILE).chunk_size(None).disable_seeking(true);
-    options.calculate_data_section_crc(false).compression_threads(0)
 }
 
 /// The header of a message of a stage.

@@ -18,7 +18,7 @@
 //! | `format` | topics, encodings, versions, limits, times |
 //! | `codec`, `soundness` | states and meshes as bytes, and what they must satisfy |
 //! | `message`, `manifest` | reports, commits, the end, who wrote it |
-//! | `topics`, `ledger`, `summary`, `encoder`, `packer`, `encode_error`, `backend`, `writer`, `write_error` | from a stage to bytes in a file |
+//! | `topics`, `ledger`, `summary`, `outbox`, `encoder`, `packer`, `encode_error`, `backend`, `writer`, `write_error` | from a stage to bytes in a file |
 //! | `frame`, `chunk`, `stretch`, `scan`, `reader`, `damage`, `log` | from bytes to stages, and what can be wrong with them |
 //! | `checkpoint`, `parts`, `index`, `index_keeper`, `long`, `asked` | a long log, of which only what is needed is read |
 //! | `portions` | a log of any length, read through without holding it |
@@ -104,6 +104,7 @@ mod manifest;
 mod mending;
 pub mod message;
 mod new_log;
+mod outbox;
 mod packer;
 mod parts;
 mod portions;

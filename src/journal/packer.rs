@@ -7,8 +7,8 @@ use mcap::records::MessageHeader;
 use mcap::write::NoSeek;
 use mcap::{Compression, McapError, Writer};
 
-use super::encoder::{ChannelNumbers, Outbox, options};
-use super::topics::ViewerTopic;
+use super::outbox::{Outbox, options};
+use super::topics::{ChannelNumbers, ViewerTopic};
 
 /// zstd's level; see [`super::format`] for what others give.
 const LEVEL: u32 = 3;

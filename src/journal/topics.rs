@@ -31,6 +31,13 @@ pub struct ViewerMessage {
     pub data: Vec<u8>,
 }
 
+/// The numbers under which a topic is described.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ChannelNumbers {
+    pub schema: u16,
+    pub channel: u16,
+}
+
 /// The log's own topics; their schemas are made once.
 pub(super) struct OwnTopics {
     pub mesh: ViewerTopic,

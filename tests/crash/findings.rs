@@ -46,7 +46,7 @@ fn findings_in_words() {
     ");
     insta::assert_snapshot!(flipped(entries[2].start as usize + 2), @r"
     Error log: 2 commits; # bytes from byte # on are lost, with 2 whole commits
-    Error byte #: the lengths in the chunk's header do not agree, or it is compressed, which foldline's logs are not
+    Error byte #: the lengths in the chunk's header do not agree, or it is compressed in a way that foldline does not use
     Warning commit 3 (step 2, evaluate-indicators): whole at byte #, but what it follows on is lost: it is not used
     Warning commit 4 (step 3, solve): whole at byte #, but what it follows on is lost: it is not used
     ");

@@ -1,7 +1,5 @@
 //! A run as it is drawn: the equilibria of its path, with what the run had spent by the end of their load steps.
 
-use std::collections::BTreeMap;
-
 use super::PlotError;
 use crate::record::{CriticalPoint, Outcome, Record, Report};
 use crate::scene::Scene;
@@ -82,15 +80,21 @@ impl<'r> PlottedRun<'r> {
     /// Where there is none yet.
     pub(super) fn points(&self) -> Result<Vec<PlottedPoint<'r>>, PlotError> {
         let mut so_far = Spent::NOTHING;
-        let mut by_step: BTreeMap<u64, [Spent; 2]> = BTreeMap::new();
+        // In the order of the steps; a map would take twice the memory of a long run.
+        let mut by_step: Vec<(u64, [Spent; 2])> = Vec::new();
         for record in self.records {
             so_far = so_far.with(record);
-            let [at_end, in_step] = by_step.entry(record.report.step).or_insert([Spent::NOTHING; 2]);
-            (*at_end, *in_step) = (so_far, in_step.with(record));
+            let step = record.report.step;
+            let in_step = by_step.pop_if(|(last, _)| *last == step).map_or(Spent::NOTHING, |(_, [_, in_step])| in_step);
+            by_step.push((step, [so_far, in_step.with(record)]));
         }
+        let spent_by = |step: u64| {
+            let place = by_step.binary_search_by_key(&step, |(step, _)| *step);
+            place.map_or([Spent::NOTHING; 2], |place| by_step[place].1)
+        };
         let point = |on: crate::study::OnPath<'r>| {
             let report = &on.record.report;
-            let [so_far, in_step] = by_step.get(&report.step).copied().unwrap_or([Spent::NOTHING; 2]);
+            let [so_far, in_step] = spent_by(report.step);
             PlottedPoint { report, jumped: on.jumped, passed: on.passed.map(|(passed, _)| passed), so_far, in_step }
         };
         let points: Vec<_> = records_on_path(self.records).into_iter().map(point).collect();
