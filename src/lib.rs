@@ -81,6 +81,7 @@ pub mod history;
 pub mod journal;
 pub mod model;
 pub mod pipeline;
+mod platform;
 mod printable;
 pub mod record;
 pub mod scene;

@@ -4,15 +4,13 @@
 //! leaves nothing of it. Elsewhere it is written under a name that nobody can guess. It gets its name in one step, by a
 //! link, which the system refuses where anything has that name already.
 
-use std::fs::{File, Permissions};
+use std::fs::File;
 use std::io::{self, Write};
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 use tempfile::TempPath;
 
-/// Permissions before the umask, those of any new file rather than of a secret one.
-const ORDINARY: u32 = 0o666;
+use crate::platform;
 
 /// A file that has no name yet. If it is dropped, nothing of it remains. Everything is written at its end.
 #[derive(Debug)]
@@ -32,11 +30,8 @@ impl WholeFile {
         if let Ok(file) = without_name(folder) {
             return Ok(Self { file, grows_at: None });
         }
-        let (file, path) = named_as_nobody_guesses()
-            .append(true)
-            .permissions(Permissions::from_mode(ORDINARY))
-            .tempfile_in(folder)?
-            .into_parts();
+        let mut named = named_as_nobody_guesses();
+        let (file, path) = platform::with_ordinary_permissions(named.append(true)).tempfile_in(folder)?.into_parts();
         Ok(Self { file, grows_at: Some(path) })
     }
 
@@ -99,13 +94,12 @@ pub(crate) fn write_new(target: &Path, content: &[u8]) -> io::Result<()> {
 
 /// Makes the names in a file's folder durable.
 pub(crate) fn sync_folder_of(path: &Path) -> io::Result<()> {
-    File::open(folder_of(path))?.sync_all()
+    platform::sync_folder(folder_of(path))
 }
 
 /// Number of bytes that this user may still write on the disk of a future file.
 pub(crate) fn room_for(path: &Path) -> Option<u64> {
-    let disk = rustix::fs::statvfs(folder_of(path)).ok()?;
-    Some(disk.f_bavail.saturating_mul(disk.f_frsize))
+    platform::room_in(folder_of(path))
 }
 
 /// Says how much space is missing, where that is known: a quota or a limit on the size of files does not show.
@@ -133,34 +127,34 @@ fn named_as_nobody_guesses() -> tempfile::Builder<'static, 'static> {
     builder
 }
 
-#[cfg(target_os = "linux")]
+#[cfg(all(target_os = "linux", not(foldline_portable)))]
 fn without_name(folder: &Path) -> io::Result<File> {
     use rustix::fs::{Mode, OFlags};
     let flags = OFlags::TMPFILE | OFlags::RDWR | OFlags::APPEND | OFlags::CLOEXEC;
-    let file = File::from(rustix::fs::open(folder, flags, Mode::from_raw_mode(ORDINARY))?);
+    let file = File::from(rustix::fs::open(folder, flags, Mode::from_raw_mode(platform::ORDINARY))?);
     // Its name comes by way of /proc, which need not be there.
     path_of_open(&file).symlink_metadata()?;
     Ok(file)
 }
 
-#[cfg(not(target_os = "linux"))]
+#[cfg(any(not(target_os = "linux"), foldline_portable))]
 fn without_name(_: &Path) -> io::Result<File> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
 /// Gives a file without a name a name that nothing has.
-#[cfg(target_os = "linux")]
+#[cfg(all(target_os = "linux", not(foldline_portable)))]
 fn link(file: &File, name: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};
     Ok(linkat(CWD, path_of_open(file), CWD, name, AtFlags::SYMLINK_FOLLOW)?)
 }
 
-#[cfg(not(target_os = "linux"))]
+#[cfg(any(not(target_os = "linux"), foldline_portable))]
 fn link(_: &File, _: &Path) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-#[cfg(target_os = "linux")]
+#[cfg(all(target_os = "linux", not(foldline_portable)))]
 fn path_of_open(file: &File) -> PathBuf {
     use std::os::fd::AsRawFd;
     PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()))

@@ -7,7 +7,6 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXCPU, SIGXFSZ};
 use signal_hook::flag;
 
 use super::failure::{Failure, INTERRUPTED};
@@ -15,6 +14,7 @@ use super::output::{eprint, path_in_line, print};
 use super::progress::{ProgressSink, ProgressStyle};
 use crate::journal::JournalWriter;
 use crate::pipeline::{Ending, Run};
+use crate::platform::signals;
 use crate::record::Record;
 use crate::scene::Scene;
 use crate::study::Summary;
@@ -109,20 +109,21 @@ fn waiting_threads(count: usize) -> io::Result<Sender<ThreadBuilder>> {
 /// Makes a limit on the size of files an error that names the file, instead of the end of the process.
 pub(super) fn outlive_file_limits() -> Result<(), Failure> {
     let failed = |source| Failure::Signals { source };
-    flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map(|_| ()).map_err(failed)
+    let Some(signal) = signals::FILE_TOO_LARGE else { return Ok(()) };
+    flag::register(signal, Arc::new(AtomicBool::new(false))).map(|_| ()).map_err(failed)
 }
 
 /// Raised by each signal that asks for an end; a second SIGINT or SIGTERM ends the process at once.
 pub(super) fn watch_signals() -> Result<Arc<AtomicBool>, Failure> {
     let failed = |source| Failure::Signals { source };
     let raised = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        flag::register_conditional_shutdown(signal, i32::from(INTERRUPTED), raised.clone()).map_err(failed)?;
+    for signal in signals::STOP {
+        flag::register_conditional_shutdown(*signal, i32::from(INTERRUPTED), raised.clone()).map_err(failed)?;
     }
     // The others may come again for the same cause: from the shell after the terminal, or with each second of time.
-    for signal in [SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU] {
-        if signal != SIGHUP || !is_ignored(signal) {
-            flag::register(signal, raised.clone()).map_err(failed)?;
+    for signal in signals::STOP.iter().chain(signals::ALSO_STOP) {
+        if Some(*signal) != signals::HANG_UP || !is_ignored(*signal) {
+            flag::register(*signal, raised.clone()).map_err(failed)?;
         }
     }
     Ok(raised)

@@ -2,11 +2,11 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
-use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
 use super::still_ours::{LogChanged, still_ours};
+use crate::platform;
 pub(super) use crate::whole_file::beside;
 use crate::whole_file::{WholeFile, sync_folder_of};
 
@@ -160,7 +160,7 @@ impl FileBackend {
         let original = File::open(&self.path)?;
         let metadata = original.metadata()?;
         // Where only root could, the one who resumes has it from here on, as with any file that is written again.
-        let _ = std::os::unix::fs::fchown(&self.file, Some(metadata.uid()), Some(metadata.gid()));
+        platform::give_to_owner_of(&self.file, &metadata);
         let _ = self.file.set_permissions(metadata.permissions());
         let file = self.file.try_clone()?;
         let synced = std::thread::Builder::new().spawn(move || file.sync_all());
@@ -272,5 +272,5 @@ fn ended(syncing: Option<Syncing>) -> io::Result<()> {
 /// Whether the open file is still the one that the path names; where that is not known, it is not.
 pub(super) fn is_at(file: &File, path: &Path) -> bool {
     let (Ok(open), Ok(named)) = (file.metadata(), std::fs::symlink_metadata(path)) else { return false };
-    (open.dev(), open.ino()) == (named.dev(), named.ino())
+    platform::is_same(&open, &named)
 }

@@ -7,14 +7,12 @@
 use std::fs::{self, File, OpenOptions};
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, Read, Write};
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use rustix::fs::OFlags;
-
 use super::manifest::host;
 use super::still_ours::patiently;
+use crate::platform::open_itself;
 use crate::whole_file::{WholeFile, beside};
 
 /// Room for a lease, bytes: it is read with every commit.
@@ -176,9 +174,7 @@ fn may_be_replaced(path: &Path) -> io::Result<bool> {
 
 /// Who has a lease; `None` where there is none.
 pub(super) fn holder(path: &Path) -> io::Result<Option<Holder>> {
-    // Links are not followed, and a pipe is not waited for.
-    let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
-    let file = match OpenOptions::new().read(true).custom_flags(flags.cast_signed()).open(path) {
+    let file = match open_itself(OpenOptions::new().read(true), path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         file => file?,
     };

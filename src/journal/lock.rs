@@ -9,14 +9,11 @@
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
-
-use rustix::fs::OFlags;
-use rustix::io::Errno;
 
 use super::backend::{beside, is_at};
 use super::lease::{LONGEST, Lease, holder, not_ours};
+use crate::platform::{has_no_locks, open_itself};
 use crate::whole_file::{room_for, shortage};
 
 /// Why a process may not write a log, or may no longer.
@@ -199,19 +196,11 @@ impl Drop for LogLock {
 
 /// Opens the file that is locked; not through a link of that name, and without waiting for a pipe.
 fn open_lock(path: &Path) -> io::Result<File> {
-    let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
-    let lock =
-        OpenOptions::new().write(true).create(true).truncate(false).custom_flags(flags.cast_signed()).open(path)?;
+    let lock = open_itself(OpenOptions::new().write(true).create(true).truncate(false), path)?;
     let metadata = lock.metadata()?;
     // It is removed in the end, and somebody's file must not be.
     if !metadata.is_file() || metadata.len() > 0 {
         return Err(not_ours());
     }
     Ok(lock)
-}
-
-/// Whether a file system, or the server behind it, has no locks, as network ones may.
-fn has_no_locks(error: &io::Error) -> bool {
-    let errno = Errno::from_io_error(error);
-    [Errno::NOTSUP, Errno::OPNOTSUPP, Errno::NOSYS, Errno::NOLCK].iter().any(|it| errno == Some(*it))
 }

@@ -1,7 +1,6 @@
 //! A log that is made of another: whole or not there.
 
 use std::io::{self, Write};
-use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 
 use mcap::records::Metadata;
@@ -11,6 +10,7 @@ use super::encoder::Encoder;
 use super::frame;
 use super::log::{Log, Part};
 use super::reader::ReadError;
+use crate::platform;
 use crate::whole_file::WholeFile;
 
 /// Bytes that are collected before they go to the new file.
@@ -114,7 +114,7 @@ impl ClosedLog {
         let io = |source| ReadError::Io { path: self.target.display().to_string(), source };
         let file = self.file.file();
         let mut bytes = vec![0; file.metadata().map_err(io)?.len() as usize];
-        file.read_exact_at(&mut bytes, 0).map_err(io)?;
+        platform::read_exact_at(file, &mut bytes, 0).map_err(io)?;
         Log::from_bytes(bytes)
     }
 

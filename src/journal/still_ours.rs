@@ -2,9 +2,10 @@
 
 use std::fs::{self, File};
 use std::io;
-use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::time::{Duration, Instant};
+
+use crate::platform;
 
 /// How long what fails for reasons that may pass is tried again: a file server that is busy, too many open files.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -65,7 +66,7 @@ pub(super) fn still_ours(file: &File, path: &Path, length: u64, commits: u64) ->
     let ours = patiently(|| file.metadata()).map_err(unknown)?;
     let named = match patiently(|| fs::metadata(path)) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Err(if ours.nlink() == 0 {
+            return Err(if platform::has_no_name(&ours) {
                 LogChanged::Removed { commits }
             } else {
                 LogChanged::Moved { commits }
@@ -73,7 +74,7 @@ pub(super) fn still_ours(file: &File, path: &Path, length: u64, commits: u64) ->
         }
         named => named.map_err(unknown)?,
     };
-    if (ours.dev(), ours.ino()) != (named.dev(), named.ino()) {
+    if !platform::is_same(&ours, &named) {
         return Err(LogChanged::Replaced);
     }
     if ours.len() != length {

@@ -3,10 +3,11 @@
 use crate::imports::{Import, Sources, Token, circles, imports, sources, tokens};
 
 /// From the bottom of the stack to its top: each folder imports only from those before it.
-const ORDER: [&str; 21] = [
+const ORDER: [&str; 22] = [
     "units",
     "printable",
     "digest",
+    "platform",
     "whole_file",
     "spline",
     "scene",
