@@ -5,6 +5,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `check` | what a scene is, and what a run of it takes |
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
 //! | `report`, `compare` | runs as one page, and next to each other in a table |
@@ -13,17 +14,20 @@
 //! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
 //! | `calibrate` | the threshold at which a scene's mesh keeps an error |
 //! | `help` | help on subcommands and topics |
+//! | `scenes`, `shipped` | the scenes that come with the program |
 //! | `scene_file`, `log_file`, `asked` | what is read: scenes, logs, some stages of a log |
 //! | `session` | threads, signals, the log of a run under way |
 //! | `probe_table` | what probes measure on a log |
 //! | `progress`, `load_step`, `stage_table`, `json_line` | stages, as they are shown |
 //! | `trace` | iterates of replayed stages |
+//! | `wrapped` | sentences in lines that fit |
 //! | `output`, `failure` | streams and files; what can stop a command |
 
 mod asked;
 mod bench;
 mod bisect;
 mod calibrate;
+mod check;
 mod compare;
 mod converge;
 mod export;
@@ -45,7 +49,9 @@ mod report;
 mod resume;
 mod run;
 mod scene_file;
+mod scenes;
 mod session;
+mod shipped;
 mod speed_ups;
 mod stability;
 mod stage_table;
@@ -53,6 +59,7 @@ mod study;
 mod thin;
 mod trace;
 mod verify;
+mod wrapped;
 
 use std::process::ExitCode;
 
@@ -79,6 +86,8 @@ struct Arguments {
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    Scenes(scenes::Arguments),
+    Check(check::Arguments),
     Run(run::Arguments),
     Resume(resume::Arguments),
     Inspect(inspect::Arguments),
@@ -120,6 +129,8 @@ impl Command {
             session::use_threads(None)?;
         }
         match self {
+            Command::Scenes(arguments) => arguments.run().map(|()| 0),
+            Command::Check(arguments) => arguments.run().map(|()| 0),
             Command::Run(arguments) => arguments.prepare()?.run().map(|()| 0),
             Command::Resume(arguments) => arguments.run().map(|()| 0),
             Command::Inspect(arguments) => arguments.run().map(|()| 0),

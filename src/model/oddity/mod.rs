@@ -1,0 +1,42 @@
+//! What looks odd about a scene: numbers that are allowed, and most likely meant in another unit or another place.
+//!
+//! | file | what |
+//! |---|---|
+//! | `lengths` | extents, thickness, radii, arcs |
+//! | `material` | moduli, strengths, density, expansion, angles of plies |
+//! | `loads` | loads over stiffness, acceleration, numbers of load steps |
+//! | `elements` | shape of elements, and how small refinement makes them |
+//!
+//! A scene whose numbers are in units of its own says so (`units = "own"` in `[output]`), and none of them is odd.
+
+mod elements;
+mod lengths;
+mod loads;
+mod material;
+
+use crate::model::ModelError;
+use crate::model::size::Size;
+use crate::scene::{NumbersIn, Scene};
+
+/// Writes a sentence for each number of a scene that looks like a slip, with the number and what it may be.
+///
+/// # Errors
+/// Where the scene has no starting mesh.
+pub fn oddities(scene: &Scene) -> Result<Vec<String>, ModelError> {
+    if scene.output.units == NumbersIn::Own {
+        return Ok(Vec::new());
+    }
+    let size = Size::of(scene)?;
+    let found = [
+        lengths::odd(scene, &size),
+        material::odd(&scene.material),
+        loads::odd(scene, &size),
+        elements::odd(scene, &size),
+    ];
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// The name of a key with its value, as a scene has them.
+fn key(name: &str, value: f64) -> String {
+    format!("{name} = {}", crate::units::significant(value, 6))
+}

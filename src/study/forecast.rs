@@ -1,0 +1,76 @@
+//! What a run takes on the mesh that it starts with: found by doing its first load step, before anything is logged.
+
+use std::time::Instant;
+
+use crate::model::{ModelError, Size, oddities, symmetric_lines};
+use crate::pipeline::{StageError, Stages};
+use crate::record::Outcome;
+use crate::scene::{Scene, Stage};
+
+/// What is known of a run before it.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Forecast {
+    /// Size of the shell.
+    pub size: Size,
+    /// Elements of the model each way.
+    pub elements: [usize; 2],
+    /// Free unknowns of the model.
+    pub unknowns: usize,
+    /// The first load step; an error where it cannot be done.
+    pub first_step: Result<FirstStep, StageError>,
+    /// Load steps to the target if every increment is the longest that is allowed; `None` by arc length.
+    pub load_steps: Option<f64>,
+    /// Whether the mesh changes on the way, so that all of this is of the mesh at the start alone.
+    pub refines: bool,
+    /// Whether the whole shell and all that acts on it is its own mirror image in the line u = 0.5, and in v = 0.5.
+    pub symmetric: [bool; 2],
+    /// Numbers that look like slips, a sentence each.
+    pub odd: Vec<String>,
+    /// What the scene leaves open or its theory leaves out, a sentence each.
+    pub remarks: Vec<String>,
+}
+
+/// The first load step of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct FirstStep {
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Wall time with tables and factor at hand, seconds.
+    pub wall_s: f64,
+    /// Whether it ends in an equilibrium; otherwise a run goes on with a shorter step.
+    pub has_equilibrium: bool,
+}
+
+impl Forecast {
+    /// Checks a scene as a run does at its start, and does its first load step twice: tables are made in the first.
+    ///
+    /// # Errors
+    /// Where a run of the scene would be refused at its start.
+    pub fn of(scene: &Scene) -> Result<Self, ModelError> {
+        let mut stages = Stages::new(scene.clone());
+        let start = stages.start()?;
+        let remarks = stages.remarks(&start)?;
+        let unknowns = stages.unknowns(&start)?;
+        let mut step = || {
+            let begin = Instant::now();
+            let (_, report) = stages.run(Stage::Solve, &start, &mut |_| {})?;
+            Ok(FirstStep {
+                iterations: report.iterations,
+                wall_s: begin.elapsed().as_secs_f64(),
+                has_equilibrium: report.outcome == Outcome::Done,
+            })
+        };
+        Ok(Self {
+            size: Size::of(scene)?,
+            elements: start.mesh.element_counts(),
+            unknowns,
+            first_step: step().and_then(|_| step()),
+            load_steps: scene.continuation.is_none().then(|| scene.load.target() / scene.load.longest_increment()),
+            refines: scene.adapt.is_some(),
+            symmetric: symmetric_lines(scene, &start.mesh),
+            odd: oddities(scene)?,
+            remarks,
+        })
+    }
+}
