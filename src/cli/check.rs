@@ -163,7 +163,10 @@ fn symmetry(scene: &Scene, symmetric: [bool; 2]) -> String {
             let cut = if scene.symmetry == Symmetry::None { part.1 } else { "quarter" };
             format!("`part = \"{cut}\"` in [symmetry] models that part")
         }
-        false => format!("a {} of the shell, with `kind = \"symmetric\"` supports where it is cut, does for the whole", part.0),
+        false => format!(
+            "a {} of the shell, with `kind = \"symmetric\"` supports where it is cut, does for the whole",
+            part.0
+        ),
     };
     format!("in {lines}: {way}, unless shapes that are not symmetric matter")
 }

@@ -101,7 +101,11 @@ impl Arguments {
         let chosen: Vec<String> = names.clone().filter(matches).cloned().collect();
         if chosen.is_empty() {
             let known = names.map(|name| stem(name).to_owned()).collect();
-            return Err(Failure::NoSuchScene { filter: self.filter.clone(), folder: self.scenes.clone().unwrap_or_else(|| SHIPPED_FOLDER.into()), known });
+            return Err(Failure::NoSuchScene {
+                filter: self.filter.clone(),
+                folder: self.scenes.clone().unwrap_or_else(|| SHIPPED_FOLDER.into()),
+                known,
+            });
         }
         Ok(chosen)
     }

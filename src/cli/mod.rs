@@ -5,6 +5,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `new` | a scene to begin with |
 //! | `check` | what a scene is, and what a run of it takes |
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
@@ -39,6 +40,7 @@ mod inspect;
 mod json_line;
 mod load_step;
 mod log_file;
+mod new;
 mod output;
 mod plot;
 mod probe_table;
@@ -87,6 +89,7 @@ struct Arguments {
 #[derive(Subcommand, Debug)]
 enum Command {
     Scenes(scenes::Arguments),
+    New(new::Arguments),
     Check(check::Arguments),
     Run(run::Arguments),
     Resume(resume::Arguments),
@@ -130,6 +133,7 @@ impl Command {
         }
         match self {
             Command::Scenes(arguments) => arguments.run().map(|()| 0),
+            Command::New(arguments) => arguments.run().map(|()| 0),
             Command::Check(arguments) => arguments.run().map(|()| 0),
             Command::Run(arguments) => arguments.prepare()?.run().map(|()| 0),
             Command::Resume(arguments) => arguments.run().map(|()| 0),

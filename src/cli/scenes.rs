@@ -66,18 +66,13 @@ fn block(group: &[&Shipped]) -> String {
     group.iter().map(line).collect()
 }
 
-/// A text cut behind a word where it is too long.
+/// A text where it is short enough; or else the longest beginning of it that ends with a clause, or at least with a word.
 fn shortened(text: &str, most: usize) -> String {
-    if text.chars().count() <= most {
+    let fits = |part: &&str| part.chars().count() <= most;
+    let before = |mark: &'static str| text.match_indices(mark).map(|(at, _)| &text[..at]).filter(fits).last();
+    if fits(&text) {
         return text.to_owned();
     }
-    let mut short = String::new();
-    for word in text.split(' ') {
-        if short.chars().count() + word.chars().count() + 2 > most {
-            break;
-        }
-        short += word;
-        short += " ";
-    }
-    short + "…"
+    let clause = [": ", "; ", " (", ", "].into_iter().filter_map(before).max_by_key(|part| part.len());
+    clause.map(str::to_owned).or_else(|| Some(format!("{}…", before(" ")?))).unwrap_or_default()
 }

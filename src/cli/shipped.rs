@@ -143,7 +143,8 @@ impl Shipped {
 
 /// The names nearest to a wrong one, the nearest first.
 pub(super) fn nearest_names(wrong: &Path) -> Vec<&'static str> {
-    let stem = if wrong.extension().is_some_and(|ending| ending == "toml") { wrong.file_stem() } else { wrong.file_name() };
+    let stem =
+        if wrong.extension().is_some_and(|ending| ending == "toml") { wrong.file_stem() } else { wrong.file_name() };
     let wanted = stem.unwrap_or_default().to_string_lossy().to_lowercase();
     let distance = |shipped: &Shipped| {
         let own = shipped.last_name();

@@ -1,11 +1,15 @@
 //! What a run takes on the mesh that it starts with: found by doing its first load step, before anything is logged.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crate::model::{ModelError, Size, oddities, symmetric_lines};
 use crate::pipeline::{StageError, Stages};
 use crate::record::Outcome;
 use crate::scene::{Scene, Stage};
+
+/// Runs of the first step for its time, at most, and the time after which there are no more.
+const MOST_RUNS: usize = 5;
+const LONG_ENOUGH: Duration = Duration::from_millis(200);
 
 /// What is known of a run before it.
 #[derive(Debug)]
@@ -43,7 +47,7 @@ pub struct FirstStep {
 }
 
 impl Forecast {
-    /// Checks a scene as a run does at its start, and does its first load step twice: tables are made in the first.
+    /// Checks a scene as a run does at its start, and does its first load step: once for the tables, then for the time.
     ///
     /// # Errors
     /// Where a run of the scene would be refused at its start.
@@ -65,7 +69,7 @@ impl Forecast {
             size: Size::of(scene)?,
             elements: start.mesh.element_counts(),
             unknowns,
-            first_step: step().and_then(|_| step()),
+            first_step: step().and_then(|_| quickest(step)),
             load_steps: scene.continuation.is_none().then(|| scene.load.target() / scene.load.longest_increment()),
             refines: scene.adapt.is_some(),
             symmetric: symmetric_lines(scene, &start.mesh),
@@ -73,4 +77,18 @@ impl Forecast {
             remarks,
         })
     }
+}
+
+/// The quickest of some runs of a step: other programs only slow it down.
+fn quickest(mut step: impl FnMut() -> Result<FirstStep, StageError>) -> Result<FirstStep, StageError> {
+    let begin = Instant::now();
+    let mut best = step()?;
+    for _ in 1..MOST_RUNS {
+        if begin.elapsed() > LONG_ENOUGH {
+            break;
+        }
+        let next = step()?;
+        best = if next.wall_s < best.wall_s { next } else { best };
+    }
+    Ok(best)
 }

@@ -24,10 +24,16 @@ pub(super) fn odd(scene: &Scene, size: &Size) -> Vec<String> {
     let largest = size.largest_mm();
     let shown = |value: f64| significant(value, 4);
     if largest < least {
-        found.push(format!("the shell is {} mm at its longest: lengths are in mm, and these may be in m", shown(largest)));
+        found.push(format!(
+            "the shell is {} mm at its longest: lengths are in mm, and these may be in m",
+            shown(largest)
+        ));
     }
     if largest > most {
-        found.push(format!("the shell is {} mm at its longest: lengths are in mm, and these may be in µm", shown(largest)));
+        found.push(format!(
+            "the shell is {} mm at its longest: lengths are in mm, and these may be in µm",
+            shown(largest)
+        ));
     }
     if size.thickness_mm < THINNEST_MM {
         found.push(format!("the shell is {} mm thick, thinner than any film: is that in m?", shown(size.thickness_mm)));
@@ -56,7 +62,11 @@ fn thinness(size: &Size) -> Option<String> {
         let side = size.sides_mm[0].min(size.sides_mm[1]);
         let ratio = side / size.thickness_mm;
         return (ratio > SIDE_OVER_THICKNESS).then(|| {
-            format!("the shorter side, {} mm, is {} times the thickness, {thickness} mm: are both in mm?", shown(side), shown(ratio))
+            format!(
+                "the shorter side, {} mm, is {} times the thickness, {thickness} mm: are both in mm?",
+                shown(side),
+                shown(ratio)
+            )
         });
     };
     let [least, most] = RADIUS_OVER_THICKNESS;

@@ -57,7 +57,9 @@ fn strain_of(scene: &Scene, size: &Size, kind: &ActionKind) -> Option<(f64, &'st
         ActionKind::AreaForce { force_n_per_mm2, .. } => {
             (of(force_n_per_mm2), "N/mm²", of(force_n_per_mm2) * radius / stiffness)
         }
-        ActionKind::Pressure { pressure_mpa, .. } => (pressure_mpa.abs(), "MPa", pressure_mpa.abs() * radius / stiffness),
+        ActionKind::Pressure { pressure_mpa, .. } => {
+            (pressure_mpa.abs(), "MPa", pressure_mpa.abs() * radius / stiffness)
+        }
         ActionKind::Temperature { change_k } => {
             let strain = crate::shell::thermal_strain(&scene.material).map_or(0.0, |(free, _)| norm(free.membrane));
             (change_k.abs(), "K", strain * change_k.abs())

@@ -117,8 +117,7 @@ fn odd_angle(material: &Material) -> Option<String> {
         Material::Orthotropic { angle_deg, .. } => vec![*angle_deg],
         Material::Laminate { plies, .. } => plies.iter().map(|ply| ply.angle_deg).collect(),
     };
-    let in_radians =
-        |angle: f64| ROUND_DEG.into_iter().find(|round| (angle.abs() - round.to_radians()).abs() < 1e-2);
+    let in_radians = |angle: f64| ROUND_DEG.into_iter().find(|round| (angle.abs() - round.to_radians()).abs() < 1e-2);
     let (angle, round) = angles.into_iter().find_map(|angle| Some((angle, in_radians(angle)?)))?;
     Some(format!("{} is in degrees: in radians that would be {}", key("angle_deg", angle), round.copysign(angle)))
 }
