@@ -103,7 +103,10 @@ fn shown(name: &str, scene: &Scene, forecast: &Forecast, memory: Option<u64>, th
         if *refines { "; the mesh is refined on the way, and what follows is of the one at the start" } else { "" }
     );
     let memory = memory.map_or("not known on this system".to_owned(), |bytes| {
-        format!("{} MB", significant((bytes as f64 / 1e6).round(), 3))
+        let megabytes = significant((bytes as f64 / 1e6).round(), 3);
+        format!(
+            "{megabytes} MB for a load step; where the shell jumps, and at the end of a run, up to four times as much"
+        )
     });
     let mut rows = vec![
         ("size", size.to_string()),

@@ -85,6 +85,7 @@ impl Job {
         }
         let mut stages = Stages::new(scene.clone());
         let start = stages.start()?;
+        let size = Size::of(&scene)?;
         let raised = watch_signals()?;
         make_default_folder(&options.log)?;
         let begin = if is_there { JournalWriter::create_over_empty } else { JournalWriter::create };
@@ -96,12 +97,11 @@ impl Job {
                 Parameter::Rotation => format!("{}°", rounded(to)),
                 Parameter::LoadFactor => format!("load factor {}", rounded(to)),
             };
-            eprint(&Size::of(&scene)?.to_string());
+            eprint(&size.to_string());
             eprint(&format!("to {to} → {}", path_in_line(&options.log)));
         }
         // What looks odd is reported however quiet the run is.
-        let odd = oddities(&scene)?;
-        odd.iter().for_each(|odd| eprint(&wrapped("warning: ", odd)));
+        oddities(&scene, &size).iter().for_each(|odd| eprint(&wrapped("warning: ", odd)));
         stages.remarks(&start)?.iter().for_each(|remark| eprint(remark));
         if scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
             eprint(

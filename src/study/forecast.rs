@@ -56,6 +56,7 @@ impl Forecast {
         let start = stages.start()?;
         let remarks = stages.remarks(&start)?;
         let unknowns = stages.unknowns(&start)?;
+        let size = Size::of(scene)?;
         let mut step = || {
             let begin = Instant::now();
             let (_, report) = stages.run(Stage::Solve, &start, &mut |_| {})?;
@@ -66,14 +67,14 @@ impl Forecast {
             })
         };
         Ok(Self {
-            size: Size::of(scene)?,
+            odd: oddities(scene, &size),
+            size,
             elements: start.mesh.element_counts(),
             unknowns,
             first_step: step().and_then(|_| quickest(step)),
             load_steps: scene.continuation.is_none().then(|| scene.load.target() / scene.load.longest_increment()),
             refines: scene.adapt.is_some(),
             symmetric: symmetric_lines(scene, &start.mesh),
-            odd: oddities(scene)?,
             remarks,
         })
     }

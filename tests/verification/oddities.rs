@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use foldline::model::{Size, oddities};
+use foldline::model::{ModelError, Size, oddities};
 use foldline::pipeline::Stages;
 use foldline::scene::{Scene, parse};
 
@@ -165,13 +165,17 @@ fn with_net(text: &str, change: impl Fn(&[[f64; 3]]) -> Vec<[f64; 3]>) -> String
     format!("{head}control_points_mm = {:?}{tail}", change(&points))
 }
 
+fn odd(scene: &Scene) -> Result<Vec<String>, ModelError> {
+    Ok(oddities(scene, &Size::of(scene)?))
+}
+
 /// Everything that is said of a scene before its run, or the refusal.
 fn said(text: &str) -> String {
     let scene = match parse(text, "scene.toml") {
         Ok(scene) => scene,
         Err(error) => return error.plain(),
     };
-    let found = oddities(&scene).map(|odd| odd.join("\n"));
+    let found = odd(&scene).map(|odd| odd.join("\n"));
     found.and_then(|odd| Stages::new(scene).start().map(|_| odd)).unwrap_or_else(|refusal| refusal.to_string())
 }
 
@@ -202,14 +206,14 @@ fn scenes(folder: &str) -> Vec<(String, Scene)> {
 #[test]
 fn no_scene_but_the_extremes_looks_odd() {
     for (name, scene) in scenes(".").into_iter().chain(scenes("verification")) {
-        assert_eq!(oddities(&scene).unwrap(), Vec::<String>::new(), "{name}");
+        assert_eq!(odd(&scene).unwrap(), Vec::<String>::new(), "{name}");
     }
     // Of the extremes those look odd that are in other units, or whose plies or elements are of extreme proportions.
-    let odd = |(name, scene): (String, Scene)| oddities(&scene).is_ok_and(|odd| !odd.is_empty()).then_some(name);
-    let mut odd: Vec<String> = scenes("extreme").into_iter().filter_map(odd).collect();
-    odd.sort_unstable();
+    let is_odd = |(name, scene): (String, Scene)| odd(&scene).is_ok_and(|odd| !odd.is_empty()).then_some(name);
+    let mut found: Vec<String> = scenes("extreme").into_iter().filter_map(is_odd).collect();
+    found.sort_unstable();
     assert_eq!(
-        odd,
+        found,
         [
             "extreme/aspect-1000.toml",
             "extreme/laminate-1000-across.toml",

@@ -14,26 +14,22 @@ mod lengths;
 mod loads;
 mod material;
 
-use crate::model::ModelError;
 use crate::model::size::Size;
 use crate::scene::{NumbersIn, Scene};
 
-/// Writes a sentence for each number of a scene that looks like a slip, with the number and what it may be.
-///
-/// # Errors
-/// Where the scene has no starting mesh.
-pub fn oddities(scene: &Scene) -> Result<Vec<String>, ModelError> {
+/// Writes a sentence for each number of a scene that looks like a slip, with the number and what it may be; `size` is that of
+/// its shell.
+pub fn oddities(scene: &Scene, size: &Size) -> Vec<String> {
     if scene.output.units == NumbersIn::Own {
-        return Ok(Vec::new());
+        return Vec::new();
     }
-    let size = Size::of(scene)?;
     let found = [
-        lengths::odd(scene, &size),
+        lengths::odd(scene, size),
         material::odd(&scene.material),
-        loads::odd(scene, &size),
-        elements::odd(scene, &size),
+        loads::odd(scene, size),
+        elements::odd(scene, size),
     ];
-    Ok(found.into_iter().flatten().collect())
+    found.into_iter().flatten().collect()
 }
 
 /// The name of a key with its value, as a scene has them.
