@@ -12,6 +12,7 @@ use super::session::use_threads;
 use super::wrapped::wrapped;
 use crate::pipeline::StageError;
 use crate::scene::{Scene, Symmetry};
+use crate::spline::Grid;
 use crate::study::{FirstStep, Forecast, Summary};
 use crate::units::{count, duration, significant};
 
@@ -98,15 +99,13 @@ fn shown(name: &str, scene: &Scene, forecast: &Forecast, memory: Option<u64>, th
     let shell = format!("{name}: {}", Summary::new(scene, &[]).shell);
     let mesh = format!(
         "{n1} × {n2} = {} of degree {p}, {q}; {}{}",
-        count(n1 * n2, "element"),
+        count(Grid::new([*n1, *n2]).len(), "element"),
         count(*unknowns, "unknown"),
         if *refines { "; the mesh is refined on the way, and what follows is of the one at the start" } else { "" }
     );
     let memory = memory.map_or("not known on this system".to_owned(), |bytes| {
         let megabytes = significant((bytes as f64 / 1e6).round(), 3);
-        format!(
-            "{megabytes} MB for a load step; where the shell jumps, and at the end of a run, up to four times as much"
-        )
+        format!("{megabytes} MB")
     });
     let mut rows = vec![
         ("size", size.to_string()),

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::model::{ModelError, Size, oddities, symmetric_lines};
 use crate::pipeline::{StageError, Stages};
 use crate::record::Outcome;
-use crate::scene::{Scene, Stage};
+use crate::scene::{EndRotation, Load, LoadSteps, Scene, Stage};
 
 /// Runs of the first step for its time, at most, and the time after which there are no more.
 const MOST_RUNS: usize = 5;
@@ -47,7 +47,8 @@ pub struct FirstStep {
 }
 
 impl Forecast {
-    /// Checks a scene as a run does at its start, and does its first load step: once for the tables, then for the time.
+    /// Checks a scene as a run does at its start, and does its first load step: as if it were the last, since a run ends by halving
+    /// all elements to see whether they are fine enough, which takes more memory than all else; for the tables; and for the time.
     ///
     /// # Errors
     /// Where a run of the scene would be refused at its start.
@@ -57,6 +58,8 @@ impl Forecast {
         let remarks = stages.remarks(&start)?;
         let unknowns = stages.unknowns(&start)?;
         let size = Size::of(scene)?;
+        // Its outcome is that of the first step, which is asked for its time below.
+        let _ = Stages::new(ending_after_a_step(scene)).run(Stage::Solve, &start, &mut |_| {});
         let mut step = || {
             let begin = Instant::now();
             let (_, report) = stages.run(Stage::Solve, &start, &mut |_| {})?;
@@ -78,6 +81,15 @@ impl Forecast {
             remarks,
         })
     }
+}
+
+/// The scene with the target that its first load step reaches.
+fn ending_after_a_step(scene: &Scene) -> Scene {
+    let load = match scene.load.clone() {
+        Load::EndRotation(load) => Load::EndRotation(EndRotation { rotation_deg: load.increment_deg, ..load }),
+        Load::Steps(load) => Load::Steps(LoadSteps { factor: load.increment, ..load }),
+    };
+    Scene { load, ..scene.clone() }
 }
 
 /// The quickest of some runs of a step: other programs only slow it down.

@@ -271,7 +271,8 @@ impl Summary {
     /// Whether the moment fell so far that the shell has a fold, of which there are laws.
     fn has_folded(&self, fold: FoldMean) -> bool {
         let before = self.snaps.iter().map(|snap| snap.moment_before_n_mm).fold(0.0, f64::max);
-        fold.moment_n_mm < FOLDED * before.max(self.peak.map_or(0.0, |peak| peak.moment_n_mm))
+        let highest = before.max(self.peak.map_or(0.0, |peak| peak.moment_n_mm));
+        highest == 0.0 || fold.moment_n_mm < FOLDED * highest
     }
 
     fn write_fold(&self, f: &mut Formatter<'_>, spring: &TapeSpring, fold: FoldMean) -> fmt::Result {

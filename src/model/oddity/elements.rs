@@ -1,6 +1,6 @@
 //! Elements that look odd.
 
-use super::key;
+use super::key::key;
 use crate::model::size::Size;
 use crate::scene::{LengthLimit, Scene};
 use crate::units::significant;
@@ -14,12 +14,12 @@ pub(super) fn odd(scene: &Scene, size: &Size) -> Vec<String> {
 
 /// Elements far longer one way than the other: the numbers of elements along u and v are exchanged.
 fn aspect(scene: &Scene, size: &Size) -> Option<String> {
-    let [n1, n2] = scene.mesh.elements;
-    let lengths = [size.sides_mm[0] / n1 as f64, size.sides_mm[1] / n2 as f64];
+    let elements = scene.mesh.elements;
+    let lengths = [0, 1].map(|direction| size.sides_mm[direction] / elements[direction] as f64);
     let aspect = (lengths[0] / lengths[1]).max(lengths[1] / lengths[0]);
     (aspect > MOST_ASPECT).then(|| {
         let [length, width] = lengths.map(|length| significant(length, 3));
-        format!("mesh.elements = [{n1}, {n2}] makes elements of {length} × {width} mm: are u and v exchanged?")
+        format!("mesh.elements = {elements:?} makes elements of {length} × {width} mm: are u and v exchanged?")
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::key;
+use super::key::key;
 use crate::model::size::Size;
 use crate::scene::{Geometry, Scene};
 use crate::units::{rounded, significant};

@@ -1,6 +1,6 @@
 //! Loads, accelerations and increments that look odd.
 
-use super::key;
+use super::key::key;
 use crate::model::size::Size;
 use crate::scene::{Action, ActionKind, ForceVector, History, Load, Scene};
 use crate::shell::norm;

@@ -1,6 +1,6 @@
 //! Moduli, strengths, densities, expansions and angles of plies that look odd.
 
-use super::key;
+use super::key::key;
 use crate::model::size::laws;
 use crate::scene::{Material, OrthotropicLaw};
 use crate::units::significant;

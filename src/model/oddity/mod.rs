@@ -5,11 +5,13 @@
 //! | `lengths` | extents, thickness, radii, arcs |
 //! | `material` | moduli, strengths, density, expansion, angles of plies |
 //! | `loads` | loads over stiffness, acceleration, numbers of load steps |
+//! | `key` | a key with its value, in words |
 //! | `elements` | shape of elements, and how small refinement makes them |
 //!
 //! A scene whose numbers are in units of its own says so (`units = "own"` in `[output]`), and none of them is odd.
 
 mod elements;
+mod key;
 mod lengths;
 mod loads;
 mod material;
@@ -30,9 +32,4 @@ pub fn oddities(scene: &Scene, size: &Size) -> Vec<String> {
         elements::odd(scene, size),
     ];
     found.into_iter().flatten().collect()
-}
-
-/// The name of a key with its value, as a scene has them.
-fn key(name: &str, value: f64) -> String {
-    format!("{name} = {}", crate::units::significant(value, 6))
 }
