@@ -38,6 +38,16 @@ pub(crate) fn reading(value: f64, decimals: usize) -> String {
     .replace('-', "−")
 }
 
+/// Formats a measured number with this many decimals, or with four significant digits where those would leave fewer than
+/// three digits of it, or more than ten.
+pub(crate) fn figure(value: f64, decimals: usize) -> String {
+    let least = 10.0_f64.powi(2 - decimals as i32);
+    match value.abs() {
+        size if size == 0.0 || (least..1e7).contains(&size) => format!("{value:.decimals$}").replace('-', "−"),
+        _ => significant(value, 4),
+    }
+}
+
 /// Formats a point in space as "(x, y, z) mm"; a component of a millionth of the largest or less is 0.
 pub(crate) fn place(point: [f64; 3]) -> String {
     let largest = point.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
@@ -84,6 +94,10 @@ mod tests {
         assert_eq!(
             ["0.0000", "−0.0123", "1.5900e−6"],
             [0.0, -0.0123, 1.59e-6].map(|value| reading(value, 4)).as_slice()
+        );
+        assert_eq!(
+            ["2771.9", "−26.6", "2.772", "0.002772", "2.772e−9", "2.772e9", "0.0"],
+            [2771.93, -26.57, 2.77193, 2.77193e-3, 2.77193e-9, 2.77193e9, 0.0].map(|value| figure(value, 1)).as_slice()
         );
         assert_eq!(place([1e-17, -2.0, 3.0e-4]), "(0, −2, 3e−4) mm");
         assert_eq!(count(1, "stage"), "1 stage");

@@ -10,6 +10,7 @@ use super::failure::Failure;
 use super::output::{eprint, print, print_json};
 use super::scene_file::read_scene;
 use super::session::use_threads;
+use super::shipped::SHIPPED;
 use crate::scene::Scene;
 use crate::study::{ExtremeRow, ExtremesSuite};
 use crate::units::{count, duration};
@@ -23,9 +24,9 @@ use crate::units::{count, duration};
 pub(super) struct Arguments {
     /// Run only scenes whose names contain this
     filter: Option<String>,
-    /// Folder of the scenes
-    #[arg(long, value_name = "FOLDER", default_value = "pipelines/extreme")]
-    scenes: PathBuf,
+    /// Folder of the scenes [default: extreme/ of those that come with the program]
+    #[arg(long, value_name = "FOLDER")]
+    scenes: Option<PathBuf>,
     /// Seconds that one run of a scene may take
     #[arg(long, value_name = "SECONDS", default_value_t = 120, value_parser = clap::value_parser!(u64).range(1..))]
     limit: u64,
@@ -36,6 +37,9 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+/// Where the extremes are among the scenes that come with the program.
+const SHIPPED_FOLDER: &str = "extreme/";
 
 /// Below the options in `--help`.
 const COLUMNS: &str = "\
@@ -61,7 +65,10 @@ Exit codes: 0 all ended as stated, 1 some did not, 2 wrong arguments or a wrong 
 impl Arguments {
     /// Runs and prints; the exit code.
     pub(super) fn run(self) -> Result<u8, Failure> {
-        let files = list_folder(&self.scenes)?;
+        let files = match &self.scenes {
+            Some(folder) => list_folder(folder)?,
+            None => list_shipped(),
+        };
         let names = self.chosen(files.keys())?;
         let scenes = read_scenes(&files, &names)?;
         use_threads(self.threads.map(usize::from))?;
@@ -94,7 +101,11 @@ impl Arguments {
         let chosen: Vec<String> = names.clone().filter(matches).cloned().collect();
         if chosen.is_empty() {
             let known = names.map(|name| stem(name).to_owned()).collect();
-            return Err(Failure::NoSuchScene { filter: self.filter.clone(), folder: self.scenes.clone(), known });
+            return Err(Failure::NoSuchScene {
+                filter: self.filter.clone(),
+                folder: self.scenes.clone().unwrap_or_else(|| SHIPPED_FOLDER.into()),
+                known,
+            });
         }
         Ok(chosen)
     }
@@ -111,6 +122,12 @@ fn list_folder(folder: &Path) -> Result<BTreeMap<String, PathBuf>, Failure> {
         }
     }
     Ok(files)
+}
+
+/// Every extreme that comes with the program by the name that its file has.
+fn list_shipped() -> BTreeMap<String, PathBuf> {
+    let extremes = SHIPPED.iter().filter(|shipped| shipped.name.starts_with(SHIPPED_FOLDER));
+    extremes.map(|shipped| (format!("{}.toml", shipped.last_name()), shipped.name.into())).collect()
 }
 
 /// The scenes that are run, and those that they are compared with; others in the folder may be as they are.

@@ -28,6 +28,13 @@ Exit codes:
 pub(super) enum Failure {
     #[error("cannot read {}", path.display())]
     Read { path: PathBuf, source: io::Error },
+    #[error(
+        "cannot read {}: there is no such file, and no scene of that name comes with the program{}; `foldline scenes` lists those",
+        path.display(), offered(nearest)
+    )]
+    NoSuchSceneFile { path: PathBuf, nearest: Vec<&'static str> },
+    #[error("no scene that comes with the program has `{filter}` in its name; `foldline scenes` lists them")]
+    NoShippedScene { filter: String },
     #[error("{} is no scene: {reason}", path.display())]
     NotText { path: PathBuf, reason: String },
     #[error("cannot write {}", path.display())]
@@ -150,6 +157,8 @@ impl Failure {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Failure::Read { .. }
+            | Failure::NoSuchSceneFile { .. }
+            | Failure::NoShippedScene { .. }
             | Failure::NotText { .. }
             | Failure::InTheWay { .. }
             | Failure::StudyAmongLogs { .. }
@@ -214,6 +223,14 @@ impl Failure {
             cause = error.source();
         }
         text
+    }
+}
+
+/// Names in place of a wrong one, in words.
+fn offered(nearest: &[&str]) -> String {
+    match nearest {
+        [] => String::new(),
+        names => format!(" (the nearest: {})", names.join(", ")),
     }
 }
 

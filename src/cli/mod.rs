@@ -5,6 +5,8 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `new` | a scene to begin with |
+//! | `check` | what a scene is, and what a run of it takes |
 //! | `run`, `resume` | a run from its start, and from where it stopped |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
 //! | `plotted`, `pictured`, `animated` | logs, as curves are drawn of them; a state as a picture; load steps as an animation |
@@ -14,11 +16,13 @@
 //! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
 //! | `calibrate` | the threshold at which a scene's mesh keeps an error |
 //! | `help` | help on subcommands and topics |
+//! | `scenes`, `shipped` | the scenes that come with the program |
 //! | `scene_file`, `log_file`, `asked` | what is read: scenes, logs, some stages of a log |
 //! | `session` | threads, signals, the log of a run under way |
 //! | `probe_table` | what probes measure on a log |
 //! | `progress`, `load_step`, `stage_table`, `json_line` | stages, as they are shown |
 //! | `trace` | iterates of replayed stages |
+//! | `wrapped` | sentences in lines that fit |
 //! | `output`, `failure` | streams and files; what can stop a command |
 
 mod animated;
@@ -26,6 +30,7 @@ mod asked;
 mod bench;
 mod bisect;
 mod calibrate;
+mod check;
 mod compare;
 mod converge;
 mod export;
@@ -37,6 +42,7 @@ mod inspect;
 mod json_line;
 mod load_step;
 mod log_file;
+mod new;
 mod output;
 mod pictured;
 mod plot;
@@ -49,7 +55,9 @@ mod report;
 mod resume;
 mod run;
 mod scene_file;
+mod scenes;
 mod session;
+mod shipped;
 mod speed_ups;
 mod stability;
 mod stage_table;
@@ -57,6 +65,7 @@ mod study;
 mod thin;
 mod trace;
 mod verify;
+mod wrapped;
 
 use std::process::ExitCode;
 
@@ -83,6 +92,9 @@ struct Arguments {
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    Scenes(scenes::Arguments),
+    New(new::Arguments),
+    Check(check::Arguments),
     Run(run::Arguments),
     Resume(resume::Arguments),
     Inspect(inspect::Arguments),
@@ -124,6 +136,9 @@ impl Command {
             session::use_threads(None)?;
         }
         match self {
+            Command::Scenes(arguments) => arguments.run().map(|()| 0),
+            Command::New(arguments) => arguments.run().map(|()| 0),
+            Command::Check(arguments) => arguments.run().map(|()| 0),
             Command::Run(arguments) => arguments.prepare()?.run().map(|()| 0),
             Command::Resume(arguments) => arguments.run().map(|()| 0),
             Command::Inspect(arguments) => arguments.run().map(|()| 0),

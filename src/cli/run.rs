@@ -10,7 +10,9 @@ use super::progress::ProgressStyle;
 use super::resume::{self, OldLog};
 use super::scene_file::{SceneFile, read_scene};
 use super::session::{RunOptions, drive, positive, watch_signals};
+use super::wrapped::wrapped;
 use crate::journal::{JournalWriter, Manifest};
+use crate::model::{Size, oddities};
 use crate::pipeline::{Run, Stages};
 use crate::record::Parameter;
 use crate::scene::Quadrature;
@@ -21,7 +23,7 @@ use crate::units::rounded;
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(super) struct Arguments {
-    /// Scene file (TOML); `foldline help scene` describes its keys
+    /// Scene file (TOML), or the name of one of `foldline scenes`; `foldline help scene` describes its keys
     scene: PathBuf,
     /// Log to write (MCAP) [default: checkpoints/SCENE.mcap]
     #[arg(short, long, value_name = "LOG", value_parser = file_name())]
@@ -46,7 +48,6 @@ pub(super) struct Arguments {
 
 /// A run that has been checked and can start.
 pub(super) struct Job {
-    file: PathBuf,
     scene: SceneFile,
     options: RunOptions,
     resume: bool,
@@ -60,19 +61,19 @@ impl Arguments {
             return Err(Failure::UntilBeyondScene { until, scene: Box::new(scene.scene) });
         }
         let options = RunOptions {
-            log: self.output.unwrap_or_else(|| default_log(&self.scene)),
+            log: self.output.unwrap_or_else(|| default_log(&scene.file)),
             threads: self.threads.map(usize::from),
             until: self.until,
             style: ProgressStyle::of(self.quiet, self.json),
         };
-        Ok(Job { file: self.scene, scene, options, resume: self.resume })
+        Ok(Job { scene, options, resume: self.resume })
     }
 }
 
 impl Job {
     /// Runs the scene and prints the summary.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Job { file, scene: SceneFile { scene, text }, options, resume } = self;
+        let Job { scene: SceneFile { scene, text, file }, options, resume } = self;
         let manifest = Manifest::here(&file, &text, options.use_threads()?);
         manifest.check_size().map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         let is_there = resume && options.log.exists();
@@ -84,6 +85,7 @@ impl Job {
         }
         let mut stages = Stages::new(scene.clone());
         let start = stages.start()?;
+        let size = Size::of(&scene)?;
         let raised = watch_signals()?;
         make_default_folder(&options.log)?;
         let begin = if is_there { JournalWriter::create_over_empty } else { JournalWriter::create };
@@ -95,9 +97,11 @@ impl Job {
                 Parameter::Rotation => format!("{}°", rounded(to)),
                 Parameter::LoadFactor => format!("load factor {}", rounded(to)),
             };
+            eprint(&size.to_string());
             eprint(&format!("to {to} → {}", path_in_line(&options.log)));
         }
         // What looks odd is reported however quiet the run is.
+        oddities(&scene, &size).iter().for_each(|odd| eprint(&wrapped("warning: ", odd)));
         stages.remarks(&start)?.iter().for_each(|remark| eprint(remark));
         if scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
             eprint(

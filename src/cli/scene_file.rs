@@ -1,34 +1,53 @@
-//! Scene files.
+//! Scene files, and the scenes that come with the program.
 
 use std::io::{self, IsTerminal};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 use super::output::path_in_line;
+use super::shipped::{Shipped, nearest_names};
 use crate::scene::{Geometry, SCENE_BYTES_LIMIT, Scene, SceneError, Stage, parse_with_settings};
 
 /// A scene with the text that it came from.
 pub(super) struct SceneFile {
     pub(super) scene: Scene,
     pub(super) text: String,
+    /// Where it is, or would be if it did not come with the program: logs are named after it.
+    pub(super) file: PathBuf,
+}
+
+/// A text where it is, or would be if it did not come with the program.
+pub(super) struct NamedText {
+    pub(super) text: String,
+    pub(super) file: PathBuf,
+    pub(super) is_shipped: bool,
 }
 
 /// Reads and checks a scene file.
 pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
-    let text = read_text(path)?;
+    let NamedText { text, file, .. } = read_named(path)?;
     let scene = checked(&text, &path_in_line(path), &[])?;
     // A log needs no other file: a surface from a file of its own goes into the text that the log keeps.
     let text = match scene.geometry {
         Geometry::Nurbs(_) => scene.to_toml(),
         _ => text,
     };
-    Ok(SceneFile { scene, text })
+    Ok(SceneFile { scene, text, file })
 }
 
-/// Reads the text of a scene or a study.
-pub(super) fn read_text(path: &Path) -> Result<String, Failure> {
-    let bytes = bytes_of(path).map_err(|source| Failure::Read { path: path.to_path_buf(), source })?;
-    text_of(bytes).map_err(|reason| Failure::NotText { path: path.to_path_buf(), reason })
+/// Reads the text of a scene or a study: a file, or else what comes with the program under that name.
+pub(super) fn read_named(path: &Path) -> Result<NamedText, Failure> {
+    match (bytes_of(path), Shipped::named(path)) {
+        (Ok(bytes), _) => {
+            let text = text_of(bytes).map_err(|reason| Failure::NotText { path: path.to_path_buf(), reason })?;
+            Ok(NamedText { text, file: path.to_path_buf(), is_shipped: false })
+        }
+        (Err(source), shipped) if source.kind() == io::ErrorKind::NotFound => match shipped {
+            Some(shipped) => Ok(NamedText { text: shipped.text.to_owned(), file: shipped.file(), is_shipped: true }),
+            None => Err(Failure::NoSuchSceneFile { path: path.to_path_buf(), nearest: nearest_names(path) }),
+        },
+        (Err(source), _) => Err(Failure::Read { path: path.to_path_buf(), source }),
+    }
 }
 
 /// What a scene file holds. A pipe would hang, and a device never end.

@@ -1,5 +1,6 @@
 //! `foldline study STUDY`: the runs of a study file, their errors and times, and the speed-ups over uniform meshes.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -7,8 +8,9 @@ use serde_json::{Value, json};
 
 use super::failure::Failure;
 use super::output::{eprint, path_in_line, print, print_json, refuse_what_is_there, write_files};
-use super::scene_file::{read_text, rendered};
+use super::scene_file::{NamedText, read_named, rendered};
 use super::session::watch_signals;
+use super::shipped::Shipped;
 use crate::scene::Scene;
 use crate::study::{
     AccuracyRow, Archive, Errors, Measured, MeshPoint, Planned, Purpose, Role, SpeedUp, Structure, StudyError,
@@ -76,11 +78,15 @@ pub(super) fn run(
 
 /// Reads a study, with the runs of each of its structures.
 fn planned(file: &Path, set: &[String]) -> Result<(StudyFile, Vec<Vec<Planned>>), Failure> {
-    let text = read_text(file)?;
+    let NamedText { text, file: place, is_shipped } = read_named(file)?;
     let mut study = StudyFile::parse(&text, &path_in_line(file)).map_err(|error| wrong(&error))?;
     study.settings.extend_from_slice(set);
-    let folder = file.parent().unwrap_or(Path::new(""));
-    let planned = study.structure.iter().map(|structure| study.runs(structure, folder));
+    let folder = place.parent().unwrap_or(Path::new(""));
+    let read = |path: &Path| match is_shipped {
+        true => Shipped::at(path).map(|scene| scene.text.to_owned()).ok_or(ErrorKind::NotFound.into()),
+        false => std::fs::read_to_string(path),
+    };
+    let planned = study.structure.iter().map(|structure| study.runs(structure, folder, &read));
     let planned = planned.collect::<Result<Vec<_>, _>>().map_err(|error| wrong(&error))?;
     Ok((study, planned))
 }

@@ -15,7 +15,7 @@ use crate::model::parametrize::{parameters_of, sample_parameters};
 use crate::model::scene_supports::supports_of;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{
-    Action, ActionKind, ForceVector, History, Hold, Motion, ParametricDirection, Region, Scene, Support,
+    Action, ActionKind, ForceVector, History, Hold, Motion, ParametricDirection, Region, Scene, Seam, Support,
 };
 use crate::shell::{dot, norm, scaled, sub};
 use crate::spline::{Mesh, mid_surface_point};
@@ -42,6 +42,9 @@ struct SupportOrAction {
     kind: String,
     /// Points of its place: one, or start, middle and end of a line; none for the whole surface.
     points: Vec<[f64; 3]>,
+    /// How far across the line its place is, as a parameter from the line: it tells the lips of a slit apart, which lie in one place.
+    /// 0 where it reaches over both sides.
+    side: f64,
     /// Vectors that are mirrored: forces, translations, arms.
     vectors: Vec<Given>,
     /// Vectors that are mirrored and turned round: moments and turns.
@@ -72,8 +75,9 @@ pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Re
         ));
     }
     let supports = supports_of(scene);
-    let supports = supports.iter().map(|support| SupportOrAction::of_support(scene, mesh, support, origin));
-    let actions = scene.actions.iter().filter_map(|action| SupportOrAction::of_action(scene, mesh, action));
+    let across = mirror.direction;
+    let supports = supports.iter().map(|support| SupportOrAction::of_support(scene, mesh, support, across, origin));
+    let actions = scene.actions.iter().filter_map(|action| SupportOrAction::of_action(scene, mesh, action, across));
     let parts: Vec<SupportOrAction> = supports.chain(actions).collect();
     let count = |part: &SupportOrAction| parts.iter().filter(|other| plane.is_same(part, other)).count();
     let unmatched = |part: &&SupportOrAction| plane.image(part).is_none_or(|image| count(&image) != count(part));
@@ -113,8 +117,20 @@ fn points_of(scene: &Scene, mesh: &Mesh, on: Region) -> Vec<[f64; 3]> {
     fractions.into_iter().map(position).collect()
 }
 
+/// How far a place is from the middle in the direction across the line. Both ends of a closed shell are one place.
+fn side_of(scene: &Scene, on: Region, across: usize) -> f64 {
+    let fraction = match on {
+        Region::Edge(edge) if side(edge).0 == across => f64::from(u8::from(side(edge).1)),
+        Region::Line(direction, fraction) if direction.index() == across => fraction,
+        Region::Point(at) => at[across],
+        Region::Edge(_) | Region::Line(..) | Region::Whole => return 0.0,
+    };
+    let is_end = fraction == 0.0 || fraction == 1.0;
+    if is_end && scene.geometry.seam() == Some(Seam::Smooth) { 0.0 } else { fraction - 0.5 }
+}
+
 impl SupportOrAction {
-    fn of_support(scene: &Scene, mesh: &Mesh, support: &Support, origin: [f64; 3]) -> Self {
+    fn of_support(scene: &Scene, mesh: &Mesh, support: &Support, across: usize, origin: [f64; 3]) -> Self {
         let (kind, vectors, turns) = match &support.hold {
             Hold::Symmetric => ("symmetric", vec![], vec![]),
             Hold::RigidMotions => ("rigid motions", vec![], vec![]),
@@ -134,6 +150,7 @@ impl SupportOrAction {
             name: format!("support \"{}\"", support.name),
             kind: kind.into(),
             points: points_of(scene, mesh, support.on),
+            side: side_of(scene, support.on, across),
             vectors,
             turns,
             history: support.history.clone(),
@@ -141,7 +158,7 @@ impl SupportOrAction {
     }
 
     /// Creates the description of an action; `None` for one on the whole surface.
-    fn of_action(scene: &Scene, mesh: &Mesh, action: &Action) -> Option<Self> {
+    fn of_action(scene: &Scene, mesh: &Mesh, action: &Action, across: usize) -> Option<Self> {
         let forced = |kind: &str, force: ForceVector| match force {
             ForceVector::Components(force) => (kind.to_owned(), vec![force.map(Some)], vec![]),
             ForceVector::Along(size, direction) => (format!("{kind} of {size:?} {direction:?}"), vec![], vec![]),
@@ -164,6 +181,7 @@ impl SupportOrAction {
             name: format!("action \"{}\"", action.name),
             kind,
             points: points_of(scene, mesh, on),
+            side: side_of(scene, on, across),
             vectors,
             turns,
             history: action.history.clone(),
@@ -193,6 +211,7 @@ impl Plane {
         let turned = |turn: &Given| Some(self.given(turn)?.map(|component| component.map(|value| -value)));
         Some(SupportOrAction {
             points: part.points.iter().map(|point| self.point(*point)).collect(),
+            side: -part.side,
             vectors: part.vectors.iter().map(|vector| self.given(vector)).collect::<Option<_>>()?,
             turns: part.turns.iter().map(turned).collect::<Option<_>>()?,
             ..part.clone()
@@ -210,6 +229,7 @@ impl Plane {
         let all_alike = |a: &[Given], b: &[Given]| a.len() == b.len() && a.iter().zip(b).all(alike);
         one.kind == other.kind
             && one.history == other.history
+            && (one.side - other.side).abs() <= SAME_PARAMETER
             && one.points.len() == other.points.len()
             && (one.points.iter().zip(&other.points).all(near)
                 || one.points.iter().zip(other.points.iter().rev()).all(near))

@@ -8,10 +8,12 @@
 //! | `joint` | knot lines across which the surface is smooth |
 //! | `soundness`, `thinness`, `overhang` | whether a shell can have that surface |
 //! | `subdivision`, `start` | the mesh that a run starts from |
+//! | `size`, `oddity` | the size of a shell in a few numbers; numbers of a scene that look like slips |
 //! | `parametrize`, `edge`, `direction` | parameters at fractions of length and angle; rows and normals of edges; directions at a point |
 //! | `expressions` | displacements of places as sums over control points |
 //! | `symmetry_plane`, `symmetric_line`, `mirror` | planes of symmetry |
 //! | `mirror_check`, `mirror_image` | whether loads, material and shell are their own mirror images |
+//! | `symmetric_shell` | in which lines they would be |
 //! | `scene_supports` | the supports of a scene |
 //! | `ties` | joints, seams and planes that tie rows |
 //! | `body` | a rigid body and its motions |
@@ -47,6 +49,7 @@ mod limits;
 mod mirror;
 mod mirror_check;
 mod mirror_image;
+mod oddity;
 mod overhang;
 mod parametrize;
 mod placement;
@@ -57,11 +60,13 @@ mod rigid_support;
 mod rotation;
 mod scene_supports;
 mod shape;
+mod size;
 mod soundness;
 mod start;
 mod subdivision;
 mod supports;
 mod symmetric_line;
+mod symmetric_shell;
 mod symmetry_plane;
 mod tables;
 mod thinness;
@@ -81,14 +86,17 @@ pub(crate) use gauss::gauss_points;
 pub use limits::MOST_CONTROL_POINTS;
 pub(crate) use limits::ROUNDING;
 pub(crate) use mirror::Mirror;
+pub use oddity::oddities;
 pub(crate) use parametrize::{line_place, parameters_of};
 pub use placement::Placement;
 pub(crate) use quadrature::PointCounts;
 pub use reactions::{Exerted, PointForces};
 pub(crate) use rigid_motion::{HELD, free_motions};
 pub(crate) use scene_supports::supports_of;
+pub use size::Size;
 pub use start::starting_mesh;
 pub use supports::Supports;
+pub use symmetric_shell::symmetric_lines;
 pub(crate) use tables::{BATCH, LANES};
 pub use tables::{PointTable, Tables};
 pub(crate) use thinness::{ERROR_OF_OFFSET, Extent, THICK};

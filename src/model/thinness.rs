@@ -61,7 +61,7 @@ impl Extent {
 }
 
 /// Computes the length of the line through the middle that runs in a direction, mm.
-fn side_mm(mesh: &Mesh, direction: usize) -> f64 {
+pub(super) fn side_mm(mesh: &Mesh, direction: usize) -> f64 {
     let point = |at: f64| mid_surface_point(mesh, &[], if direction == 0 { [at, 0.5] } else { [0.5, at] });
     span_points(mesh, direction, POINTS)
         .into_iter()

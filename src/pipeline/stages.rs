@@ -76,6 +76,14 @@ impl Stages {
         Ok(state)
     }
 
+    /// Number of free unknowns of the model on the mesh of a state.
+    ///
+    /// # Errors
+    /// Where supports do not fit the mesh.
+    pub fn unknowns(&mut self, state: &State) -> Result<usize, ModelError> {
+        Ok(self.current.unknowns(&self.scene, &state.mesh)?.count())
+    }
+
     /// Remarks on what the scene leaves open or its theory leaves out, a sentence each.
     ///
     /// # Errors

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::record::{CriticalPoint, Warning};
 use crate::scene::{Parameter, Scene, Stage};
 use crate::state::State;
+use crate::units::figure;
 
 /// What a stage did and the numbers of the state that it made. It depends on model and state alone, on no clock and no
 /// machine.
@@ -115,7 +116,7 @@ impl Report {
 /// Describes the energy that a jump released, with this number of decimals, or why it is not known.
 pub fn released_in_words(energy_n_mm: Option<f64>, loads_follow: bool, decimals: usize) -> String {
     match energy_n_mm {
-        Some(energy) => format!("released {energy:.decimals$} N·mm"),
+        Some(energy) => format!("released {} N·mm", figure(energy, decimals)),
         None if loads_follow => "energy released not known: the loads have no potential".into(),
         None => "energy released not known: less than the rule of work resolves".into(),
     }

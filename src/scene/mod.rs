@@ -69,8 +69,8 @@ pub use check::{parse, parse_with_settings};
 pub use data::{
     Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Component, Edge, EndRotation, Expectation,
     ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, LengthLimit, Load, LoadSteps,
-    LoadedArea, Material, MeshSpec, Motion, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Ply, Probe,
-    ProbeKind, Quadrature, Reaction, Region, Scene, Seam, Sense, Solver, Splitting, Stage, Strengths, Support,
+    LoadedArea, Material, MeshSpec, Motion, NumbersIn, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Ply,
+    Probe, ProbeKind, Quadrature, Reaction, Region, Scene, Seam, Sense, Solver, Splitting, Stage, Strengths, Support,
     SurfaceDirection, Symmetry, SyncPolicy,
 };
 pub use difference::Difference;

@@ -6,6 +6,7 @@
 //! | `wuest`, `section_shape` | closed-form laws of tape springs |
 //! | `path` | the equilibria of a run, and its jumps |
 //! | `summary`, `summary_text` | what a run found |
+//! | `forecast` | what is known of a run before it |
 //! | `timed_run`, `bench` | what it costs |
 //! | `accuracy`, `convergence` | error against that |
 //! | `comparison` | runs next to each other |
@@ -24,6 +25,7 @@ mod extremes;
 mod extremes_curve;
 mod extremes_fault;
 mod extremes_run;
+mod forecast;
 mod path;
 mod section_shape;
 mod speed_up;
@@ -45,6 +47,7 @@ pub use convergence::{ConvergenceError, ConvergenceRow, check_spring, converge};
 pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;
+pub use forecast::{FirstStep, Forecast};
 pub use path::{OnPath, Passed, PathPoint, Snap, equilibria, equilibrium_path, records_on_path, snaps};
 pub use speed_up::{Errors, MeshPoint, SpeedUp, error_of_finer, speed_up};
 pub use study_file::{Adaptive, Family, Planned, ReferenceMesh, Role, Structure, StudyError, StudyFile};

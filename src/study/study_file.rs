@@ -218,14 +218,19 @@ impl StudyFile {
     }
 
     /// The runs of a structure: the reference, the coarser one, uniform meshes from coarse to fine, adaptive runs. Scenes are
-    /// looked for from `folder`.
+    /// looked for from `folder`, and read by `read`.
     ///
     /// # Errors
     /// Where a scene cannot be read, or is wrong with the settings of a run.
-    pub fn runs(&self, structure: &Structure, folder: &Path) -> Result<Vec<Planned>, StudyError> {
+    pub fn runs(
+        &self,
+        structure: &Structure,
+        folder: &Path,
+        read: &dyn Fn(&Path) -> std::io::Result<String>,
+    ) -> Result<Vec<Planned>, StudyError> {
         let path = folder.join(&structure.scene);
         let named = path.display().to_string();
-        let text = std::fs::read_to_string(&path).map_err(|source| StudyError::NoScene {
+        let text = read(&path).map_err(|source| StudyError::NoScene {
             structure: structure.name.clone(),
             scene: named.clone(),
             source,

@@ -92,7 +92,9 @@ fn every_study_can_be_run() {
         let path = entry.unwrap().path();
         let study = StudyFile::parse(&fs::read_to_string(&path).unwrap(), "study.toml").unwrap();
         for structure in &study.structure {
-            let runs = study.runs(structure, &folder).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            let runs = study
+                .runs(structure, &folder, &|path| fs::read_to_string(path))
+                .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
             assert!(runs.len() > 10 && structure.published.is_some(), "{}", structure.name);
             structures += 1;
         }

@@ -149,7 +149,7 @@ fn wrong_questions_about_stability() {
     place.foldline("stability run.mcap --step 0").ends(2).says(&["it has 1 to"]);
     place.foldline("stability run.mcap --step one").ends(2).says(&["one"]);
     place.foldline("stability run.mcap -o pictures").ends(2).says(&["--step"]);
-    place.foldline("stability none.mcap").ends(2).says(&["none.mcap", "No such file"]);
+    place.foldline("stability none.mcap").ends(2).says(&["none.mcap", "there is no such file"]);
     place.foldline("stability").ends(2);
 }
 

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use foldline::record::{Commit, Outcome, Parameter, Record, Report, Warning};
 use foldline::scene::{
-    Adapt, EndRotation, Geometry, Indicator, LengthLimit, Load, Material, MeshSpec, Output, Quadrature, Scene, Sense,
-    Solver, Splitting, Stage, Symmetry, SyncPolicy,
+    Adapt, EndRotation, Geometry, Indicator, LengthLimit, Load, Material, MeshSpec, NumbersIn, Output, Quadrature,
+    Scene, Sense, Solver, Splitting, Stage, Symmetry, SyncPolicy,
 };
 use foldline::state::{DriveMemory, Hash, Mesh, State};
 
@@ -64,7 +64,7 @@ pub fn scene() -> Scene {
         },
         continuation: None,
         pipeline: Stage::REFINING.to_vec(),
-        output: Output { sync: SyncPolicy::EachSecond, mesh_history: false },
+        output: Output { sync: SyncPolicy::EachSecond, mesh_history: false, units: NumbersIn::Keys },
         expect: None,
     }
 }

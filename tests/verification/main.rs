@@ -17,6 +17,7 @@ mod free_strain;
 mod house;
 mod imports;
 mod mirrors;
+mod oddities;
 mod path;
 mod quadrature;
 mod quadrature_balance;

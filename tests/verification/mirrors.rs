@@ -1,6 +1,6 @@
 //! Planes of symmetry: what is not its own mirror image is refused with its numbers, and what is, is taken.
 
-use foldline::model::ModelError;
+use foldline::model::{ModelError, starting_mesh, symmetric_lines};
 use foldline::pipeline::Stages;
 use foldline::scene::{OrthotropicLaw, Ply, Scene, Symmetry, parse};
 
@@ -261,6 +261,31 @@ fn edges_that_are_no_mirrors_are_told_with_angle_and_distance() {
         start(leaves),
     ];
     insta::assert_snapshot!(told.join("\n\n"));
+}
+
+/// The lips of a slit lie in one place, and are two: what holds the one and pulls the other is no mirror image.
+#[test]
+fn lips_of_a_slit_are_told_apart() {
+    let text = include_str!("../../pipelines/verification/slit-annular-plate.toml");
+    let plane = "[[support]]\nname = \"plane\"\non = \"v=0.5\"\nkind = \"symmetric\"\n\n[[action]]";
+    let scene = parse(&text.replace("[[action]]", plane), "slit.toml").unwrap();
+    let refused = Stages::new(scene).start().unwrap_err().to_string();
+    assert!(refused.contains("support \"clamped lip\" has no mirror image on the other side"), "{refused}");
+}
+
+/// In which lines a shell is symmetric is found without asking for a plane of symmetry, and is what asking for one would find.
+#[test]
+fn symmetric_lines_are_found() {
+    let lines = |name: &str| {
+        let scene = scene(name);
+        symmetric_lines(&scene, &starting_mesh(&scene).unwrap())
+    };
+    assert_eq!(lines("baseline.toml"), [true, true]);
+    assert_eq!(lines("baseline-quarter.toml"), [false, false], "what is cut is not symmetric again");
+    assert_eq!(lines("verification/hinged-roof-12.7.toml"), [true, true]);
+    assert_eq!(lines("verification/rolled-cantilever.toml"), [false, true]);
+    assert_eq!(lines("verification/slit-annular-plate.toml"), [false, false]);
+    assert_eq!(lines("verification/laminated-plate.toml"), [false, false]);
 }
 
 /// The shipped quarter models are mirror images.

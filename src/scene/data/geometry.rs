@@ -76,6 +76,17 @@ pub enum Geometry {
 }
 
 impl Geometry {
+    /// What the surface does where it meets itself; `None` where it does not.
+    pub fn seam(&self) -> Option<Seam> {
+        match self {
+            Geometry::CylinderPanel { seam, .. }
+            | Geometry::Annulus { seam, .. }
+            | Geometry::SphereZone { seam, .. }
+            | Geometry::Nurbs(NurbsPatch { seam, .. }) => *seam,
+            Geometry::TapeSpring { .. } | Geometry::Plate { .. } => None,
+        }
+    }
+
     /// Vector to a point from the axis of a cylinder or an annulus, or from the centre of a sphere, mm; `None` for
     /// shapes that have neither.
     pub fn away_from_centre(&self, [x, y, z]: [f64; 3]) -> Option<[f64; 3]> {

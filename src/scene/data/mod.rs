@@ -7,11 +7,13 @@
 //! | `boundary` | supports and actions |
 //! | `probe` | what reports read |
 //! | `expectation` | how a run is to end |
+//! | `output` | what is written besides the states |
 
 mod boundary;
 mod expectation;
 mod geometry;
 mod material;
+mod output;
 mod probe;
 
 pub use boundary::{
@@ -21,6 +23,7 @@ pub use boundary::{
 pub use expectation::{Expectation, ExpectedOutcome};
 pub use geometry::{Geometry, NurbsPatch, Seam};
 pub use material::{Material, OrthotropicLaw, Ply, Strengths};
+pub use output::{NumbersIn, Output, SyncPolicy};
 pub use probe::{Axis, Component, Probe, ProbeKind, Reaction};
 
 use serde::{Deserialize, Serialize};
@@ -458,25 +461,4 @@ impl std::fmt::Display for Stage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(self.name())
     }
-}
-
-/// What is written besides the states; it never changes a state.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Output {
-    /// When the log is forced to disk.
-    pub sync: SyncPolicy,
-    /// Whether the deformed mesh is written for viewers after every stage that changes it.
-    pub mesh_history: bool,
-}
-
-/// When the log is forced to disk (a process kill loses nothing that was flushed; this is for power loss).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SyncPolicy {
-    /// After every stage.
-    EachStage,
-    /// At most once a second, and at the end.
-    EachSecond,
-    /// At the end only.
-    AtEnd,
 }

@@ -31,6 +31,19 @@ pub(super) static OUTPUT: &[Key] = &[
         .or(Default("false"))
         .reaches(Free)
         .also_called(&["history", "meshes"]),
+    output(
+        "units",
+        Kind::Word(&[
+            choice("keys", "those that the names of keys end in"),
+            choice("own", "units of the scene's own that go together, as in benchmarks without units"),
+        ]),
+        "\"keys\"",
+    )
+    .means("The units that the numbers of the scene are in. None is converted; numbers that look odd in the units of their keys \
+            are warned of, and with \"own\" none is.")
+    .or(Default("\"keys\""))
+    .reaches(Free)
+    .also_called(&["unit_system"]),
 ];
 
 pub(super) static EXPECT: &[Key] = &[
