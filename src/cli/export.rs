@@ -46,9 +46,9 @@ pub(super) struct Arguments {
     /// Points along each side of an element, for csv, json and stl
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = points())]
     points: usize,
-    /// For mcap: when viewers show what a stage did
-    #[arg(long, value_name = "TIMES", default_value = "steps")]
-    times: Times,
+    /// For mcap: when viewers show what a stage did [default: steps]
+    #[arg(long, value_name = "TIMES")]
+    times: Option<Times>,
     /// Only print which fields there are, with units and meanings
     #[arg(long)]
     list_fields: bool,
@@ -61,6 +61,9 @@ impl Arguments {
         let asked = Asked::open(&log)?;
         let (Some(format), false) = (to, list_fields) else { return print(&list_of_fields(&asked.scene)) };
         if format != Format::Mcap {
+            if times.is_some() {
+                return Err(Failure::TimesOfNoViewer);
+            }
             chosen_fields(&asked.scene, &fields)?;
         }
         let steps = match every {
@@ -76,7 +79,7 @@ impl Arguments {
         let export = Export { asked, log: &log, format, fields: &fields, points, target };
         match format {
             Format::Npz => export.write_arrays(&ends),
-            Format::Mcap => export.write_for_viewers(&ends, times),
+            Format::Mcap => export.write_for_viewers(&ends, times.unwrap_or(Times::Steps)),
             _ => export.write_states(&ends),
         }
     }

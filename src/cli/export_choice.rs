@@ -6,6 +6,7 @@ use clap::ValueEnum;
 
 use super::asked::Ends;
 use super::failure::Failure;
+use super::wrapped::wrapped;
 use crate::record::Record;
 use crate::scene::Scene;
 use crate::view::{Field, StepTimes, fields_of};
@@ -149,7 +150,14 @@ pub(super) fn list_of_fields(scene: &Scene) -> String {
         let components = if components.len() > 1 { format!(" ({})", components.join(", ")) } else { String::new() };
         format!("{name:widest$}  {:10}  {means}{components}\n", if unit.is_empty() { "–" } else { unit })
     };
-    fields.iter().map(line).collect()
+    let lines: String = fields.iter().map(line).collect();
+    let axes = wrapped(
+        "",
+        "1 is along u of the undeformed surface, and 2 = n × 1. A positive κ bends the surface away from n. Forces and moments are those that \
+         work on these strains (second Piola–Kirchhoff, per undeformed length): of a strip that bends freely n is −m κ, not 0. Failure \
+         is by elastic strains, without those of heat; in Tsai and Wu's criterion F₁₂ = −√(F₁₁ F₂₂)/2.",
+    );
+    format!("{lines}\n{}\n", axes.trim_end())
 }
 
 /// Where files go: a folder with a name that they begin with, or one file.

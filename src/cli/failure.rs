@@ -94,6 +94,8 @@ pub(super) enum Failure {
     MeshesInOneFile { file: PathBuf, meshes: usize },
     #[error("{fields} fields are chosen, and one colours the mesh: name one with --fields")]
     FieldsForViewers { fields: usize },
+    #[error("--times is for viewers of MCAP: leave it out, or write `--to mcap`")]
+    TimesOfNoViewer,
     #[error("not one thread can be made")]
     Threads { source: Box<dyn std::error::Error + Send + Sync> },
     #[error("cannot watch for signals")]
@@ -182,6 +184,7 @@ impl Failure {
             | Failure::StepsInOneFile { .. }
             | Failure::MeshesInOneFile { .. }
             | Failure::FieldsForViewers { .. }
+            | Failure::TimesOfNoViewer
             | Failure::NoSuchScene { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,

@@ -71,6 +71,7 @@ impl ReadLog {
         let mut warnings: Vec<String> =
             log.notes().iter().map(|note| format!("at byte {}: {}", note.at, note.text)).collect();
         warnings.extend(log.missed_manifests().map(|lost| log.lost_in_words(lost)));
+        warnings.extend(log.lost_pictures());
         warnings.extend(redefined_probes(log).iter().map(ToString::to_string));
         let own = log.manifests().iter().rfind(|manifest| !manifest.own_terms.is_empty());
         warnings.extend(own.map(|manifest| {

@@ -56,8 +56,12 @@ pub(super) fn named(scene: &Scene, name: &str) -> Result<(Field, Option<usize>),
     let fields = fields_of(scene);
     let found = fields.iter().find(|field| field.name == of_field).and_then(|field| match of_component {
         Some(component) => Some((field.clone(), Some(field.components.iter().position(|known| *known == component)?))),
-        // One component is the value itself; of more the length is shown.
-        None => Some((field.clone(), (field.components.len() == 1).then_some(0))),
+        // One component is the value itself, and of a vector the length is shown; a tensor has none.
+        None => match field.components {
+            [_] => Some((field.clone(), Some(0))),
+            ["x", "y", "z"] => Some((field.clone(), None)),
+            _ => None,
+        },
     });
     found.ok_or_else(|| Failure::NoSuchField { field: name.to_owned(), known: fields.iter().map(listed).collect() })
 }

@@ -119,7 +119,7 @@ impl PlottedLog {
 /// The curve of some logs, if they have one, as a file.
 pub(super) fn curve(logs: &[PlottedLog], chosen: &Chosen) -> Result<Option<(String, Vec<u8>)>, Failure> {
     let Some(first) = logs.first() else { return Ok(None) };
-    let named = names_of(logs).into_iter().zip(logs);
+    let named = names_of(logs.iter().map(|log| &*log.path)).into_iter().zip(logs);
     let runs: Vec<PlottedRun> =
         named.map(|(name, log)| PlottedRun { name, scene: &log.read.scene, records: &log.records }).collect();
     // Of several runs the legend has the names.
@@ -152,11 +152,9 @@ pub(super) fn name_of(log: &Path) -> String {
 }
 
 /// The names of some logs; their paths, where names are the same.
-fn names_of(logs: &[PlottedLog]) -> Vec<String> {
-    let names: Vec<String> = logs.iter().map(|log| name_of(&log.path)).collect();
+pub(super) fn names_of<'p>(logs: impl Iterator<Item = &'p Path> + Clone) -> Vec<String> {
+    let names: Vec<String> = logs.clone().map(name_of).collect();
     let is_twice = |name: &String| names.iter().filter(|other| *other == name).count() > 1;
-    let shown = |(name, log): (&String, &PlottedLog)| {
-        if is_twice(name) { path_in_line(&log.path) } else { name.clone() }
-    };
+    let shown = |(name, log): (&String, &Path)| if is_twice(name) { path_in_line(log) } else { name.clone() };
     names.iter().zip(logs).map(shown).collect()
 }

@@ -8,6 +8,7 @@ use super::asked::{Ends, ordinal};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
 use super::output::{file_name, path_in_line, print, write_files};
+use super::plotted::names_of;
 use super::speed_ups;
 use crate::history::States;
 use crate::journal::Manifest;
@@ -50,14 +51,18 @@ impl Arguments {
 
 /// Writes the page of some logs.
 pub(super) fn write_page(logs: &[PathBuf], output: &Path) -> Result<(), Failure> {
-    let runs: Vec<ReportedRun> = logs.iter().map(|log| reported(log)).collect::<Result<_, _>>()?;
-    let names: Vec<String> = logs.iter().map(|log| name_of(log)).collect();
+    let names = names_of(logs.iter().map(PathBuf::as_path));
+    let runs: Vec<ReportedRun> =
+        logs.iter().zip(&names).map(|(log, name)| reported(log, name)).collect::<Result<_, _>>()?;
+    if runs.iter().any(|run| run.axes() != runs[0].axes()) {
+        return Err(Failure::NoCommonCurve);
+    }
     let page = report_page(&names.join(", "), &runs).map_err(|cause| PlotError::Drawing(cause.to_string()))?;
     write_files(&[(output.to_path_buf(), page.into_bytes())])
 }
 
 /// What the page shows of a log.
-fn reported(path: &Path) -> Result<ReportedRun, Failure> {
+fn reported(path: &Path, name: &str) -> Result<ReportedRun, Failure> {
     let read = read_log(path)?.whole(path)?;
     let records = read.records_of_scene(path)?;
     let last = records.last().ok_or(PlotError::NoEquilibrium)?;
@@ -84,7 +89,7 @@ fn reported(path: &Path) -> Result<ReportedRun, Failure> {
     ];
     origin.extend(read.log.manifests().iter().next_back().map(machine).into_iter().flatten());
     let scene_text = read.log.manifests().iter().next_back().map_or_else(String::new, |made| made.scene_text.clone());
-    let told = Told { name: name_of(path), scene_text, origin };
+    let told = Told { name: name.to_owned(), scene_text, origin };
     Ok(ReportedRun::new(&read.scene, &records, told, Shape::new(&read.scene, &frames)))
 }
 
@@ -95,8 +100,4 @@ fn machine(made: &Manifest) -> Vec<(String, String)> {
         row("machine", format!("{} ({}), {} threads", made.host, made.cpu, made.threads)),
         row("kernel", made.kernel.clone()),
     ]
-}
-
-fn name_of(log: &Path) -> String {
-    log.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -49,6 +49,9 @@ pub const FORMAT_VERSION: u32 = 4;
 /// Name of the MCAP profile in the header of a log.
 pub const PROFILE: &str = "foldline";
 
+/// Name of the MCAP profile in the header of a file for viewers, which is no log.
+pub const VIEWERS_PROFILE: &str = "foldline-viewers";
+
 /// Name of the metadata records that hold a manifest.
 pub const MANIFEST: &str = "foldline.manifest";
 

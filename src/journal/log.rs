@@ -5,13 +5,14 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::codec::{CodecError, decode_mesh, decode_state};
-use super::damage::{Completeness, LaterCommit, Problem};
+use super::damage::{Completeness, Damage, LaterCommit, Problem};
 use super::manifest::Manifest;
 use super::soundness::check_made_by;
 use super::stretch::{LostManifest, Stretches};
 use crate::record::{Commit, Record};
 use crate::scene::{Difference, Scene};
 use crate::state::{Hash, Mesh, State};
+use crate::units::count;
 
 /// A stage of a log, with the place of its messages in the file. Their hashes are those that its commit names, and the
 /// commit follows from the one before it.
@@ -246,6 +247,17 @@ impl Log {
     /// All places where the file is not as it was written, in the order of the file.
     pub fn problems(&self) -> &[Problem] {
         &self.problems
+    }
+
+    /// Stages of which viewers are no longer shown what they were, in words; `None` where none is known.
+    pub fn lost_pictures(&self) -> Option<String> {
+        let lost = self.problems.iter().filter(|problem| matches!(problem.damage, Damage::LoosePacked)).count();
+        (lost > 0).then(|| {
+            format!(
+                "what viewers are shown of {} is damaged and left out; the states are there: `foldline export LOG --to mcap` draws them again",
+                count(lost, "stage")
+            )
+        })
     }
 
     /// The whole commits behind a loss, which are not used because the commits before them are lost.

@@ -10,7 +10,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::checkpoint::Checkpoint;
-use super::format::{FORMAT_VERSION, PROFILE};
+use super::format::{FORMAT_VERSION, PROFILE, VIEWERS_PROFILE};
 use super::log::Log;
 use super::scan::Scan;
 
@@ -36,6 +36,9 @@ pub enum ReadError {
     /// The file is not an MCAP file.
     #[error("this is not a log: it does not begin like an MCAP file, and no commit of a run is in it")]
     NotMcap,
+    /// An MCAP file of another program.
+    #[error("this is a file for viewers, without states: the commands read the log that `foldline export` made it of")]
+    ForViewers,
     /// An MCAP file of another program.
     #[error("this MCAP file was not written by foldline: its profile is {profile:?}, and no commit of a run is in it")]
     NotFoldline {
@@ -83,6 +86,7 @@ impl Log {
                 return Err(ReadError::TooShort { bytes: bytes.len() as u64 });
             }
             Some((profile, _)) if profile == PROFILE => {}
+            Some((profile, _)) if profile == VIEWERS_PROFILE => return Err(ReadError::ForViewers),
             Some((profile, _)) if bytes.starts_with(mcap::MAGIC) => {
                 return Err(ReadError::NotFoldline { profile: profile.clone() });
             }

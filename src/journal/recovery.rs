@@ -122,7 +122,7 @@ type Mend<'m> = &'m mut dyn FnMut(&Log) -> Option<Log>;
 
 fn recover_with(path: &Path, new: &Path, mut mend: Option<Mend>) -> Result<RecoverOutcome, RecoverError> {
     let mut portions = Portions::of(path)?;
-    let mut copy: Option<NewLog> = None;
+    let (mut copy, mut pictures): (Option<NewLog>, Option<String>) = (None, None);
     loop {
         let portion = match portions.read() {
             Ok(portion) => portion,
@@ -134,9 +134,10 @@ fn recover_with(path: &Path, new: &Path, mut mend: Option<Mend>) -> Result<Recov
             && let Some((copy, mended)) = copy_mended(mended, mend, new)?
         {
             copy.keep()?;
-            return Ok(outcome(&mended));
+            return Ok(outcome(&mended, pictures));
         }
         let log = portion.log();
+        pictures = pictures.or(log.lost_pictures());
         let finished = log.completeness() == Completeness::Finished;
         let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
         let mut good = match (copy, loss) {
@@ -153,7 +154,7 @@ fn recover_with(path: &Path, new: &Path, mut mend: Option<Mend>) -> Result<Recov
         match portion.into_end() {
             Some(log) => {
                 good.finish(log.commits())?;
-                return Ok(outcome(&log));
+                return Ok(outcome(&log, pictures));
             }
             None => copy = Some(good),
         }
@@ -192,15 +193,15 @@ fn copy_whole(log: &Log, new: &Path) -> Result<Option<ClosedLog>, NewLogError> {
     good.close(log.commits()).map(Some)
 }
 
-/// What a copy of a log lacks, which was read to its end.
-fn outcome(log: &Log) -> RecoverOutcome {
+/// What a copy of a log lacks, which was read to its end; `pictures` were lost before its last portion.
+fn outcome(log: &Log, pictures: Option<String>) -> RecoverOutcome {
     let (commits, later_commits) = (log.commits() as u64, log.later_commits().len() as u64);
     let finished = log.completeness() == Completeness::Finished;
     let loss = log.loss().filter(|_| !finished).map(ToString::to_string);
     let dropped = loss.as_ref().map_or(0, |_| log.file_len() - log.good_end());
     let lost_manifest = log.missed_manifests().next().map(|lost| log.lost_in_words(lost));
     let lost_manifest = lost_manifest.or(log.unused_manifest().map(|note| note.text.clone()));
-    match loss.or(lost_manifest) {
+    match loss.or(lost_manifest).or(pictures).or(log.lost_pictures()) {
         Some(why) => RecoverOutcome::Lossy { commits, dropped, later_commits, why },
         None => RecoverOutcome::Lossless { commits },
     }

@@ -6,6 +6,7 @@ use std::io::Cursor;
 use mcap::records::MessageHeader;
 
 use super::encode_error::EncodeError;
+use super::format::VIEWERS_PROFILE;
 use super::message::ReportMessage;
 use super::topics::{OWN, ViewerMessage, ViewerTopic};
 use crate::record::Record;
@@ -34,7 +35,7 @@ impl TimedMessages {
     /// # Errors
     /// None that a log can cause.
     pub fn new() -> Result<Self, TimedMessagesError> {
-        let options = mcap::WriteOptions::new().profile("").compression(Some(mcap::Compression::Zstd));
+        let options = mcap::WriteOptions::new().profile(VIEWERS_PROFILE).compression(Some(mcap::Compression::Zstd));
         let writer = options.compression_threads(0).create(Cursor::new(Vec::new()))?;
         Ok(Self { writer, channels: Vec::new() })
     }

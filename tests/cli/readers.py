@@ -61,7 +61,7 @@ def check_npz(check: Check, path: Path, values: dict[str, np.ndarray]) -> None:
     arrays = np.load(path)
     at = list(arrays["step"]).index(float(STEP))
     weights = arrays["control_points"][..., 3]
-    points = arrays["control_points"][..., :3] / weights[..., None] + arrays["displacement"][at]
+    points = arrays["control_points"][..., :3] + arrays["displacement"][at]
     off = 0.0
     for k in range(0, len(values["u"]), 7):
         along, across = (b_splines(degree, arrays[name], values[parameter][k])

@@ -35,7 +35,9 @@ pub fn npz(StatesOnMesh { mesh, states }: &StatesOnMesh) -> Result<Vec<u8>, ZipE
     archive.add("degree", "<i8", &[2], mesh.degree.iter().flat_map(|degree| (*degree as i64).to_le_bytes()))?;
     archive.add_numbers("knots_u", &[mesh.knots[0].len()], mesh.knots[0].iter())?;
     archive.add_numbers("knots_v", &[mesh.knots[1].len()], mesh.knots[1].iter())?;
-    archive.add_numbers("control_points", &[n1, n2, 4], mesh.control_points.as_flattened().iter())?;
+    let weights = mesh.control_points.iter().map(|[.., weight]| *weight);
+    let plain: Vec<[f64; 4]> = mesh.points().zip(weights).map(|([x, y, z], weight)| [x, y, z, weight]).collect();
+    archive.add_numbers("control_points", &[n1, n2, 4], plain.as_flattened().iter())?;
     let displacement = states.iter().flat_map(|(_, displacement)| displacement.as_flattened());
     archive.add_numbers("displacement", &[states.len(), n1, n2, 3], displacement)?;
     let numbers: Vec<_> = states.iter().map(|(instant, _)| instant.numbers()).collect();

@@ -51,7 +51,8 @@ function segments(run) {
     const shown = run.points.filter((point) => point.value !== null);
     return {
         borderDash: (context) => {
-            const to = shown[context.p1DataIndex];
+            // The first point is that at rest, but for load factors.
+            const to = shown[context.p1DataIndex - (run.parameter === "load factor" ? 0 : 1)];
             return to && (to.jumped || !to.stable) ? [3, 4] : undefined;
         },
     };
@@ -68,9 +69,18 @@ function drawCharts() {
         const data = marked.map((point) => ({ x: point.at, y: point.value, note: note(point) }));
         return data.length ? [{ label: `_critical ${index}`, data, pointStyle: "rectRot", pointRadius: 6, backgroundColor: "#b73779", borderColor: hue(index) }] : [];
     });
-    const path = runs.map((run, index) => line(run, index, (p) => p.value, { segment: segments(run) }));
+    // What is at rest has no moment.
+    const rest = (set) => swapped ? set : { ...set, data: [{ x: 0, y: 0, note: "at rest" }, ...set.data] };
+    const path = runs.map((run, index) => rest(line(run, index, (p) => p.value, { segment: segments(run) })));
+    const laws = runs.filter((run, index) => runs.findIndex((other) => JSON.stringify(other.laws) === JSON.stringify(run.laws)) === index).flatMap((run) => run.laws);
+    const theory = laws.map((law, index) => ({
+        label: law.name, data: law.points.map(([x, y]) => ({ x, y, note: `${law.name}: ${shortly(x)}, ${shortly(y)}` })), showLine: true, pointRadius: 0, borderWidth: 1.2,
+        borderColor: css("--soft"), backgroundColor: css("--soft"), borderDash: index % 2 ? [2, 3] : [8, 5],
+    }));
+    const peaks = runs.flatMap((run, index) => run.peak ? [{ label: `_peak ${index}`, data: [{ x: run.peak[0], y: run.peak[1], note: `${run.name}, peak: ${shortly(run.peak[0])}, ${shortly(run.peak[1])}` }],
+        pointStyle: "triangle", pointRadius: 6, backgroundColor: hue(index), borderColor: hue(index) }] : []);
     const [along, up] = swapped ? [runs[0].quantity, across] : [across, runs[0].quantity];
-    chart("path", along, up, [...path, ...critical].map(turned));
+    chart("path", along, up, [...path, ...theory, ...critical, ...peaks].map(turned));
     chart("elements", across, "elements of the model", runs.map((run, index) => line(run, index, (p) => p.elements[0] * p.elements[1], { stepped: "after", pointRadius: 0 })), { y: { type: "logarithmic" } });
     chart("time", across, "wall time (s)", runs.map((run, index) => line(run, index, (p) => p.wall_s, { pointRadius: 0 })));
     chart("work", across, "iterations", runs.map((run, index) => line(run, index, (p) => p.iterations, { pointRadius: 0 })));
@@ -142,14 +152,15 @@ function solid(canvas) {
         camera.updateProjectionMatrix();
         draw();
     };
-    new ResizeObserver(resize).observe(canvas.parentElement);
-    return {
+    const view = {
         look() {
             resize();
-            const { center, radius } = geometry.boundingSphere;
+            // All steps fit, on a narrow screen too.
+            const [low, high] = [0, 1].map((end) => new Vector3(...current.shape.bounds.map((bound) => bound[end])));
+            const center = low.clone().add(high).multiplyScalar(0.5), radius = 0.5 * high.distanceTo(low) || 1;
             controls.target.copy(center);
-            const distance = radius / Math.sin(Math.PI / 360 * camera.fov) / Math.min(camera.aspect, 1);
-            camera.position.copy(center).add(new Vector3(-0.5, -1, 0.55).setLength(0.8 * distance));
+            const half = Math.PI / 360 * camera.fov, narrower = Math.min(half, Math.atan(Math.tan(half) * camera.aspect));
+            camera.position.copy(center).add(new Vector3(-0.5, -1, 0.55).setLength(radius / Math.sin(narrower)));
             camera.near = radius / 100;
             camera.far = radius * 100;
             camera.updateProjectionMatrix();
@@ -168,6 +179,10 @@ function solid(canvas) {
             draw();
         },
     };
+    let turned = false;
+    controls.addEventListener("start", () => { turned = true; });
+    new ResizeObserver(() => turned || !current ? resize() : view.look()).observe(canvas.parentElement);
+    return view;
 }
 
 // A still picture without WebGL: faces from back to front.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::shape::Shape;
 use crate::record::{Parameter, Record};
 use crate::scene::Scene;
-use crate::study::{Summary, equilibrium_path};
+use crate::study::{Summary, TapeSpring, equilibrium_path};
 
 /// A run, as the page has it.
 #[derive(Clone, Debug, Serialize)]
@@ -25,6 +25,10 @@ pub struct ReportedRun {
     /// Name of what is drawn over it, with its unit.
     quantity: String,
     points: Vec<Point>,
+    /// What the curve is compared with.
+    laws: Vec<Law>,
+    /// The largest moment before the first jump: parameter and moment.
+    peak: Option<[f64; 2]>,
     snaps: Vec<String>,
     stages: Vec<Stage>,
     shape: Option<Shape>,
@@ -55,6 +59,14 @@ struct Point {
     critical: Option<String>,
     wall_s: f64,
     iterations: usize,
+}
+
+/// A curve of theory.
+#[derive(Clone, Debug, Serialize)]
+struct Law {
+    name: &'static str,
+    /// Parameter and moment.
+    points: Vec<[f64; 2]>,
 }
 
 /// The work of one kind of stage.
@@ -104,11 +116,30 @@ impl ReportedRun {
             },
             quantity,
             points: points(records, turns, scene.probes.is_empty()),
+            laws: laws(scene),
+            peak: summary.peak.filter(|_| turns).map(|peak| [peak.parameter, peak.moment_n_mm]),
             snaps: snaps.collect(),
             stages: stages.collect(),
             shape,
         }
     }
+
+    /// What the curve of the run is drawn of and over.
+    pub fn axes(&self) -> (&str, &str) {
+        (self.parameter, &self.quantity)
+    }
+}
+
+/// Wuest's law for uniform curvature and the plateau of equal energy, where they are theory of the scene.
+fn laws(scene: &Scene) -> Vec<Law> {
+    const POINTS: u32 = 200;
+    let Some(spring) = TapeSpring::of_scene(scene) else { return Vec::new() };
+    let to = scene.load.target();
+    let at = |i: u32| f64::from(i) / f64::from(POINTS) * to;
+    let law = (0..=POINTS).map(at).map(|rotation| [rotation, spring.moment_at_rotation(rotation)]).collect();
+    let plateau = spring.plateau().map(|plateau| plateau.moment_n_mm);
+    let plateau = plateau.map(|moment| Law { name: "equal energy", points: vec![[0.0, moment], [to, moment]] });
+    [Law { name: "Wuest 1954, uniform curvature", points: law }].into_iter().chain(plateau).collect()
 }
 
 /// What a run came to by the end of a load step.

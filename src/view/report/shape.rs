@@ -16,12 +16,18 @@ const MOST_POINTS: usize = 4000;
 /// Most frames.
 const MOST_FRAMES: usize = 40;
 /// Fields that the page offers, by name and component; that without a component is the length of the vector.
-const OFFERED: [(&str, Option<usize>); 6] = [
+const OFFERED: [(&str, Option<usize>); 12] = [
     ("bending_strain_max", Some(0)),
     ("displacement", None),
+    ("failure_tsai_wu", Some(0)),
+    ("failure_max_strain", Some(0)),
     ("membrane_force_principal", Some(0)),
     ("membrane_force_principal", Some(1)),
+    ("membrane_force", Some(0)),
+    ("membrane_force", Some(1)),
     ("bending_moment_principal", Some(0)),
+    ("bending_moment", Some(0)),
+    ("bending_moment", Some(1)),
     ("energy_density", Some(0)),
 ];
 

@@ -57,10 +57,13 @@ function table(name, parent) {
     holder.style.overflowX = "auto";
     const made = element("table", undefined, holder), head = element("tr", undefined, made);
     for (const title of ["run", "mesh", "unknowns", "before", "snap", "behind", "steps", "iterations", "wall s"]) element("th", title, head);
+    const own = rows.find((row) => row.structure === name && row.error_of_reference)?.error_of_reference ?? [null, null];
+    // None is known better than the reference.
+    const known = (error, side) => error !== null && error !== undefined && error < (own[side] ?? 0) ? `< ${percent(own[side])}` : percent(error);
     for (const { run, role, row, error } of rows.filter((row) => row.structure === name && (row.row || row.error))) {
         const line = element("tr", undefined, made);
-        const cells = error ? [run, error] : [run, row.elements.join(" × "), row.unknowns, role === "reference" ? "" : percent(row.error_before), row.jump_at?.toFixed(3) ?? "",
-            role === "reference" ? "" : percent(row.error_after), row.steps, row.iterations, role === "uniform" || role === "adaptive" ? row.wall_s.toFixed(2) : ""];
+        const cells = error ? [run, error] : [run, row.elements.join(" × "), row.unknowns, role === "reference" ? "" : known(row.error_before, 0), row.jump_at?.toFixed(3) ?? "",
+            role === "reference" ? "" : known(row.error_after, 1), row.steps, row.iterations, role === "uniform" || role === "adaptive" ? row.wall_s.toFixed(2) : ""];
         for (const cell of cells) element("td", cell, line);
     }
     const speeds = rows.filter((row) => row.structure === name && Object.keys(row.speed_up ?? {}).length);

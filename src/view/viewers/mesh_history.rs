@@ -12,13 +12,14 @@ use crate::view::deformed_surface;
 
 /// Cells of a picture for each element along u and v: two, and one where there are so many elements that a viewer shows no more
 /// by two.
-pub(super) fn cells_per_element(mesh: &Mesh) -> [usize; 2] {
+pub(super) fn cells_per_element(scene: &Scene, mesh: &Mesh) -> [usize; 2] {
     const MANY: usize = 48;
-    mesh.element_counts().map(|elements| if elements < MANY { 2 } else { 1 })
+    let (elements, cuts) = (mesh.element_counts(), scene.symmetry.cuts());
+    [0, 1].map(|direction| if elements[direction] << usize::from(cuts[direction]) < MANY { 2 } else { 1 })
 }
 
-/// Bending strain at the bright end of the colours, in units of 1/R: a fold has 1.
-const BRIGHTEST: f64 = 1.1;
+/// Bending strain at the bright end of the colours, in units of 1/R: a fold has 1, and up to 1.14 beside its middle.
+const BRIGHTEST: f64 = 1.2;
 
 /// A source of viewer messages: the deformed mesh, coloured by bending strain, after each stage that ends in an equilibrium, and
 /// a line about every stage.
@@ -37,8 +38,13 @@ impl MeshHistory {
     /// The deformed mesh.
     fn picture(&self, state: &State, time_ns: u64) -> Option<ViewerMessage> {
         // A state in a log is finite, so samples of it are too; a picture is no reason to stop a run.
-        let samples =
-            deformed_surface(&self.scene, &state.mesh, &state.displacement, cells_per_element(&state.mesh)).ok()?;
+        let samples = deformed_surface(
+            &self.scene,
+            &state.mesh,
+            &state.displacement,
+            cells_per_element(&self.scene, &state.mesh),
+        )
+        .ok()?;
         let mut coloured = Coloured::new(samples);
         coloured.range = match self.scene.geometry {
             // A tape spring keeps its colours from state to state; other shells have no curvature to measure by.

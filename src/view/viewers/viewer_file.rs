@@ -95,7 +95,7 @@ impl ViewerFile {
     }
 
     fn coloured(&self, scene: &Scene, state: &State) -> Result<Coloured, SamplesError> {
-        let cells = cells_per_element(&state.mesh);
+        let cells = cells_per_element(scene, &state.mesh);
         let samples = match &self.shown {
             None => deformed_surface(scene, &state.mesh, &state.displacement, cells),
             Some((field, component)) => coloured_surface(scene, state, field, *component, cells),
