@@ -136,18 +136,22 @@ fn load_steps(forecast: &Forecast, threads: usize) -> String {
         Ok(step) => *step,
         Err(error) => return format!("the first cannot be done: {error}"),
     };
-    let time = if wall_s < 1.0 { format!("{} ms", significant(1e3 * wall_s, 2)) } else { duration(wall_s) };
     let (iterations, threads) = (count(iterations, "iteration"), count(threads, "thread"));
     let found = if has_equilibrium { "" } else { " without equilibrium, after which a run tries a shorter one" };
-    let first = format!("{time} for the first ({iterations} on {threads}){found}");
+    let first = format!("{} for the first ({iterations} on {threads}){found}", time(wall_s));
     match forecast.load_steps {
         None => format!("{first}; by arc length, how many there are shows on the way"),
         Some(steps) => {
             let steps = steps.ceil();
-            let whole = if forecast.refines { String::new() } else { format!(", {} in all", duration(steps * wall_s)) };
+            let whole = if forecast.refines { String::new() } else { format!(", {} in all", time(steps * wall_s)) };
             format!("{first}; at least {steps} to the target{whole}")
         }
     }
+}
+
+/// Seconds in words, or milliseconds where they are few.
+fn time(seconds: f64) -> String {
+    if seconds < 1.0 { format!("{} ms", significant(1e3 * seconds, 2)) } else { duration(seconds) }
 }
 
 /// In which planes the shell is its own mirror image, and what may be modelled instead.

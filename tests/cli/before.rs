@@ -102,7 +102,7 @@ fn new_scenes_are_checked_and_run_as_they_are() {
     for kind in ["tape-spring", "plate", "panel", "annulus", "sphere", "nurbs", "laminate"] {
         place.foldline(&format!("new {kind}")).ends(0).says(&[&format!("foldline run {kind}.toml")]);
         let text = String::from_utf8(place.read(&format!("{kind}.toml"))).unwrap();
-        assert!(text.starts_with("# ") && text.matches(" # ").count() >= 2, "{text}");
+        assert!(text.starts_with("# ") && text.matches("# ").count() >= 3, "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= 140), "{text}");
         place.foldline(&format!("check {kind}.toml")).ends(0).says(&["odd        nothing"]);
         let until = if kind == "tape-spring" { "2" } else { "0.3" };
