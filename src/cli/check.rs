@@ -10,13 +10,13 @@ use super::output::{path_in_line, print, print_json};
 use super::scene_file::read_scene;
 use super::session::use_threads;
 use super::wrapped::wrapped;
-use crate::pipeline::StageError;
+use crate::pipeline::RunError;
 use crate::scene::{Scene, Symmetry};
 use crate::spline::Grid;
-use crate::study::{FirstStep, Forecast, Summary};
+use crate::study::{Forecast, StepCost, Summary};
 use crate::units::{count, duration, significant};
 
-/// Check a scene before its run: its size, what a load step takes on the mesh that it starts with (the first one is done to
+/// Check a scene before its run: its size, what a load step takes on the mesh that it starts with (the first are done to
 /// see), in which planes it is its own mirror image, and what looks odd
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
@@ -70,7 +70,7 @@ impl Arguments {
 }
 
 fn line<'l>(name: &'l str, scene: &Scene, forecast: &'l Forecast, memory_bytes: Option<u64>) -> Line<'l> {
-    let Forecast { size, elements, unknowns, first_step, load_steps, refines, symmetric, odd, remarks, .. } = forecast;
+    let Forecast { size, elements, unknowns, step, load_steps, refines, symmetric, odd, remarks, .. } = forecast;
     Line {
         scene: name,
         box_mm: size.box_mm,
@@ -83,9 +83,9 @@ fn line<'l>(name: &'l str, scene: &Scene, forecast: &'l Forecast, memory_bytes: 
         refines: *refines,
         memory_bytes,
         load_steps: *load_steps,
-        step_s: first_step.as_ref().ok().map(|step| step.wall_s),
-        step_iterations: first_step.as_ref().ok().map(|step| step.iterations),
-        step_fails: first_step.as_ref().err().map(StageError::to_string),
+        step_s: step.as_ref().ok().map(|step| step.wall_s),
+        step_iterations: step.as_ref().ok().map(|step| step.iterations),
+        step_fails: step.as_ref().err().map(RunError::to_string),
         symmetric_in_u: symmetric[0],
         symmetric_in_v: symmetric[1],
         odd,
@@ -132,22 +132,26 @@ fn shown(name: &str, scene: &Scene, forecast: &Forecast, memory: Option<u64>, th
 
 /// What a load step takes, and how many there are.
 fn load_steps(forecast: &Forecast, threads: usize) -> String {
-    let FirstStep { iterations, wall_s, has_equilibrium } = match &forecast.first_step {
+    let StepCost { iterations, wall_s, first_is_cut } = match &forecast.step {
         Ok(step) => *step,
-        Err(error) => return format!("the first cannot be done: {error}"),
+        Err(error) => return format!("none can be done: {error}"),
     };
-    let time = if wall_s < 1.0 { format!("{} ms", significant(1e3 * wall_s, 2)) } else { duration(wall_s) };
     let (iterations, threads) = (count(iterations, "iteration"), count(threads, "thread"));
-    let found = if has_equilibrium { "" } else { " without equilibrium, after which a run tries a shorter one" };
-    let first = format!("{time} for the first ({iterations} on {threads}){found}");
+    let cut = if first_is_cut { "; the first is too long and is cut" } else { "" };
+    let step = format!("{} ({iterations} on {threads}){cut}", time(wall_s));
     match forecast.load_steps {
-        None => format!("{first}; by arc length, how many there are shows on the way"),
+        None => format!("{step}; by arc length, how many there are shows on the way"),
         Some(steps) => {
             let steps = steps.ceil();
-            let whole = if forecast.refines { String::new() } else { format!(", {} in all", duration(steps * wall_s)) };
-            format!("{first}; at least {steps} to the target{whole}")
+            let whole = if forecast.refines { String::new() } else { format!(", {} in all", time(steps * wall_s)) };
+            format!("{step}; at least {steps} to the target{whole}")
         }
     }
+}
+
+/// Seconds in words, or milliseconds where they are few.
+fn time(seconds: f64) -> String {
+    if seconds < 1.0 { format!("{} ms", significant(1e3 * seconds, 2)) } else { duration(seconds) }
 }
 
 /// In which planes the shell is its own mirror image, and what may be modelled instead.

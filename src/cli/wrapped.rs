@@ -32,7 +32,7 @@ mod tests {
 
     #[test]
     fn lines_are_full_and_none_is_longer() {
-        let text = wrapped("warning: ", &"word ".repeat(40).trim_end().to_owned());
+        let text = wrapped("warning: ", "word ".repeat(40).trim_end());
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
         assert_eq!(text.lines().count(), 3);
         assert!(text.lines().skip(1).all(|line| line.starts_with("         word")), "{text}");

@@ -252,10 +252,9 @@ impl Summary {
 
     /// Why Wuest's law, of a spring whose curvature is the same all along, is none to compare the peak with.
     fn no_uniform_bending(&self, spring: &TapeSpring) -> Option<&'static str> {
-        let end_mm = spring.radius_mm * (spring.radius_mm / spring.thickness_mm).sqrt();
         let jumped_at = self.snaps.first().map(|snap| snap.before);
         let law = spring.peak()?;
-        if spring.length_mm < end_mm {
+        if is_held_by_its_ends(spring) {
             Some("no law: the ends hold the section in shape all along")
         } else if spring.sense == Sense::Equal
             && (!self.left.is_empty()
@@ -280,7 +279,7 @@ impl Summary {
             1 => format!("     at {:.1}°", fold.range_deg[0]),
             n => format!("     {n} steps, {:.1}° to {:.1}°", fold.range_deg[0], fold.range_deg[1]),
         };
-        if !self.has_folded(fold) {
+        if !self.has_folded(fold) || is_held_by_its_ends(spring) {
             let measured = format!("{:>8} N·mm", figure(fold.moment_n_mm, 2));
             return Line { name: "behind the jump", measured, law: None, off: None, note: range.trim() }.write(f);
         }
@@ -361,6 +360,11 @@ impl Summary {
         }
         Ok(())
     }
+}
+
+/// Whether the ends hold the section in shape all along: over R sqrt(R/t), the length in which a section opens out.
+fn is_held_by_its_ends(spring: &TapeSpring) -> bool {
+    spring.length_mm < spring.radius_mm * (spring.radius_mm / spring.thickness_mm).sqrt()
 }
 
 /// One result, with the law that it is compared with.

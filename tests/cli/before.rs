@@ -79,7 +79,6 @@ fn check_predicts_what_a_run_takes() {
         let solves: Vec<Value> = run.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         assert_eq!(found["unknowns"], solves[0]["unknowns"], "{scene}");
         assert_eq!(found["elements"], solves[0]["elements"], "{scene}");
-        assert_eq!(found["step_iterations"], solves[0]["iterations"], "{scene}");
         assert!(found["step_s"].as_f64().unwrap() > 0.0 && found["odd"].as_array().unwrap().is_empty());
     }
 }
@@ -102,7 +101,7 @@ fn new_scenes_are_checked_and_run_as_they_are() {
     for kind in ["tape-spring", "plate", "panel", "annulus", "sphere", "nurbs", "laminate"] {
         place.foldline(&format!("new {kind}")).ends(0).says(&[&format!("foldline run {kind}.toml")]);
         let text = String::from_utf8(place.read(&format!("{kind}.toml"))).unwrap();
-        assert!(text.starts_with("# ") && text.matches(" # ").count() >= 2, "{text}");
+        assert!(text.starts_with("# ") && text.matches("# ").count() >= 3, "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= 140), "{text}");
         place.foldline(&format!("check {kind}.toml")).ends(0).says(&["odd        nothing"]);
         let until = if kind == "tape-spring" { "2" } else { "0.3" };

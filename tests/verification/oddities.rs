@@ -104,7 +104,7 @@ const MISTAKES: &[Mistake] = &[
     ),
     ("E across the plies in GPa", PLIES, &[("10300.0", "10.3")], &["10.3", "10300"]),
     ("G of the plies in GPa", PLIES, &[("7170.0", "7.17")], &["shear_modulus_12_mpa = 7.17"]),
-    ("expansion in millionths", PLIES, &[("22.5e-6", "22.5")], &["22.5", "2.25e−5"]),
+    ("expansion in millionths", PLIES, &[("22.5e-6", "22.5")], &["22.5", "22.5e-6"]),
     ("a cooling in mK", PLIES, &[("change_k = -150.0", "change_k = -150000.0")], &["150000 K"]),
     ("a strength in Pa", PLIES, &[("[[ply]]\nthickness_mm = 0.125\n\n", STRONG)], &["tensile_strength_1_mpa = 1.5e9"]),
     ("the density in g/cm³", STRIP, &[("poissons_ratio", "density_kg_m3 = 1.6\npoissons_ratio")], &["1.6", "g/cm³"]),

@@ -1,4 +1,4 @@
-//! Moduli, strengths, densities, expansions and angles of plies that look odd.
+//! Moduli, strengths, densities and angles of plies that look odd.
 
 use super::key::key;
 use crate::model::size::laws;
@@ -9,8 +9,6 @@ use crate::units::significant;
 const MODULUS_MPA: [f64; 2] = [1e3, 1e7];
 /// Densities, kg/m³: from a light foam to osmium.
 const DENSITY_KG_M3: [f64; 2] = [10.0, 2.5e4];
-/// Thermal expansion, 1/K: soft rubber has a third of it.
-const MOST_EXPANSION_PER_K: f64 = 1e-3;
 /// Shear modulus over the least and the largest Young's modulus.
 const SHEAR_OVER_LEAST: f64 = 0.02;
 const SHEAR_OVER_LARGEST: f64 = 2.0;
@@ -32,10 +30,7 @@ pub(super) fn odd(material: &Material) -> Vec<String> {
     };
     let shear = laws.iter().find_map(|(layer, law)| odd_shear(layer, law));
     let strength = laws.iter().find_map(|(layer, law)| odd_strength(layer, law));
-    [modulus, shear, strength, odd_density(material), odd_expansion(material), odd_angle(material)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [modulus, shear, strength, odd_density(material), odd_angle(material)].into_iter().flatten().collect()
 }
 
 fn odd_modulus(layer: &str, moduli: &[f64]) -> Option<String> {
@@ -92,22 +87,6 @@ fn odd_density(material: &Material) -> Option<String> {
         _ => "nothing is so heavy",
     };
     Some(format!("{} is in kg/m³: {hint}", key("density_kg_m3", density)))
-}
-
-fn odd_expansion(material: &Material) -> Option<String> {
-    let expansions: Vec<f64> = match material {
-        Material::Isotropic { thermal_expansion_per_k, .. } => thermal_expansion_per_k.iter().copied().collect(),
-        Material::Orthotropic { law, .. } => law.expansion_per_k().into_iter().flatten().collect(),
-        Material::Laminate { plies, .. } => {
-            plies.iter().filter_map(|ply| ply.law.expansion_per_k()).flatten().collect()
-        }
-    };
-    let expansion = expansions.into_iter().find(|expansion| expansion.abs() > MOST_EXPANSION_PER_K)?;
-    Some(format!(
-        "a thermal expansion of {} is in 1/K: if millionths were meant, write {}",
-        significant(expansion, 4),
-        significant(1e-6 * expansion, 4)
-    ))
 }
 
 /// An angle of a ply that is a round one in radians.

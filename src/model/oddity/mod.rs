@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `lengths` | extents, thickness, radii, arcs |
-//! | `material` | moduli, strengths, density, expansion, angles of plies |
+//! | `material` | moduli, strengths, density, angles of plies |
 //! | `loads` | loads over stiffness, acceleration, numbers of load steps |
 //! | `key` | a key with its value, in words |
 //! | `elements` | shape of elements, and how small refinement makes them |
