@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 use super::log_file::{end_scene, older_scene, say_warnings, unreadable};
-use crate::history::stages_of_step;
+use crate::history::{RemakeError, stages_of_step};
 use crate::journal::{AskedLog, LongLog, LongLogError};
 use crate::record::{Outcome, Record};
 use crate::scene::Scene;
@@ -80,6 +80,11 @@ impl Asked {
     pub(super) fn steps(&self) -> Option<(u64, u64)> {
         let step_of = |ordinal: usize| self.log.record(ordinal).ok().map(|record| record.report.step);
         step_of(0).zip(step_of(self.log.commits().checked_sub(1)?))
+    }
+
+    /// The error for a state that can be neither read nor made again.
+    pub(super) fn unusable(&self, source: RemakeError) -> Failure {
+        Failure::WrongLog { log: self.path.clone(), source: Box::new(source) }
     }
 
     /// The error for a log that changed while it was read.

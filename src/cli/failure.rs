@@ -3,12 +3,14 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::output::{eprint, eprint_error, eprint_rendered};
 use crate::history::{ConditionError, NothingKept, ReplayError, SnapError, StabilityError};
 use crate::model::ModelError;
 use crate::printable::one_line;
 use crate::record::Parameter;
 use crate::scene::{Scene, Stage};
 use crate::study::{AccuracyError, BenchError, CalibrationError, ConvergenceError, TaskError};
+use crate::units::rounded;
 use crate::view::{AnimationError, PlotError, SamplesError};
 
 /// Stopped by a signal; nothing is wrong.
@@ -49,8 +51,8 @@ pub(super) enum Failure {
     #[error("{rendered}")]
     WrongScene { rendered: String },
     #[error(
-        "--until {until} is beyond the {} that the scene asks for; raise `{}` there",
-        Parameter::of(scene).shown(scene.load.target()),
+        "--until {} is beyond the {} that the scene asks for; raise `{}` there",
+        rounded(*until), Parameter::of(scene).shown(scene.load.target()),
         if scene.end_rotation().is_some() { "load.rotation_deg" } else { "load.factor" }
     )]
     UntilBeyondScene { until: f64, scene: Box<Scene> },
@@ -209,16 +211,23 @@ impl Failure {
         }
     }
 
+    /// Says it on standard error.
+    pub(super) fn say(&self) {
+        match self {
+            // Its lines have their head, and what they quote was made printable as they were rendered.
+            Failure::WrongScene { rendered } | Failure::WrongStudy { rendered } => eprint_rendered(rendered.trim_end()),
+            // Nothing went wrong.
+            Failure::Interrupted { .. } | Failure::StudyInterrupted => eprint(&self.in_full()),
+            _ => eprint_error(&self.in_full()),
+        }
+    }
+
     /// The failure and what is below it, a line each.
     pub(super) fn in_full(&self) -> String {
         let mut text = match self {
-            // Has its own head.
-            Failure::WrongScene { rendered } | Failure::WrongStudy { rendered } => {
-                return rendered.trim_end().to_string();
-            }
             // A line for each change.
-            Failure::NothingKept(_) => format!("foldline: {self}"),
-            _ => format!("foldline: {}", one_line(&self.to_string())),
+            Failure::NothingKept(_) => self.to_string(),
+            _ => one_line(&self.to_string()).into_owned(),
         };
         let mut cause = std::error::Error::source(self);
         while let Some(error) = cause {
@@ -267,21 +276,21 @@ mod tests {
     fn causes_stand_below() {
         let source = io::Error::new(io::ErrorKind::NotFound, "no such file");
         let failure = Failure::Read { path: "a.toml".into(), source };
-        assert_eq!(failure.in_full(), "foldline: cannot read a.toml\n  because: no such file");
+        assert_eq!(failure.in_full(), "cannot read a.toml\n  because: no such file");
         assert_eq!(failure.exit_code(), 2);
     }
 
     #[test]
     fn a_step_that_is_not_there_says_which_are() {
         let failure = Failure::NoSuchStep { log: "a.mcap".into(), step: 9, known: Some((1, 4)) };
-        assert_eq!(failure.in_full(), "foldline: a.mcap has no load step 9; it has 1 to 4");
+        assert_eq!(failure.in_full(), "a.mcap has no load step 9; it has 1 to 4");
         assert_eq!(failure.exit_code(), 2);
     }
 
     #[test]
     fn interruption_says_how_to_go_on() {
         let failure = Failure::Interrupted { log: "a.mcap".into() };
-        assert_eq!(failure.in_full(), "foldline: interrupted; continue with: foldline resume a.mcap");
+        assert_eq!(failure.in_full(), "interrupted; continue with: foldline resume a.mcap");
         assert_eq!(failure.exit_code(), 75);
     }
 }

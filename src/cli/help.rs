@@ -3,7 +3,7 @@
 use clap::{Args, Command};
 
 use super::failure::Failure;
-use super::output::print;
+use super::output::{print, print_styled};
 use crate::scene::{help_on_topic, help_text, help_topics, json_schema};
 
 /// Help on a subcommand, or on the keys of a scene file: `help scene`
@@ -26,7 +26,7 @@ impl Arguments {
         // Gives the subcommands their full names in usage lines.
         command.build();
         match (self.topic.as_deref(), self.part.as_deref()) {
-            (None, _) => print(&command.render_long_help().to_string()),
+            (None, _) => print_styled(&command.render_long_help()),
             (Some(SCENE), _) if self.json_schema => print(&json_schema()),
             (Some(SCENE), None) => print(&help_text()),
             (Some(SCENE), Some(part)) => match help_on_topic(part) {
@@ -34,9 +34,7 @@ impl Arguments {
                 None => Err(no_such_topic(part, help_topics().map(str::to_owned))),
             },
             (Some(topic), part) => match command.find_subcommand_mut(topic) {
-                Some(subcommand) if part.is_none() && !self.json_schema => {
-                    print(&subcommand.render_long_help().to_string())
-                }
+                Some(subcommand) if part.is_none() && !self.json_schema => print_styled(&subcommand.render_long_help()),
                 _ => {
                     let names = command.get_subcommands().map(|subcommand| subcommand.get_name().to_string());
                     let topic = part.map_or(topic.to_owned(), |part| format!("{topic} {part}"));

@@ -5,11 +5,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::asked::Asked;
 use super::failure::{EXIT_CODES, Failure};
 use super::json_line::json_line;
 use super::log_file::{Gathered, ReadLog, ask_long, first_and_last, read_log, read_through};
+use super::mesh_table::mesh_table;
 use super::output::{path_in_line, print};
 use super::probe_table::probe_table;
+use super::stage_csv::stage_csv;
 use super::stage_table::{stage_table, step_in_full};
 use crate::history::{redefined_probes, remove_redefined, stages_of_step};
 use crate::journal::{Log, LongLog, LongLogError};
@@ -28,6 +31,12 @@ pub(super) struct Arguments {
     /// Print a JSON object for each stage
     #[arg(long)]
     json: bool,
+    /// Print the stages as comma-separated values, a line each, with the names of --json
+    #[arg(long, conflicts_with_all = ["json", "mesh"])]
+    csv: bool,
+    /// Show the meshes of the run, and the knots that came and went from one to the next
+    #[arg(long, conflicts_with_all = ["json", "step", "probes"])]
+    mesh: bool,
     /// Read the probes of the last scene again on every equilibrium: also on those that were run without them
     #[arg(long)]
     probes: bool,
@@ -36,12 +45,18 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Reads the log and shows it.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Self { log, step, json, probes } = self;
+        let Self { log, step, json, csv, mesh, probes } = self;
         print(&match step {
             Some(step) => {
                 let stages = stages_of(&log, step, probes)?;
-                if json { lines(&stages) } else { step_in_full(&stages, step) }
+                match (json, csv) {
+                    (true, _) => lines(&stages),
+                    (_, true) => stage_csv(&stages),
+                    _ => step_in_full(&stages, step),
+                }
             }
+            None if mesh => mesh_table(&Asked::open(&log)?)?,
+            None if csv => stage_csv(&every_record(&log, probes)?),
             None if json => all_lines(&log, probes)?,
             None => overview(&log, probes)?,
         })
@@ -90,6 +105,14 @@ fn all_lines(path: &Path, probes: bool) -> Result<String, Failure> {
         }
     })?;
     printed.map(|()| String::new())
+}
+
+/// Every stage, with all of its probes.
+fn every_record(path: &Path, probes: bool) -> Result<Vec<Record>, Failure> {
+    match probes {
+        true => Ok(with_probes_read_again(path)?.1),
+        false => Asked::open(path)?.records(),
+    }
 }
 
 fn lines(records: &[Record]) -> String {

@@ -193,7 +193,7 @@ pub(super) fn end_scene(log: &Log, path: &Path) -> Result<(Scene, bool), Failure
 /// Reports what of a log is lost.
 pub(super) fn say_warnings(log: &Log, path: &Path) {
     for warning in ReadLog::warnings_of(log) {
-        eprint(&format!("foldline: {}: {warning}", path_in_line(path)));
+        eprint(&format!("warning: {}: {warning}", path_in_line(path)));
     }
 }
 

@@ -15,15 +15,16 @@
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
 //! | `calibrate` | the threshold at which a scene's mesh keeps an error |
-//! | `help` | help on subcommands and topics |
+//! | `help`, `man`, `completions` | help on subcommands and topics, as manual pages, and for a shell |
 //! | `scenes`, `shipped` | the scenes that come with the program |
 //! | `scene_file`, `log_file`, `asked` | what is read: scenes, logs, some stages of a log |
 //! | `session` | threads, signals, the log of a run under way |
 //! | `probe_table` | what probes measure on a log |
-//! | `progress`, `load_step`, `stage_table`, `json_line` | stages, as they are shown |
+//! | `progress`, `load_step`, `stage_table`, `stage_csv`, `json_line` | stages, as they are shown |
+//! | `mesh_table` | the meshes of a run |
 //! | `trace` | iterates of replayed stages |
 //! | `wrapped` | sentences in lines that fit |
-//! | `output`, `failure` | streams and files; what can stop a command |
+//! | `terminal`, `output`, `failure` | what is printed to; streams and files; what can stop a command |
 
 mod animated;
 mod asked;
@@ -32,6 +33,7 @@ mod bisect;
 mod calibrate;
 mod check;
 mod compare;
+mod completions;
 mod converge;
 mod export;
 mod export_choice;
@@ -42,6 +44,8 @@ mod inspect;
 mod json_line;
 mod load_step;
 mod log_file;
+mod man;
+mod mesh_table;
 mod new;
 mod output;
 mod pictured;
@@ -60,8 +64,10 @@ mod session;
 mod shipped;
 mod speed_ups;
 mod stability;
+mod stage_csv;
 mod stage_table;
 mod study;
+mod terminal;
 mod thin;
 mod trace;
 mod verify;
@@ -69,7 +75,7 @@ mod wrapped;
 
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use failure::{EXIT_CODES, Failure};
 
@@ -80,14 +86,19 @@ pub use json_line::json_line;
 #[doc(hidden)]
 pub use progress::{ProgressSink, ProgressStyle};
 #[doc(hidden)]
+pub use stage_csv::stage_csv;
+#[doc(hidden)]
 pub use stage_table::{stage_table, step_in_full};
 
 /// Thin shells that fold, simulated as a pipeline of restartable stages
 #[derive(Parser, Debug)]
-#[command(name = "foldline", version, after_help = EXIT_CODES, disable_help_subcommand = true, max_term_width = 100)]
+#[command(name = "foldline", version, after_help = EXIT_CODES, disable_help_subcommand = true, term_width = terminal::width().min(100))]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    /// Colours: on a terminal, unless NO_COLOR is set; or always (as with CLICOLOR_FORCE), or never
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", hide_possible_values = true)]
+    color: ColorChoice,
 }
 
 #[derive(Subcommand, Debug)]
@@ -114,6 +125,8 @@ enum Command {
     Study(study::Arguments),
     #[command(alias = "stress")]
     Extremes(extremes::Arguments),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
     Help(help::Arguments),
 }
 
@@ -157,6 +170,8 @@ impl Command {
             Command::Study(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
             Command::Extremes(arguments) => arguments.run(),
+            Command::Completions(arguments) => arguments.run(Arguments::command()).map(|()| 0),
+            Command::Man(arguments) => arguments.run(Arguments::command()).map(|()| 0),
             Command::Help(arguments) => arguments.run(Arguments::command()).map(|()| 0),
         }
     }
@@ -167,19 +182,17 @@ pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
+            terminal::use_colours(terminal::colours_asked_for(std::env::args_os()));
             // Help and version too; nobody has to read them to the end.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
+    terminal::use_colours(arguments.color);
     match arguments.command.run() {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
-            match &failure {
-                // Its lines are rendered for a terminal where there is one, and what they quote is made printable there.
-                Failure::WrongScene { .. } | Failure::WrongStudy { .. } => output::eprint_rendered(&failure.in_full()),
-                _ => output::eprint(&failure.in_full()),
-            }
+            failure.say();
             ExitCode::from(failure.exit_code())
         }
     }

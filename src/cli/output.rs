@@ -3,7 +3,9 @@
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use anstream::AutoStream;
+use clap::builder::styling::AnsiColor;
+use clap::builder::{PathBufValueParser, StyledStr, TypedValueParser};
 
 use super::failure::Failure;
 pub(super) use crate::printable::printable;
@@ -13,7 +15,11 @@ use crate::whole_file::write_new;
 /// Writes to standard output. A reader that has closed its end (`| head`) has what it wanted: that is no failure.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {
+    written(out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()))
+}
+
+fn written(result: io::Result<()>) -> Result<(), Failure> {
+    match result {
         Err(source) if source.kind() != ErrorKind::BrokenPipe => Err(Failure::Print { source }),
         _ => Ok(()),
     }
@@ -42,9 +48,20 @@ pub(super) fn eprint(text: &str) {
     eprint_rendered(&printable(text));
 }
 
-/// The same for text that was made for a terminal, colours and all.
+/// Writes what went wrong to standard error, with the head that errors of scenes and of arguments have.
+pub(super) fn eprint_error(text: &str) {
+    let head = AnsiColor::Red.on_default().bold();
+    eprint_rendered(&format!("{head}error:{head:#} {}", printable(text)));
+}
+
+/// Writes a text with its colours to standard output, where they are shown there.
+pub(super) fn print_styled(text: &StyledStr) -> Result<(), Failure> {
+    written(write!(AutoStream::auto(io::stdout().lock()), "{}", text.ansi()))
+}
+
+/// Writes a line that was made for a terminal to standard error, with its colours where they are shown there.
 pub(super) fn eprint_rendered(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(AutoStream::auto(io::stderr().lock()), "{text}");
 }
 
 /// JSON with the control characters escaped that JSON allows.

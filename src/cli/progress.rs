@@ -1,7 +1,7 @@
 //! What a run shows while it continues: a live line on a terminal, a plain line for each load step otherwise, JSON lines
 //! for programs, or nothing.
 
-use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::io::{self, ErrorKind, Write};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget};
@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget};
 use super::json_line::json_line;
 use super::load_step::Gatherer;
 use super::output::{escaped, printable};
+use super::terminal::can_overwrite;
 use crate::record::{Outcome, Parameter, Record, Report, Sink, SinkError};
 use crate::scene::Scene;
 use crate::state::State;
@@ -28,12 +29,13 @@ pub enum ProgressStyle {
 }
 
 impl ProgressStyle {
-    /// The style that the arguments `--quiet` and `--json` choose; a live line only where standard error is a terminal.
+    /// The style that the arguments `--quiet` and `--json` choose; a live line only on a terminal that can write
+    /// over one.
     pub fn of(quiet: bool, json: bool) -> Self {
         match (quiet, json) {
             (_, true) => ProgressStyle::Json,
             (true, _) => ProgressStyle::Quiet,
-            _ if io::stderr().is_terminal() => ProgressStyle::Live,
+            _ if can_overwrite() => ProgressStyle::Live,
             _ => ProgressStyle::Lines,
         }
     }

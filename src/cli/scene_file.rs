@@ -1,11 +1,12 @@
 //! Scene files, and the scenes that come with the program.
 
-use std::io::{self, IsTerminal};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 use super::output::path_in_line;
 use super::shipped::{Shipped, nearest_names};
+use super::terminal::is_coloured;
 use crate::scene::{Geometry, SCENE_BYTES_LIMIT, Scene, SceneError, Stage, parse_with_settings};
 
 /// A scene with the text that it came from.
@@ -93,7 +94,7 @@ pub(super) fn checked(text: &str, name: &str, settings: &[String]) -> Result<Sce
 
 /// An error of a scene as the terminal shows it.
 pub(super) fn rendered(error: &SceneError) -> String {
-    if std::io::stderr().is_terminal() { error.coloured() } else { error.plain() }
+    if is_coloured(&io::stderr()) { error.coloured() } else { error.plain() }
 }
 
 /// A stage by its name.

@@ -152,7 +152,7 @@ impl Arguments {
             }));
         }
         print(&format!("{:<width$}  failed\n", case.label()))?;
-        eprint(&failure.in_full());
+        failure.say();
         Ok(())
     }
 

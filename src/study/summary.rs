@@ -3,7 +3,7 @@
 use crate::record::{Outcome, Parameter, Reading, Record, Warning};
 use crate::scene::{Geometry, Scene, Stage};
 use crate::study::{Passed, PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
-use crate::units::rounded;
+use crate::units::{rounded, significant};
 
 /// From this rotation on a fold is far from the ends, and its moment is compared directly (theory: the plateau is
 /// flat to 0.1 N·mm beyond 40°).
@@ -224,23 +224,25 @@ impl Summary {
 }
 
 fn shell_in_words(scene: &Scene) -> String {
+    let mm = |length: f64| significant(length, 6);
     let shape = match &scene.geometry {
         Geometry::TapeSpring { length_mm, radius_mm, arc_deg } => {
-            format!("tape spring, L {length_mm} R {radius_mm} mm, arc {}°", rounded(*arc_deg))
+            format!("tape spring, L {} R {} mm, arc {}°", mm(*length_mm), mm(*radius_mm), rounded(*arc_deg))
         }
-        Geometry::Plate { length_mm, width_mm } => format!("plate, {length_mm} × {width_mm} mm"),
+        Geometry::Plate { length_mm, width_mm } => format!("plate, {} × {} mm", mm(*length_mm), mm(*width_mm)),
         Geometry::CylinderPanel { length_mm, radius_mm, arc_deg, .. } => {
-            format!("cylinder panel, L {length_mm} R {radius_mm} mm, arc {}°", rounded(*arc_deg))
+            format!("cylinder panel, L {} R {} mm, arc {}°", mm(*length_mm), mm(*radius_mm), rounded(*arc_deg))
         }
         Geometry::Annulus { inner_radius_mm, outer_radius_mm, arc_deg, .. } => {
-            format!("annulus, R {inner_radius_mm} to {outer_radius_mm} mm, arc {}°", rounded(*arc_deg))
+            format!("annulus, R {} to {} mm, arc {}°", mm(*inner_radius_mm), mm(*outer_radius_mm), rounded(*arc_deg))
         }
-        Geometry::SphereZone { radius_mm, latitude_deg: [from, to], arc_deg, .. } => {
-            format!("sphere zone, R {radius_mm} mm, latitudes {from}° to {to}°, arc {}°", rounded(*arc_deg))
+        Geometry::SphereZone { radius_mm, latitude_deg, arc_deg, .. } => {
+            let [from, to, arc] = [latitude_deg[0], latitude_deg[1], *arc_deg].map(rounded);
+            format!("sphere zone, R {} mm, latitudes {from}° to {to}°, arc {arc}°", mm(*radius_mm))
         }
         Geometry::Nurbs(_) => "NURBS surface".into(),
     };
-    format!("{shape}, t {} mm", scene.material.thickness_mm())
+    format!("{shape}, t {} mm", mm(scene.material.thickness_mm()))
 }
 
 /// Work of the end moments up to the last equilibrium before a jump, by the trapezoidal rule, and where it went.

@@ -8,7 +8,7 @@ use super::summary::{FoldMean, MeshChange, PeakFound, WarningCount};
 use crate::record::{Parameter, Reading, released_in_words};
 use crate::scene::Sense;
 use crate::spline::Grid;
-use crate::units::{count, duration, figure, reading, rounded, signed};
+use crate::units::{count, duration, figure, reading, rounded, signed, significant};
 
 /// Share of the moment before the jump below which the shell has folded: a fold carries a tenth of it or less in the seven cases
 /// (theory: 26.6 of 292 N·mm in the baseline).
@@ -51,9 +51,9 @@ impl Summary {
                 writeln!(
                     f,
                     "tape spring, L {} R {} t {} mm, arc {}°, {sense}, {part}",
-                    spring.length_mm,
-                    spring.radius_mm,
-                    spring.thickness_mm,
+                    significant(spring.length_mm, 6),
+                    significant(spring.radius_mm, 6),
+                    significant(spring.thickness_mm, 6),
                     rounded(spring.arc_rad.to_degrees()),
                 )?;
             }

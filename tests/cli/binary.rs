@@ -46,7 +46,7 @@ fn help_on_scenes_table_by_table() {
     assert_eq!(stdout(&["help", "scene", "[[support]]"]), stdout(&["help", "scene", "support"]));
     let schema: serde_json::Value = serde_json::from_str(&stdout(&["help", "scene", "--json-schema"])).unwrap();
     assert_eq!(schema["required"], serde_json::json!(["geometry", "material", "load"]));
-    insta::assert_snapshot!(refusal(&["help", "scene", "suport"], 2), @"foldline: no help on `suport`; there is help on geometry, material, ply, mesh, symmetry, load, support, action, probe, adapt, solver, continuation, pipeline, output, expect, places; did you mean `support`?");
+    insta::assert_snapshot!(refusal(&["help", "scene", "suport"], 2), @"error: no help on `suport`; there is help on geometry, material, ply, mesh, symmetry, load, support, action, probe, adapt, solver, continuation, pipeline, output, expect, places; did you mean `support`?");
     refusal(&["help", "run", "support"], 2);
     refusal(&["help", "run", "--json-schema"], 2);
 }
@@ -65,8 +65,8 @@ fn every_option_stands_in_the_long_help_and_the_short() {
 
 #[test]
 fn wrong_usage() {
-    insta::assert_snapshot!(refusal(&["help", "plto"], 2), @"foldline: no help on `plto`; there is help on scenes, new, check, run, resume, inspect, plot, report, compare, export, replay, bisect, stability, verify, recover, thin, bench, converge, calibrate, study, extremes, help, scene; did you mean `plot`?");
-    insta::assert_snapshot!(refusal(&["run", "nope.toml"], 2), @"foldline: cannot read nope.toml: there is no such file, and no scene of that name comes with the program; `foldline scenes` lists those");
+    insta::assert_snapshot!(refusal(&["help", "plto"], 2), @"error: no help on `plto`; there is help on scenes, new, check, run, resume, inspect, plot, report, compare, export, replay, bisect, stability, verify, recover, thin, bench, converge, calibrate, study, extremes, completions, man, help, scene; did you mean `plot`?");
+    insta::assert_snapshot!(refusal(&["run", "nope.toml"], 2), @"error: cannot read nope.toml: there is no such file, and no scene of that name comes with the program; `foldline scenes` lists those");
     insta::assert_snapshot!(refusal(&["run", "a.toml", "--until", "-3"], 2), @r"
     error: invalid value '-3' for '--until <AT>': a rotation or a load factor above 0 is wanted; by arc length it counts on both sides of 0
 

@@ -110,6 +110,6 @@ fn a_filter_that_nothing_matches_lists_what_there_is() {
     assert!(output.stdout.is_empty());
     let place = folder.path().display().to_string();
     let text = String::from_utf8(output.stderr).unwrap().replace(&place, "FOLDER");
-    insta::assert_snapshot!(text, @"foldline: no scene in FOLDER has `steel` in its name; there is right, wrong");
+    insta::assert_snapshot!(text, @"error: no scene in FOLDER has `steel` in its name; there is right, wrong");
     assert_eq!(extremes(&tempfile::tempdir().unwrap(), &[]).status.code(), Some(2), "a folder without scenes");
 }

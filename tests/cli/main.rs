@@ -16,6 +16,7 @@ mod stages;
 mod study;
 mod summary;
 mod synthetic;
+mod terminal;
 
 #[path = "../restart/program.rs"]
 #[allow(dead_code, reason = "shared with the tests of restarts")]

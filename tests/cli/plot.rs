@@ -60,10 +60,10 @@ fn several_logs_in_one_picture() {
 #[test]
 fn what_cannot_be_drawn_is_said() {
     let place = logs();
-    insta::assert_snapshot!(refused(place.foldline("plot roof.mcap --x tiem")), @"foldline: roof.mcap has no `tiem` to draw; there are load_factor, step, strain_energy, work, energy_released, path_length, time, total_iterations, iterations, factorizations, elements, elements_1, elements_2, unknowns, negative_pivots, residual, largest_indicator, estimated_error, w_c; did you mean `time`?");
-    insta::assert_snapshot!(refused(place.foldline("plot roof.mcap spring.mcap")), @"foldline: these logs have no curve in common, since the ends of some turn and those of others do not: choose one with --x and --y");
-    insta::assert_snapshot!(refused(place.foldline("plot roof.mcap roof.mcap --field displacement")), @"foldline: --field is for the mesh, which is drawn of one log, and 2 are given");
-    insta::assert_snapshot!(refused(place.foldline("plot roof.mcap spring.mcap --animate")), @"foldline: --animate is for the mesh, which is drawn of one log, and 2 are given");
+    insta::assert_snapshot!(refused(place.foldline("plot roof.mcap --x tiem")), @"error: roof.mcap has no `tiem` to draw; there are load_factor, step, strain_energy, work, energy_released, path_length, time, total_iterations, iterations, factorizations, elements, elements_1, elements_2, unknowns, negative_pivots, residual, largest_indicator, estimated_error, w_c; did you mean `time`?");
+    insta::assert_snapshot!(refused(place.foldline("plot roof.mcap spring.mcap")), @"error: these logs have no curve in common, since the ends of some turn and those of others do not: choose one with --x and --y");
+    insta::assert_snapshot!(refused(place.foldline("plot roof.mcap roof.mcap --field displacement")), @"error: --field is for the mesh, which is drawn of one log, and 2 are given");
+    insta::assert_snapshot!(refused(place.foldline("plot roof.mcap spring.mcap --animate")), @"error: --animate is for the mesh, which is drawn of one log, and 2 are given");
     assert!(refused(place.foldline("plot roof.mcap --x w_c --step 3")).contains("cannot be used with"));
     assert!(refused(place.foldline("plot roof.mcap --every 3")).contains("--animate"));
     assert!(refused(place.foldline("plot spring.mcap roof.mcap --x w_c")).contains("spring.mcap has no `w_c`"));

@@ -144,7 +144,7 @@ fn wrong_questions_about_stability() {
     let place = with(column());
     let last = ends_of_steps(&column().log());
     let said = place.foldline("stability run.mcap --step 99").ends(2);
-    assert_eq!(said.err, format!("foldline: run.mcap has no load step 99; it has 1 to {last}\n"));
+    assert_eq!(said.err, format!("error: run.mcap has no load step 99; it has 1 to {last}\n"));
     assert_eq!(said.out, "");
     place.foldline("stability run.mcap --step 0").ends(2).says(&["it has 1 to"]);
     place.foldline("stability run.mcap --step one").ends(2).says(&["one"]);

@@ -1,6 +1,7 @@
 //! Stages of a log as a table, in full, and as JSON.
 
-use foldline::cli::{json_line, stage_table, step_in_full};
+use foldline::cli::{json_line, stage_csv, stage_table, step_in_full};
+use foldline::record::Reading;
 
 use crate::synthetic;
 
@@ -71,4 +72,28 @@ fn json_numbers_come_back_bit_for_bit() {
 fn warnings_stand_beside_their_stages() {
     let records = synthetic::coarse_records();
     insta::assert_snapshot!(stage_table(&records) + &step_in_full(&records, 5));
+}
+
+#[test]
+fn csv_has_everything_that_json_has() {
+    let mut records = synthetic::records();
+    let last = records.len() - 1;
+    records[last].report.probes = vec![Reading { name: "tip, left".into(), value: -1.5, unit: "mm".into(), at: None }];
+    let csv = stage_csv(&records);
+    let csv = csv.replace("\"probes.tip, left\"", "probes.tip");
+    let heads: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    let json: serde_json::Value = serde_json::from_str(&json_line(&records[0])).unwrap();
+    let known = |key: &&String| heads.iter().any(|head| head.split('.').next() == Some(key.as_str()));
+    let missing: Vec<&String> = json.as_object().unwrap().keys().filter(|key| !known(key)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+    assert_eq!(csv.lines().count(), 1 + records.len());
+    for (line, record) in csv.lines().skip(1).zip(&records) {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(cells.len(), heads.len(), "{line}");
+        let of = |name: &str| cells[heads.iter().position(|head| *head == name).unwrap()];
+        assert_eq!(of("moment_n_mm").parse(), Ok(record.report.moment_n_mm));
+        assert_eq!(of("elements.1").parse(), Ok(record.report.elements[1]));
+        assert_eq!(of("state_hash"), record.commit.state_hash.to_string());
+    }
+    assert!(csv.lines().last().unwrap().ends_with(",-1.5") && csv.lines().nth(1).unwrap().ends_with(','));
 }
