@@ -51,7 +51,7 @@ impl Arguments {
         let mut scenes: Vec<(String, Scene)> = Vec::new();
         for path in &self.scenes {
             let name = path_in_line(path);
-            let text = read_scene(path)?.text;
+            let text = read_scene(path, &[])?.text;
             scenes.push((name.clone(), checked(&text, &name, &self.set)?));
         }
         let elements = format!("mesh.elements=[{}]", self.elements);
@@ -59,7 +59,7 @@ impl Arguments {
         let (name, kernels) = match self.scenes.first() {
             Some(path) => {
                 let name = path_in_line(path);
-                (name.clone(), checked(&read_scene(path)?.text, &name, &settings)?)
+                (name.clone(), checked(&read_scene(path, &[])?.text, &name, &settings)?)
             }
             None => ("baseline".to_string(), checked(BASELINE, "baseline", &settings)?),
         };

@@ -43,7 +43,7 @@ impl Arguments {
     /// Calibrates, and prints the curves and what they tell.
     pub(super) fn run(self) -> Result<(), Failure> {
         use_threads(self.threads.map(usize::from))?;
-        let text = read_scene(&self.scene)?.text;
+        let text = read_scene(&self.scene, &[])?.text;
         let name = path_in_line(&self.scene);
         let scene = checked(&text, &name, &self.set)?;
         let failed = |source| Failure::Calibration { scene: name.clone(), source: Box::new(source) };

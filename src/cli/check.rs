@@ -58,7 +58,7 @@ impl Arguments {
     /// Checks the scene and prints what was found.
     pub(super) fn run(self) -> Result<(), Failure> {
         let threads = use_threads(self.threads.map(usize::from))?;
-        let scene = read_scene(&self.scene)?.scene;
+        let scene = read_scene(&self.scene, &[])?.scene;
         let name = path_in_line(&self.scene);
         let forecast = Forecast::of(&scene)?;
         let memory = peak_memory();

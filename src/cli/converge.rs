@@ -36,7 +36,7 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Runs every mesh; a row as soon as it is known.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let text = read_scene(&self.scene)?.text;
+        let text = read_scene(&self.scene, &[])?.text;
         let name = path_in_line(&self.scene);
         let mut scenes: Vec<Scene> = Vec::new();
         for degree in &self.degree {

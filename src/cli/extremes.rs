@@ -136,7 +136,7 @@ fn read_scenes(files: &BTreeMap<String, PathBuf>, names: &[String]) -> Result<BT
     let mut wanted: Vec<String> = names.to_vec();
     while let Some(name) = wanted.pop() {
         let Some(path) = files.get(&name).filter(|_| !scenes.contains_key(&name)) else { continue };
-        let scene = read_scene(path)?.scene;
+        let scene = read_scene(path, &[])?.scene;
         wanted.extend(scene.expect.iter().filter_map(|expect| expect.same_as.clone()));
         scenes.insert(name, scene);
     }

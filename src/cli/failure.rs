@@ -39,6 +39,10 @@ pub(super) enum Failure {
     NoShippedScene { filter: String },
     #[error("{} is no scene: {reason}", path.display())]
     NotText { path: PathBuf, reason: String },
+    #[error("{} exists and is not overwritten: {found}", log.display())]
+    LogIsThere { log: PathBuf, found: String },
+    #[error("{place}: {reason}")]
+    WrongSetting { place: String, reason: String },
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: io::Error },
     #[error("{} is a study, and others of these are logs: a page is of logs or of studies; write one of each", study.display())]
@@ -161,6 +165,8 @@ impl Failure {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Failure::Read { .. }
+            | Failure::LogIsThere { .. }
+            | Failure::WrongSetting { .. }
             | Failure::NoSuchSceneFile { .. }
             | Failure::NoShippedScene { .. }
             | Failure::NotText { .. }

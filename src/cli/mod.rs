@@ -8,6 +8,7 @@
 //! | `new` | a scene to begin with |
 //! | `check` | what a scene is, and what a run of it takes |
 //! | `run`, `resume` | a run from its start, and from where it stopped |
+//! | `old_log`, `settings` | a log that is in the way of a run; what is set once for all commands |
 //! | `inspect`, `plot`, `replay`, `bisect`, `stability`, `verify` | questions to a log |
 //! | `plotted`, `pictured`, `animated` | logs, as curves are drawn of them; a state as a picture; load steps as an animation |
 //! | `report`, `compare` | runs as one page, and next to each other in a table |
@@ -47,6 +48,7 @@ mod log_file;
 mod man;
 mod mesh_table;
 mod new;
+mod old_log;
 mod output;
 mod pictured;
 mod plot;
@@ -61,6 +63,7 @@ mod run;
 mod scene_file;
 mod scenes;
 mod session;
+mod settings;
 mod shipped;
 mod speed_ups;
 mod stability;

@@ -20,9 +20,9 @@ use crate::scene::{Scene, Stage};
 use crate::spline::Mesh;
 use crate::units::count;
 
-/// Run stages of a log again, from the state before each; exit code 0 if every bit is the same, 1 if within tolerance,
-/// 2 if not
+/// Run stages of a log again, from the state before each, and compare every bit
 #[derive(Args, Debug)]
+#[command(after_help = REPLAY_CODES)]
 pub(super) struct Arguments {
     /// Log to read (MCAP)
     log: PathBuf,
@@ -45,6 +45,14 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
+
+const REPLAY_CODES: &str = "\
+Exit codes:
+  0  every bit is the same
+  1  failed: a stage could not be run again for another reason than its own
+  2  wrong arguments, or no such stage
+  3  the same within tolerance
+  4  different";
 
 impl Arguments {
     /// Replays; the worst verdict is the exit code.
@@ -153,8 +161,8 @@ impl Arguments {
 fn code(verdict: &Verdict) -> u8 {
     match verdict {
         Verdict::BitIdentical => 0,
-        Verdict::WithinTolerance(_) => 1,
-        Verdict::Different(_) => 2,
+        Verdict::WithinTolerance(_) => 3,
+        Verdict::Different(_) => 4,
     }
 }
 

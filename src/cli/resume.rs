@@ -10,6 +10,7 @@ use super::output::{eprint, path_in_line, print};
 use super::probe_table::{json_lines, new_probes, probe_table};
 use super::progress::ProgressStyle;
 use super::session::{RunOptions, drive, watch_signals};
+use super::settings::Settings;
 use crate::history::{basis, plan, read_probes, restored_scene};
 use crate::journal::{Completeness, Entry, Log, Manifest, ReadError, Resume, ResumeError, Resumed, stages_in_words};
 use crate::pipeline::{Run, Stages};
@@ -42,7 +43,8 @@ impl Arguments {
     /// Continues with the scene that is in the log.
     pub(super) fn run(self) -> Result<(), Failure> {
         let old = OldLog::open(&self.log)?;
-        let scene = scene_of(old.claim.log(), &self.log)?;
+        let mut scene = scene_of(old.claim.log(), &self.log)?;
+        scene.output.sync = Settings::read()?.sync.unwrap_or(scene.output.sync);
         if let Some(until) = self.until.filter(|until| *until > scene.load.target()) {
             return Err(Failure::UntilBeyondScene { until, scene: Box::new(scene) });
         }

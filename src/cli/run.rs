@@ -5,23 +5,25 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{EXIT_CODES, Failure};
+use super::old_log;
 use super::output::{eprint, file_name, path_in_line};
 use super::progress::ProgressStyle;
 use super::resume::{self, OldLog};
 use super::scene_file::{SceneFile, read_scene};
 use super::session::{RunOptions, drive, positive, watch_signals};
+use super::settings::{SETTINGS, Settings};
 use super::wrapped::wrapped;
 use crate::journal::{JournalWriter, Manifest};
 use crate::model::{Size, oddities};
 use crate::pipeline::{Run, Stages};
 use crate::record::Parameter;
-use crate::scene::Quadrature;
+use crate::scene::{Quadrature, SyncPolicy};
 use crate::study::Summary;
 use crate::units::rounded;
 
 /// Run a scene, and log every stage
 #[derive(Args, Debug)]
-#[command(after_help = EXIT_CODES)]
+#[command(after_help = format!("{SETTINGS}\n\n{EXIT_CODES}"))]
 pub(super) struct Arguments {
     /// Scene file (TOML), or the name of one of `foldline scenes`; `foldline help scene` describes its keys
     scene: PathBuf,
@@ -38,6 +40,12 @@ pub(super) struct Arguments {
     /// Continue the log if there is one, as far as its stages are valid for this scene
     #[arg(long)]
     resume: bool,
+    /// Start again where there is a log, which is kept under another name (LOG.1.mcap)
+    #[arg(long, conflicts_with = "resume")]
+    force: bool,
+    /// Lay a setting over the scene, such as load.rotation_deg=20; may be repeated. The log holds the scene as it is run
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
     /// Show no progress, only the summary
     #[arg(short, long)]
     quiet: bool,
@@ -51,29 +59,33 @@ pub(super) struct Job {
     scene: SceneFile,
     options: RunOptions,
     resume: bool,
+    force: bool,
+    sync: Option<SyncPolicy>,
 }
 
 impl Arguments {
     /// Checks everything that can be checked before the run.
     pub(super) fn prepare(self) -> Result<Job, Failure> {
-        let scene = read_scene(&self.scene)?;
+        let settings = Settings::read()?;
+        let scene = read_scene(&self.scene, &self.set)?;
         if let Some(until) = self.until.filter(|until| *until > scene.scene.load.target()) {
             return Err(Failure::UntilBeyondScene { until, scene: Box::new(scene.scene) });
         }
         let options = RunOptions {
-            log: self.output.unwrap_or_else(|| default_log(&scene.file)),
-            threads: self.threads.map(usize::from),
+            log: self.output.unwrap_or_else(|| default_log(&scene.file, settings.logs.as_deref())),
+            threads: self.threads.or(settings.threads).map(usize::from),
             until: self.until,
             style: ProgressStyle::of(self.quiet, self.json),
         };
-        Ok(Job { scene, options, resume: self.resume })
+        Ok(Job { scene, options, resume: self.resume, force: self.force, sync: settings.sync })
     }
 }
 
 impl Job {
     /// Runs the scene and prints the summary.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Job { scene: SceneFile { scene, text, file }, options, resume } = self;
+        let Job { scene: SceneFile { mut scene, text, file }, options, resume, force, sync } = self;
+        scene.output.sync = sync.unwrap_or(scene.output.sync);
         let manifest = Manifest::here(&file, &text, options.use_threads()?);
         manifest.check_size().map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
         let is_there = resume && options.log.exists();
@@ -83,11 +95,22 @@ impl Job {
             }
             eprint(&format!("{} holds nothing: started again", path_in_line(&options.log)));
         }
+        let is_in_the_way = !is_there && options.log.exists();
+        if is_in_the_way
+            && !force
+            && let Some(found) = old_log::beside(&options.log, &scene, &file)
+        {
+            return Err(Failure::LogIsThere { log: options.log, found });
+        }
         let mut stages = Stages::new(scene.clone());
         let start = stages.start()?;
         let size = Size::of(&scene)?;
         let raised = watch_signals()?;
         make_default_folder(&options.log)?;
+        if is_in_the_way && force {
+            let aside = old_log::put_aside(&options.log)?;
+            eprint(&format!("the log that was there is {} now", path_in_line(&aside)));
+        }
         let begin = if is_there { JournalWriter::create_over_empty } else { JournalWriter::create };
         let writer = begin(&options.log, &manifest, scene.output.sync)
             .map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
@@ -113,7 +136,7 @@ impl Job {
     }
 }
 
-/// `checkpoints/` is made where it is the default; any other folder has to be there.
+/// `checkpoints/` is made where it is the default, and a folder that was set for all logs; any other has to be there.
 fn make_default_folder(log: &Path) -> Result<(), Failure> {
     match log.parent() {
         Some(folder) if folder == Path::new("checkpoints") => {
@@ -123,10 +146,10 @@ fn make_default_folder(log: &Path) -> Result<(), Failure> {
     }
 }
 
-/// `checkpoints/<name of the scene>.mcap`.
-fn default_log(scene: &Path) -> PathBuf {
+/// `checkpoints/<name of the scene>.mcap`, or the same in a folder that is set for logs.
+fn default_log(scene: &Path, folder: Option<&Path>) -> PathBuf {
     let name = scene.file_stem().unwrap_or(scene.as_os_str());
-    let mut log = Path::new("checkpoints").join(name);
+    let mut log = folder.unwrap_or(Path::new("checkpoints")).join(name);
     log.as_mut_os_string().push(".mcap");
     log
 }
@@ -137,7 +160,7 @@ mod tests {
 
     #[test]
     fn logs_are_named_after_scenes() {
-        assert_eq!(default_log(Path::new("pipelines/a.b.toml")), Path::new("checkpoints/a.b.mcap"));
-        assert_eq!(default_log(Path::new("plain")), Path::new("checkpoints/plain.mcap"));
+        assert_eq!(default_log(Path::new("pipelines/a.b.toml"), None), Path::new("checkpoints/a.b.mcap"));
+        assert_eq!(default_log(Path::new("plain"), None), Path::new("checkpoints/plain.mcap"));
     }
 }

@@ -24,13 +24,14 @@ pub(super) struct NamedText {
     pub(super) is_shipped: bool,
 }
 
-/// Reads and checks a scene file.
-pub(super) fn read_scene(path: &Path) -> Result<SceneFile, Failure> {
+/// Reads and checks a scene file, with settings `section.key=value` laid over it.
+pub(super) fn read_scene(path: &Path, settings: &[String]) -> Result<SceneFile, Failure> {
     let NamedText { text, file, .. } = read_named(path)?;
-    let scene = checked(&text, &path_in_line(path), &[])?;
-    // A log needs no other file: a surface from a file of its own goes into the text that the log keeps.
+    let scene = checked(&text, &path_in_line(path), settings)?;
+    // A log needs no other file: a surface from a file of its own goes into the text that the log keeps, and settings do.
     let text = match scene.geometry {
         Geometry::Nurbs(_) => scene.to_toml(),
+        _ if !settings.is_empty() => scene.to_toml(),
         _ => text,
     };
     Ok(SceneFile { scene, text, file })

@@ -12,6 +12,7 @@ use signal_hook::flag;
 use super::failure::{Failure, INTERRUPTED};
 use super::output::{eprint, path_in_line, print};
 use super::progress::{ProgressSink, ProgressStyle};
+use super::settings::Settings;
 use crate::journal::JournalWriter;
 use crate::pipeline::{Ending, Run};
 use crate::platform::signals;
@@ -71,6 +72,10 @@ impl RunOptions {
 /// Sets up so many threads, or one for each core; returns how many there are. Where they cannot be made, everything is
 /// done on the one that there is, with the same results.
 pub(super) fn use_threads(threads: Option<usize>) -> Result<usize, Failure> {
+    let threads = match threads {
+        None => Settings::read()?.threads.map(usize::from),
+        chosen => chosen,
+    };
     let wanted = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
     let failed = |source| Failure::Threads { source: Box::new(source) };
     let waiting = if wanted > 1 { waiting_threads(wanted).map(Some) } else { Ok(None) };

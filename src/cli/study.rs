@@ -83,7 +83,7 @@ impl Arguments {
         };
         let cases = self.cases()?;
         let name = path_in_line(against);
-        let reference = checked(&read_scene(against)?.text, &name, &self.set)?;
+        let reference = checked(&read_scene(against, &[])?.text, &name, &self.set)?;
         for case in &cases {
             let comparable = is_one_structure(&case.scene, &reference);
             comparable.map_err(|cause| Failure::Study { case: case.label(), source: Box::new(cause) })?;
@@ -133,7 +133,7 @@ impl Arguments {
         }
         let mut cases = Vec::new();
         for path in &self.scenes {
-            let (scene_name, text) = (path_in_line(path), read_scene(path)?.text);
+            let (scene_name, text) = (path_in_line(path), read_scene(path, &[])?.text);
             for settings in &combinations {
                 let all = [self.set.clone(), settings.clone()].concat();
                 let scene = checked(&text, &scene_name, &all)?;

@@ -1,5 +1,6 @@
 //! What a user sees, pinned by snapshots.
 
+mod again;
 mod before;
 mod binary;
 mod calibrate;
