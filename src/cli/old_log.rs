@@ -15,13 +15,15 @@ use crate::units::count;
 /// Differences of scenes that are listed.
 const MOST_LISTED: usize = 12;
 
-/// Says what a log holds beside what a run of `scene` from `file` would write, and how to go on; `None` where it is no log.
-pub(super) fn beside(log: &Path, scene: &Scene, file: &Path) -> Option<String> {
+/// Says what a log holds beside what a run of `scene` from `file`, with settings laid over it, would write, and how to go on;
+/// `None` where it is no log.
+pub(super) fn beside(log: &Path, scene: &Scene, file: &Path, settings: &[String]) -> Option<String> {
     let asked = Asked::open(log).ok()?;
     let (end, stages) = (asked.log.end(), count(asked.log.commits(), "stage"));
     let differences = asked.scene.differences(scene);
     let finished = end.completeness() == Completeness::Finished;
-    let (log, file) = (path_in_line(log), path_in_line(file));
+    let set: String = settings.iter().map(|setting| format!(" --set '{setting}'")).collect();
+    let (log, file) = (path_in_line(log), format!("{}{set}", path_in_line(file)));
     let mut text = match (&differences[..], finished) {
         ([], true) => format!("it holds all {stages} of a finished run of this very scene"),
         ([], false) => format!("it holds {stages} of this very scene, not finished"),

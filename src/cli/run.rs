@@ -60,6 +60,8 @@ pub(super) struct Job {
     options: RunOptions,
     resume: bool,
     force: bool,
+    /// Settings that were laid over the scene.
+    set: Vec<String>,
     sync: Option<SyncPolicy>,
 }
 
@@ -77,14 +79,14 @@ impl Arguments {
             until: self.until,
             style: ProgressStyle::of(self.quiet, self.json),
         };
-        Ok(Job { scene, options, resume: self.resume, force: self.force, sync: settings.sync })
+        Ok(Job { scene, options, resume: self.resume, force: self.force, set: self.set, sync: settings.sync })
     }
 }
 
 impl Job {
     /// Runs the scene and prints the summary.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Job { scene: SceneFile { mut scene, text, file }, options, resume, force, sync } = self;
+        let Job { scene: SceneFile { mut scene, text, file }, options, resume, force, set, sync } = self;
         scene.output.sync = sync.unwrap_or(scene.output.sync);
         let manifest = Manifest::here(&file, &text, options.use_threads()?);
         manifest.check_size().map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
@@ -98,7 +100,7 @@ impl Job {
         let is_in_the_way = !is_there && options.log.exists();
         if is_in_the_way
             && !force
-            && let Some(found) = old_log::beside(&options.log, &scene, &file)
+            && let Some(found) = old_log::beside(&options.log, &scene, &file, &set)
         {
             return Err(Failure::LogIsThere { log: options.log, found });
         }
