@@ -232,7 +232,7 @@ impl Failure {
     pub(super) fn in_full(&self) -> String {
         let mut text = match self {
             // A line for each change.
-            Failure::NothingKept(_) => self.to_string(),
+            Failure::NothingKept(_) | Failure::LogIsThere { .. } => self.to_string(),
             _ => one_line(&self.to_string()).into_owned(),
         };
         let mut cause = std::error::Error::source(self);
