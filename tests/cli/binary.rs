@@ -65,7 +65,7 @@ fn every_option_stands_in_the_long_help_and_the_short() {
 
 #[test]
 fn wrong_usage() {
-    insta::assert_snapshot!(refusal(&["help", "plto"], 2), @"error: no help on `plto`; there is help on scenes, new, check, run, resume, inspect, plot, report, compare, export, replay, bisect, stability, verify, recover, thin, bench, converge, calibrate, study, extremes, help, scene; did you mean `plot`?");
+    insta::assert_snapshot!(refusal(&["help", "plto"], 2), @"error: no help on `plto`; there is help on scenes, new, check, run, resume, inspect, plot, report, compare, export, replay, bisect, stability, verify, recover, thin, bench, converge, calibrate, study, extremes, completions, man, help, scene; did you mean `plot`?");
     insta::assert_snapshot!(refusal(&["run", "nope.toml"], 2), @r"
     error: cannot read nope.toml
       because: No such file or directory (os error 2)
