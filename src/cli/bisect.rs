@@ -10,6 +10,7 @@ use super::log_file::{ReadLog, ask_long, read_log, scene_at};
 use super::output::{path_in_line, print};
 use super::replay::place;
 use super::stage_table::stage_table;
+use super::terminal::output_columns;
 use crate::history::{
     Comparison, Condition, ConditionError, SnapError, SnapReport, States, find_divergence, find_snap,
     first_loss_of_stability, first_where, no_jump,
@@ -46,7 +47,7 @@ impl Arguments {
             && let Some(Ok(found)) = ask_long(&self.log, |long| first_of_long(long, condition))?
         {
             let never = || Failure::NeverHolds { log: self.log.clone(), condition: condition.clone() };
-            return print(&stage_table(&found.ok_or_else(never)?)).map(|()| 0);
+            return print(&stage_table(&found.ok_or_else(never)?, output_columns())).map(|()| 0);
         }
         match (&self.other, &self.when) {
             (Some(other), _) => self.part(&Asked::open(&self.log)?, &Asked::open(other)?, other),
@@ -124,7 +125,7 @@ impl Arguments {
         let sample = records.iter().rev().max_by_key(|record| record.report.probes.len()).ok_or_else(never)?;
         let condition = Condition::parse(text, &sample.report)?;
         let found = records.iter().position(|record| condition.holds(&record.report)).ok_or_else(never)?;
-        print(&stage_table(&records[found.saturating_sub(1)..=found]))?;
+        print(&stage_table(&records[found.saturating_sub(1)..=found], output_columns()))?;
         Ok(0)
     }
 

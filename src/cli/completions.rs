@@ -4,7 +4,7 @@ use clap::{Args, Command};
 use clap_complete::Shell;
 
 use super::failure::Failure;
-use super::output::print;
+use super::output::print_as_it_is;
 
 /// Print the completions of a shell: subcommands, options and their values
 #[derive(Args, Debug)]
@@ -28,6 +28,6 @@ impl Arguments {
         let name = command.get_name().to_owned();
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut command, name, &mut script);
-        print(&String::from_utf8_lossy(&script))
+        print_as_it_is(&String::from_utf8_lossy(&script))
     }
 }

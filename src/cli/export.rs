@@ -9,7 +9,7 @@ use super::asked::{Asked, ordinal};
 use super::export_choice::{Format, StepRange, Steps, Target, Times, chosen_fields, list_of_fields};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::scene_at;
-use super::output::{file_name, path_in_line, print, refuse_what_is_there, write_files};
+use super::output::{file_name, path_in_line, print, print_as_it_is, refuse_what_is_there, write_files};
 use super::pictured::named;
 use crate::history::States;
 use crate::record::{Parameter, Record};
@@ -237,5 +237,5 @@ fn points() -> impl TypedValueParser<Value = usize> {
 /// Writes files, and names them.
 fn write(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
     write_files(files)?;
-    print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
+    print_as_it_is(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
 }

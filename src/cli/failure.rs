@@ -3,7 +3,6 @@
 use std::io;
 use std::path::PathBuf;
 
-use super::output::{eprint, eprint_error, eprint_rendered};
 use crate::history::{ConditionError, NothingKept, ReplayError, SnapError, StabilityError};
 use crate::model::ModelError;
 use crate::printable::one_line;
@@ -214,17 +213,6 @@ impl Failure {
             }
             Failure::Interrupted { .. } | Failure::StudyInterrupted => INTERRUPTED,
             _ => 1,
-        }
-    }
-
-    /// Says it on standard error.
-    pub(super) fn say(&self) {
-        match self {
-            // Its lines have their head, and what they quote was made printable as they were rendered.
-            Failure::WrongScene { rendered } | Failure::WrongStudy { rendered } => eprint_rendered(rendered.trim_end()),
-            // Nothing went wrong.
-            Failure::Interrupted { .. } | Failure::StudyInterrupted => eprint(&self.in_full()),
-            _ => eprint_error(&self.in_full()),
         }
     }
 

@@ -3,7 +3,7 @@
 use clap::{Args, Command};
 
 use super::failure::Failure;
-use super::output::{print, print_styled};
+use super::output::{print, print_as_it_is, print_styled};
 use crate::scene::{help_on_topic, help_text, help_topics, json_schema};
 
 /// Help on a subcommand, or on the keys of a scene file: `help scene`
@@ -27,7 +27,7 @@ impl Arguments {
         command.build();
         match (self.topic.as_deref(), self.part.as_deref()) {
             (None, _) => print_styled(&command.render_long_help()),
-            (Some(SCENE), _) if self.json_schema => print(&json_schema()),
+            (Some(SCENE), _) if self.json_schema => print_as_it_is(&json_schema()),
             (Some(SCENE), None) => print(&help_text()),
             (Some(SCENE), Some(part)) => match help_on_topic(part) {
                 Some(text) => print(&text),

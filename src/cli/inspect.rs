@@ -10,10 +10,11 @@ use super::failure::{EXIT_CODES, Failure};
 use super::json_line::json_line;
 use super::log_file::{Gathered, ReadLog, ask_long, first_and_last, read_log, read_through};
 use super::mesh_table::mesh_table;
-use super::output::{path_in_line, print};
+use super::output::{path_in_line, print, print_as_it_is};
 use super::probe_table::probe_table;
 use super::stage_csv::stage_csv;
 use super::stage_table::{stage_table, step_in_full};
+use super::terminal::output_columns;
 use crate::history::{redefined_probes, remove_redefined, stages_of_step};
 use crate::journal::{Log, LongLog, LongLogError};
 use crate::record::Record;
@@ -46,18 +47,17 @@ impl Arguments {
     /// Reads the log and shows it.
     pub(super) fn run(self) -> Result<(), Failure> {
         let Self { log, step, json, csv, mesh, probes } = self;
+        if json || csv {
+            let stages = match step {
+                Some(step) => stages_of(&log, step, probes)?,
+                None if json && !probes => return print_lines_of_all(&log),
+                None => every_record(&log, probes)?,
+            };
+            return print_as_it_is(&if json { lines(&stages) } else { stage_csv(&stages) });
+        }
         print(&match step {
-            Some(step) => {
-                let stages = stages_of(&log, step, probes)?;
-                match (json, csv) {
-                    (true, _) => lines(&stages),
-                    (_, true) => stage_csv(&stages),
-                    _ => step_in_full(&stages, step),
-                }
-            }
+            Some(step) => step_in_full(&stages_of(&log, step, probes)?, step),
             None if mesh => mesh_table(&Asked::open(&log)?)?,
-            None if csv => stage_csv(&every_record(&log, probes)?),
-            None if json => all_lines(&log, probes)?,
             None => overview(&log, probes)?,
         })
     }
@@ -93,18 +93,15 @@ fn stages_of(path: &Path, step: u64, probes: bool) -> Result<Vec<Record>, Failur
 }
 
 /// Every stage as JSON, portion by portion.
-fn all_lines(path: &Path, probes: bool) -> Result<String, Failure> {
-    if probes {
-        return Ok(lines(&with_probes_read_again(path)?.1));
-    }
+fn print_lines_of_all(path: &Path) -> Result<(), Failure> {
     let mut printed = Ok(());
     read_through(path, |portion| {
         if printed.is_ok() {
             let lines = portion.entries().iter().map(|entry| json_line(&entry.record) + "\n");
-            printed = print(&lines.collect::<String>());
+            printed = print_as_it_is(&lines.collect::<String>());
         }
     })?;
-    printed.map(|()| String::new())
+    printed
 }
 
 /// Every stage, with all of its probes.
@@ -145,7 +142,7 @@ fn overview(path: &Path, probes: bool) -> Result<String, Failure> {
     let (read, records, states) = all_stages(path, probes)?;
     let older = read.older_scene().map_or_else(String::new, |line| line + "\n");
     let summary = Summary::new(&read.scene, &records);
-    let mut text = format!("{}\n{}{older}{summary}", stage_table(&records), read.mixed());
+    let mut text = format!("{}\n{}{older}{summary}", stage_table(&records, output_columns()), read.mixed());
     let names: Vec<String> = read.scene.probes.iter().map(|probe| probe.name.clone()).collect();
     if probes && !names.is_empty() {
         text += &format!("\nprobes of the last scene on every equilibrium\n{}", probe_table(&names, &records));

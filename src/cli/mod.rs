@@ -95,7 +95,7 @@ pub use stage_table::{stage_table, step_in_full};
 
 /// Thin shells that fold, simulated as a pipeline of restartable stages
 #[derive(Parser, Debug)]
-#[command(name = "foldline", version, after_help = EXIT_CODES, disable_help_subcommand = true, term_width = terminal::width().min(100))]
+#[command(name = "foldline", version, after_help = EXIT_CODES, disable_help_subcommand = true, term_width = terminal::help_columns())]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -195,7 +195,7 @@ pub fn main() -> ExitCode {
     match arguments.command.run() {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
-            failure.say();
+            output::say(&failure);
             ExitCode::from(failure.exit_code())
         }
     }

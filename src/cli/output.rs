@@ -8,16 +8,24 @@ use clap::builder::styling::AnsiColor;
 use clap::builder::{PathBufValueParser, StyledStr, TypedValueParser};
 
 use super::failure::Failure;
+use super::terminal::{error_columns, output_columns};
+use super::wrapped::fitted;
 pub(super) use crate::printable::printable;
 use crate::printable::{is_obeyed, one_line};
 use crate::whole_file::write_new;
 
-/// Writes to standard output. A reader that has closed its end (`| head`) has what it wanted: that is no failure.
+/// Writes what a person reads to standard output, in lines that fit.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
+    print_as_it_is(&fitted(text, output_columns()))
+}
+
+/// Writes what a program reads to standard output: JSON, tables for others, paths.
+pub(super) fn print_as_it_is(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     written(out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()))
 }
 
+/// A reader that has closed its end (`| head`) has what it wanted: that is no failure.
 fn written(result: io::Result<()>) -> Result<(), Failure> {
     match result {
         Err(source) if source.kind() != ErrorKind::BrokenPipe => Err(Failure::Print { source }),
@@ -40,18 +48,28 @@ pub(super) fn path_in_line(path: &Path) -> String {
 
 /// Writes a line of JSON to standard output.
 pub(super) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    print(&(escaped(serde_json::to_string(value).unwrap_or_default()) + "\n"))
+    print_as_it_is(&(escaped(serde_json::to_string(value).unwrap_or_default()) + "\n"))
 }
 
-/// Writes a line to standard error; a closed stream is ignored.
+/// Writes a line to standard error, or as many as it takes; a closed stream is ignored.
 pub(super) fn eprint(text: &str) {
-    eprint_rendered(&printable(text));
+    eprint_rendered(&printable(&fitted(text, error_columns())));
 }
 
-/// Writes what went wrong to standard error, with the head that errors of scenes and of arguments have.
-pub(super) fn eprint_error(text: &str) {
-    let head = AnsiColor::Red.on_default().bold();
-    eprint_rendered(&format!("{head}error:{head:#} {}", printable(text)));
+/// Says on standard error what stopped a command, with the head that errors of scenes and of arguments have.
+pub(super) fn say(failure: &Failure) {
+    match failure {
+        // Its lines have their head, and what they quote was made printable as they were rendered.
+        Failure::WrongScene { rendered } | Failure::WrongStudy { rendered } => eprint_rendered(rendered.trim_end()),
+        // Nothing went wrong.
+        Failure::Interrupted { .. } | Failure::StudyInterrupted => eprint(&failure.in_full()),
+        _ => {
+            let text = fitted(&format!("error: {}", failure.in_full()), error_columns());
+            let (head, style) = ("error:", AnsiColor::Red.on_default().bold());
+            let text = printable(text.strip_prefix(head).unwrap_or(&text)).into_owned();
+            eprint_rendered(&format!("{style}{head}{style:#}{text}"));
+        }
+    }
 }
 
 /// Writes a text with its colours to standard output, where they are shown there.

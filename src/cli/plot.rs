@@ -7,7 +7,7 @@ use clap::Args;
 use super::animated::animation;
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::first_and_last;
-use super::output::{file_name, path_in_line, print, write_files};
+use super::output::{file_name, path_in_line, print_as_it_is, write_files};
 use super::pictured::{Look, pictured};
 use super::plotted::{Chosen, PlottedLog, curve};
 use crate::history::States;
@@ -70,7 +70,7 @@ impl Arguments {
         };
         let files: Vec<_> = files.into_iter().map(|(file, content)| (folder.join(file), content)).collect();
         write_files(&files)?;
-        print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
+        print_as_it_is(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
     }
 
     /// How the mesh is shown.

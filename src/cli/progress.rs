@@ -9,7 +9,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget};
 use super::json_line::json_line;
 use super::load_step::Gatherer;
 use super::output::{escaped, printable};
-use super::terminal::can_overwrite;
+use super::terminal::{can_overwrite, error_columns};
+use super::wrapped::fitted;
 use crate::record::{Outcome, Parameter, Record, Report, Sink, SinkError};
 use crate::scene::Scene;
 use crate::state::State;
@@ -60,6 +61,8 @@ enum Display<'a> {
     },
     Lines {
         out: Box<dyn Write + 'a>,
+        /// Columns that a line may have.
+        columns: Option<usize>,
         gatherer: Gatherer,
     },
     /// `None` after the reader has closed its end.
@@ -76,7 +79,7 @@ impl<'a, S: Sink> ProgressSink<'a, S> {
             ProgressStyle::Live => {
                 Display::Live { bar: live_bar(Parameter::of(scene), target, start), target, gatherer }
             }
-            ProgressStyle::Lines => Display::Lines { out: Box::new(io::stderr()), gatherer },
+            ProgressStyle::Lines => Display::Lines { out: Box::new(io::stderr()), columns: error_columns(), gatherer },
             ProgressStyle::Json => Display::Json(Some(Box::new(io::stdout()))),
         };
         Self { inner, display, records: Vec::new(), warned: Vec::new() }
@@ -84,7 +87,7 @@ impl<'a, S: Sink> ProgressSink<'a, S> {
 
     /// Creates a sink that writes the lines of [`ProgressStyle::Lines`] to `out`.
     pub fn lines(inner: S, scene: &Scene, out: impl Write + 'a) -> Self {
-        let display = Display::Lines { out: Box::new(out), gatherer: Gatherer::new(scene) };
+        let display = Display::Lines { out: Box::new(out), columns: None, gatherer: Gatherer::new(scene) };
         Self { inner, display, records: Vec::new(), warned: Vec::new() }
     }
 
@@ -99,13 +102,13 @@ impl<'a, S: Sink> ProgressSink<'a, S> {
         match &mut self.display {
             Display::Live { bar, gatherer, .. } => {
                 if let Some(step) = gatherer.finish().filter(|step| step.is_eventful()) {
-                    bar.println(printable(&step.line()));
+                    bar.println(printable(&fitted(&step.line(), error_columns())));
                 }
                 bar.finish_and_clear();
             }
-            Display::Lines { out, gatherer } => {
+            Display::Lines { out, columns, gatherer } => {
                 if let Some(step) = gatherer.finish() {
-                    write_or_forget(out, &step.line());
+                    write_or_forget(out, &fitted(&step.line(), *columns));
                 }
             }
             Display::Json(_) | Display::Quiet => {}
@@ -119,18 +122,18 @@ impl<'a, S: Sink> ProgressSink<'a, S> {
             Display::Quiet => {}
             Display::Live { bar, target, gatherer } => {
                 for step in gatherer.take(record).into_iter().filter(|step| step.is_eventful()) {
-                    bar.println(printable(&step.line()));
+                    bar.println(printable(&fitted(&step.line(), error_columns())));
                 }
-                warnings.iter().for_each(|line| bar.println(printable(line)));
+                warnings.iter().for_each(|line| bar.println(printable(&fitted(line, error_columns()))));
                 bar.set_position(thousandths(record.report.parameter));
                 bar.set_prefix(live_prefix(record.report.driven_by, record.report.parameter, *target));
                 bar.set_message(live_message(&record.report));
             }
-            Display::Lines { out, gatherer } => {
+            Display::Lines { out, columns, gatherer } => {
                 for step in gatherer.take(record) {
-                    write_or_forget(out, &step.line());
+                    write_or_forget(out, &fitted(&step.line(), *columns));
                 }
-                warnings.iter().for_each(|line| write_or_forget(out, line));
+                warnings.iter().for_each(|line| write_or_forget(out, &fitted(line, *columns)));
             }
             Display::Json(out) => {
                 let Some(open) = out else { return Ok(()) };

@@ -7,7 +7,7 @@ use clap::Args;
 use super::asked::{Ends, ordinal};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::read_log;
-use super::output::{file_name, path_in_line, print, write_files};
+use super::output::{file_name, path_in_line, print_as_it_is, write_files};
 use super::plotted::names_of;
 use super::speed_ups;
 use crate::history::States;
@@ -45,7 +45,7 @@ impl Arguments {
             Some(study) => return Err(Failure::StudyAmongLogs { study: study.clone() }),
         }
         write_page(&logs, &output)?;
-        print(&format!("{}\n", path_in_line(&output)))
+        print_as_it_is(&format!("{}\n", path_in_line(&output)))
     }
 }
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::output::{print, print_json};
 use super::shipped::{SHIPPED, Shipped};
-use super::wrapped::WIDTH;
+use super::terminal::prose_columns;
 
 /// List the scenes that come with the program; each can be named wherever a scene file can
 #[derive(Args, Debug)]
@@ -61,7 +61,11 @@ fn folder(name: &str) -> Option<&str> {
 fn block(group: &[&Shipped]) -> String {
     let widest = group.iter().map(|shipped| shipped.name.chars().count()).max().unwrap_or(0);
     let line = |shipped: &&Shipped| {
-        format!("{:<widest$}  {}\n", shipped.name, shortened(&shipped.summary(), WIDTH - widest - 2))
+        format!(
+            "{:<widest$}  {}\n",
+            shipped.name,
+            shortened(&shipped.summary(), prose_columns().saturating_sub(widest + 2))
+        )
     };
     group.iter().map(line).collect()
 }

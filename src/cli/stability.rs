@@ -7,7 +7,7 @@ use clap::Args;
 use super::asked::{Asked, Ends};
 use super::failure::{EXIT_CODES, Failure};
 use super::log_file::scene_at;
-use super::output::{file_name, path_in_line, print, refuse_what_is_there, write_files};
+use super::output::{file_name, path_in_line, print, print_as_it_is, refuse_what_is_there, write_files};
 use super::pictured::cells_per_element;
 use crate::history::{StabilityReport, States, stability_at};
 use crate::record::Record;
@@ -131,7 +131,7 @@ fn draw(folder: &Path, scene: &Scene, record: &Record, report: &StabilityReport)
     let texts = [mesh_picture(&samples, &picture), vtu(&samples)];
     let files: Vec<_> = pictures(folder).into_iter().zip(texts.map(String::into_bytes)).collect();
     write_files(&files)?;
-    print(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
+    print_as_it_is(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
 }
 
 /// The files of a mode.

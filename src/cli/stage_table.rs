@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
+use super::wrapped::hanging;
 use crate::record::{Outcome, Parameter, Record, Report};
 use crate::scene::Stage;
 use crate::spline::Grid;
-use crate::units::reading;
+use crate::units::{reading, significant};
 
 /// A column: its head, and whether its cells are right-aligned.
 struct Column(&'static str, bool);
@@ -27,39 +28,64 @@ const COLUMNS: [Column; 14] = [
     Column("", false),
 ];
 
+/// Columns that are left out where a terminal is too narrow, the least important first; their numbers are in `--step`.
+const LEFT_OUT: [usize; 8] = [12, 9, 11, 7, 5, 10, 8, 0];
+
+/// Columns that the last one has at least, where it is wider than that; its cells are continued below.
+const NOTE: usize = 24;
+
 /// Formats stages as a table with a row for each; columns are as wide as they need to be, and a run of a thousand
-/// stages fits 120 characters.
+/// stages fits 120 characters. With fewer `columns` than it needs some are left out.
 ///
 /// `mesh` is elements along the length × along the arc, `free` the free unknowns, `neg` the negative pivots; blank is
 /// zero. The last column shows what else happened; ✗ is a solve rejected, at the rotation that it tried, ! a warning.
-pub fn stage_table(records: &[Record]) -> String {
+pub fn stage_table(records: &[Record], columns: Option<usize>) -> String {
     let steps = records.first().is_some_and(|record| record.report.driven_by == Parameter::LoadFactor);
     // Where no ends turn, the first probe replaces their moment: of the last scene, which may have others.
     let probe = records.iter().rev().find_map(|record| record.report.probes.first());
     let probe = probe.map(|reading| reading.name.clone());
     // The cells are made twice: those of a long run do not fit in memory.
     let rows = || records.iter().map(|record| cells(record, probe.as_deref()));
-    let mut widths = COLUMNS.map(|column| column.0.chars().count());
-    for row in rows() {
-        widths.iter_mut().zip(&row).for_each(|(width, cell)| *width = cell.chars().count().max(*width));
-    }
     let mut heads = COLUMNS.map(|column| column.0.to_string());
     if steps {
         heads[3] = "factor".into();
         heads[4] = probe.clone().unwrap_or_default();
     }
+    let mut widths = COLUMNS.map(|column| column.0.chars().count());
+    for row in rows() {
+        widths.iter_mut().zip(&row).for_each(|(width, cell)| *width = cell.chars().count().max(*width));
+    }
+    widths[4] = widths[4].max(heads[4].chars().count());
+    let shown = shown(&widths, columns);
     let mut table = String::new();
     for row in std::iter::once(heads).chain(rows()) {
         let mut line = String::new();
-        for ((cell, &width), column) in row.iter().zip(&widths).zip(&COLUMNS) {
-            let cell = if column.1 { format!("{cell:>width$}") } else { format!("{cell:<width$}") };
+        for &column in &shown {
+            let (cell, width) = (&row[column], widths[column]);
+            let cell = if COLUMNS[column].1 { format!("{cell:>width$}") } else { format!("{cell:<width$}") };
             line.push_str(&cell);
             line.push(' ');
         }
-        table.push_str(line.trim_end());
+        let note = &row[COLUMNS.len() - 1];
+        table.push_str(hanging(&line, note, columns).trim_end());
         table.push('\n');
     }
     table
+}
+
+/// The columns before the last that there is room for.
+fn shown(widths: &[usize; COLUMNS.len()], columns: Option<usize>) -> Vec<usize> {
+    let last = COLUMNS.len() - 1;
+    let mut shown: Vec<usize> = (0..last).collect();
+    let note = widths[last].min(NOTE);
+    for left_out in LEFT_OUT {
+        let taken = shown.iter().map(|&column| widths[column] + 1).sum::<usize>() + note;
+        if columns.is_none_or(|columns| taken <= columns) {
+            break;
+        }
+        shown.retain(|&column| column != left_out);
+    }
+    shown
 }
 
 /// The cells of a stage; `probe` is the name of the one that has a column.
@@ -143,6 +169,11 @@ pub fn step_in_full(records: &[Record], step: u64) -> String {
     text
 }
 
+/// A number with all digits that mean something; each bit is in the JSON.
+fn digits(number: f64) -> String {
+    significant(number, 12)
+}
+
 fn in_full(record: &Record) -> Vec<(&'static str, String)> {
     let Record { report, commit, wall_s, .. } = record;
     let outcome = match report.outcome {
@@ -165,32 +196,35 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
         ("", format!("stage {}: {}, load step {}", commit.ordinal, report.stage, report.step)),
         ("outcome", outcome),
         match report.driven_by {
-            Parameter::Rotation => ("rotation", format!("{}°", report.parameter)),
-            Parameter::LoadFactor => ("load factor", report.parameter.to_string()),
+            Parameter::Rotation => ("rotation", format!("{}°", digits(report.parameter))),
+            Parameter::LoadFactor => ("load factor", digits(report.parameter)),
         },
     ];
     if report.attempted_parameter != report.parameter {
         lines.push(match report.driven_by {
-            Parameter::Rotation => ("attempted rotation", format!("{}°", report.attempted_parameter)),
-            Parameter::LoadFactor => ("attempted factor", report.attempted_parameter.to_string()),
+            Parameter::Rotation => ("attempted rotation", format!("{}°", digits(report.attempted_parameter))),
+            Parameter::LoadFactor => ("attempted factor", digits(report.attempted_parameter)),
         });
     }
     if report.driven_by == Parameter::Rotation {
-        lines.push(("end moment", format!("{} N·mm", report.moment_n_mm)));
+        lines.push(("end moment", format!("{} N·mm", digits(report.moment_n_mm))));
     }
     for probe in &report.probes {
-        lines.push(("probe", format!("{} = {} {}", probe.name, probe.value, probe.unit)));
+        lines.push(("probe", format!("{} = {} {}", probe.name, digits(probe.value), probe.unit)));
     }
-    lines.push(("strain energy", format!("{} N·mm", report.strain_energy_n_mm)));
+    lines.push(("strain energy", format!("{} N·mm", digits(report.strain_energy_n_mm))));
     if let Some(length) = report.path_length_mm {
-        lines.push(("length of the path", format!("{length} mm (root mean square displacement)")));
+        lines.push(("length of the path", format!("{} mm (root mean square displacement)", digits(length))));
     }
     if let Some(passed) = report.critical_point {
         lines.push(("passed", passed.in_words()));
     }
     if report.jumped || report.rippled || report.stage == Stage::SwitchBranch {
         let released = report.energy_released_n_mm;
-        lines.push(("energy released", released.map_or("not known".to_string(), |energy| format!("{energy} N·mm"))));
+        lines.push((
+            "energy released",
+            released.map_or("not known".to_string(), |energy| format!("{} N·mm", digits(energy))),
+        ));
     }
     lines.extend([
         ("elements", format!("{n1} × {n2} = {} (length × arc, of the model)", Grid::new(report.elements).len())),

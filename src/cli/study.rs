@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{eprint, file_name, path_in_line, print, print_json};
+use super::output::{eprint, file_name, path_in_line, print, print_json, say};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
 use super::speed_ups;
@@ -152,7 +152,7 @@ impl Arguments {
             }));
         }
         print(&format!("{:<width$}  failed\n", case.label()))?;
-        failure.say();
+        say(&failure);
         Ok(())
     }
 

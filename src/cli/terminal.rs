@@ -7,9 +7,11 @@ use std::io::{self, IsTerminal};
 use anstream::stream::RawStream;
 use anstream::{AutoStream, ColorChoice};
 use clap::ValueEnum;
+use terminal_size::terminal_size_of;
 
-/// Columns of what is no terminal, and of a terminal that does not say how many it has.
-const WIDTH: usize = 80;
+/// Columns of prose, and of help, where there is room.
+const PROSE: usize = 80;
+const HELP: usize = 100;
 
 /// Columns below which nothing is made narrower.
 const NARROWEST: usize = 40;
@@ -47,11 +49,33 @@ pub(super) fn can_overwrite() -> bool {
     io::stderr().is_terminal() && env::var_os("TERM").is_none_or(|terminal| terminal != "dumb")
 }
 
-/// Columns that a line may have: `COLUMNS`, or else those of the terminal, or else 80.
-pub(super) fn width() -> usize {
-    let said = env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok()).filter(|&columns| columns > 0);
-    let found = || terminal_size::terminal_size_of(io::stdout()).map(|(columns, _)| usize::from(columns.0));
-    said.or_else(found).unwrap_or(WIDTH).max(NARROWEST)
+/// Columns of a line on standard output: `COLUMNS`, or else those of the terminal. A pipe has no bounds.
+pub(super) fn output_columns() -> Option<usize> {
+    said_columns().or_else(|| terminal_size_of(io::stdout()).map(|(columns, _)| at_least(columns.0)))
+}
+
+/// The same of standard error.
+pub(super) fn error_columns() -> Option<usize> {
+    said_columns().or_else(|| terminal_size_of(io::stderr()).map(|(columns, _)| at_least(columns.0)))
+}
+
+/// Columns of prose, which no wide terminal makes wider.
+pub(super) fn prose_columns() -> usize {
+    output_columns().map_or(PROSE, |columns| columns.min(PROSE))
+}
+
+/// Columns of the help on arguments.
+pub(super) fn help_columns() -> usize {
+    output_columns().map_or(HELP, |columns| columns.min(HELP))
+}
+
+fn said_columns() -> Option<usize> {
+    let said = env::var("COLUMNS").ok()?.parse().ok()?;
+    (said > 0).then_some(at_least(said))
+}
+
+fn at_least(columns: u16) -> usize {
+    usize::from(columns).max(NARROWEST)
 }
 
 #[cfg(test)]

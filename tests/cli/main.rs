@@ -18,6 +18,7 @@ mod study;
 mod summary;
 mod synthetic;
 mod terminal;
+mod widths;
 
 #[path = "../restart/program.rs"]
 #[allow(dead_code, reason = "shared with the tests of restarts")]

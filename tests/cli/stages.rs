@@ -7,7 +7,7 @@ use crate::synthetic;
 
 #[test]
 fn table_of_a_run() {
-    let table = stage_table(&synthetic::records());
+    let table = stage_table(&synthetic::records(), None);
     assert!(table.lines().all(|line| line.chars().count() <= 120));
     insta::assert_snapshot!(table);
 }
@@ -24,14 +24,14 @@ fn table_of_a_large_run_fits() {
         record.report.strain_energy_n_mm += 100.0;
         record.wall_s += 100.0;
     }
-    let table = stage_table(&records);
+    let table = stage_table(&records, None);
     let widest = table.lines().map(|line| line.chars().count()).max();
     assert!(widest <= Some(120), "{widest:?}\n{table}");
 }
 
 #[test]
 fn table_of_an_empty_log_is_its_head() {
-    insta::assert_snapshot!(stage_table(&[]));
+    insta::assert_snapshot!(stage_table(&[], None));
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn json_numbers_come_back_bit_for_bit() {
 #[test]
 fn warnings_stand_beside_their_stages() {
     let records = synthetic::coarse_records();
-    insta::assert_snapshot!(stage_table(&records) + &step_in_full(&records, 5));
+    insta::assert_snapshot!(stage_table(&records, None) + &step_in_full(&records, 5));
 }
 
 #[test]

@@ -53,7 +53,7 @@ impl Sandbox {
     /// The program in this folder, with these arguments, words apart.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_foldline"));
-        command.args(arguments.split_whitespace()).current_dir(self.path()).stdin(Stdio::null());
+        command.args(arguments.split_whitespace()).current_dir(self.path()).stdin(Stdio::null()).env_remove("COLUMNS");
         command
     }
 
