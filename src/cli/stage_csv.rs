@@ -6,7 +6,7 @@ use super::json_line::json_line;
 use crate::record::Record;
 
 /// The columns before those of the probes: where each stands in the JSON of a stage, `.0` along the length and `.1` along the arc.
-const COLUMNS: [&str; 35] = [
+const COLUMNS: [&str; 36] = [
     "ordinal",
     "step",
     "stage",

@@ -149,7 +149,7 @@ fn wrong_questions_about_stability() {
     place.foldline("stability run.mcap --step 0").ends(2).says(&["it has 1 to"]);
     place.foldline("stability run.mcap --step one").ends(2).says(&["one"]);
     place.foldline("stability run.mcap -o pictures").ends(2).says(&["--step"]);
-    place.foldline("stability none.mcap").ends(2).says(&["none.mcap", "there is no such file"]);
+    place.foldline("stability none.mcap").ends(2).says(&["none.mcap", "No such file"]);
     place.foldline("stability").ends(2);
 }
 
@@ -188,7 +188,7 @@ fn wrong_meshes_to_compare() {
     refused("converge small.toml --elements 8,5", 2).says(&["elements"]);
     refused("converge small.toml --elements 0,4", 2).says(&["elements"]);
     refused("converge small.toml --unstable-at high", 2).says(&["--unstable-at"]);
-    refused("converge none.toml", 2).says(&["none.toml", "No such file"]);
+    refused("converge none.toml", 2).says(&["none.toml", "there is no such file"]);
     refused("converge", 2);
     let said = refused("converge roof.toml --degree 3 --elements 4,4", 2);
     said.says(&["only a tape spring whose ends turn", "load.kind = \"end-rotation\""]);
