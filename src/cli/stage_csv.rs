@@ -6,15 +6,16 @@ use super::json_line::json_line;
 use crate::record::Record;
 
 /// The columns before those of the probes: where each stands in the JSON of a stage, `.0` along the length and `.1` along the arc.
-const COLUMNS: [&str; 35] = [
+const COLUMNS: [&str; 36] = [
     "ordinal",
     "step",
     "stage",
     "outcome",
-    "driven_by",
-    "parameter",
-    "attempted_parameter",
+    "rotation_deg",
+    "attempted_rotation_deg",
     "moment_n_mm",
+    "load_factor",
+    "attempted_load_factor",
     "strain_energy_n_mm",
     "work_n_mm",
     "put_in_n_mm",

@@ -338,13 +338,13 @@ impl Summary {
             let [runs, iterations, factorizations] = numbers;
             writeln!(
                 f,
-                "  {name:<21}   {runs:>5}   {iterations:>10}   {factorizations:>14}   {wall_s:>8.2}   {share:>4.0} %"
+                "  {name:<21}  {runs:>5}  {iterations:>10}  {factorizations:>14}  {wall_s:>8.2}  {share:>4.0} %"
             )
         };
         let texts = |numbers: [usize; 3]| numbers.map(|number| number.to_string());
         writeln!(
             f,
-            "  {:<21}   {:>5}   {:>10}   {:>14}   {:>8}   {:>6}",
+            "  {:<21}  {:>5}  {:>10}  {:>14}  {:>8}  {:>6}",
             "work in", "runs", "iterations", "factorizations", "wall s", "share"
         )?;
         for work in &self.work {

@@ -10,9 +10,9 @@ const COLOURS: [&str; 4] = ["NO_COLOR", "CLICOLOR_FORCE", "CLICOLOR", "TERM"];
 /// What a command prints into pipes with some of [`COLOURS`] set and the others not.
 fn said(place: &Sandbox, arguments: &str, set: &[(&str, &str)]) -> Output {
     let mut command = place.command(arguments);
-    for name in COLOURS {
+    COLOURS.iter().for_each(|name| {
         command.env_remove(name);
-    }
+    });
     command.envs(set.iter().copied()).output().unwrap()
 }
 
