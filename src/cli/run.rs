@@ -97,19 +97,21 @@ impl Job {
             }
             eprint(&format!("{} holds nothing: started again", path_in_line(&options.log)));
         }
+        // What is there and no log is refused by whoever creates one.
         let is_in_the_way = !is_there && options.log.exists();
-        if is_in_the_way
-            && !force
-            && let Some(found) = old_log::beside(&options.log, &scene, &file, &set)
-        {
-            return Err(Failure::LogIsThere { log: options.log, found });
-        }
+        let in_the_way = is_in_the_way.then(|| old_log::beside(&options.log, &scene, &file, &set)).flatten();
+        let is_put_aside = match in_the_way {
+            Some(found) if !force => return Err(Failure::LogIsThere { log: options.log, found }),
+            found => found.is_some(),
+        };
         let mut stages = Stages::new(scene.clone());
         let start = stages.start()?;
         let size = Size::of(&scene)?;
+        let odd = oddities(&scene, &size);
+        let remarks = stages.remarks(&start)?;
         let raised = watch_signals()?;
         make_default_folder(&options.log)?;
-        if is_in_the_way && force {
+        if is_put_aside {
             let aside = old_log::put_aside(&options.log)?;
             eprint(&format!("the log that was there is {} now", path_in_line(&aside)));
         }
@@ -126,8 +128,8 @@ impl Job {
             eprint(&format!("to {to} → {}", path_in_line(&options.log)));
         }
         // What looks odd is reported however quiet the run is.
-        oddities(&scene, &size).iter().for_each(|odd| eprint(&wrapped("warning: ", odd)));
-        stages.remarks(&start)?.iter().for_each(|remark| eprint(remark));
+        odd.iter().for_each(|odd| eprint(&wrapped("warning: ", odd)));
+        remarks.iter().for_each(|remark| eprint(remark));
         if scene.mesh.degree.contains(&2) && scene.mesh.quadrature == Quadrature::Full {
             eprint(
                 "warning: degree 2 with full quadrature locks on coarse meshes, and stays too stiff; mesh.quadrature = \"reduced\" helps",

@@ -235,7 +235,7 @@ fn a_part_of_a_long_log_is_as_good_as_all_of_it() {
 
     fs::copy(&path, place.file("copy.mcap")).unwrap();
     for (command, code) in [
-        ("replay LOG --step 5000", 2),
+        ("replay LOG --step 5000", 4),
         ("stability LOG --step 5000", 0),
         ("stability LOG --step 8001", 2),
         ("replay LOG --step 5000 --stage refine-knots", 2),
