@@ -55,7 +55,8 @@ with tempfile.TemporaryDirectory() as folder, sync_playwright() as driver:
         assert not said, said
         wide = page.evaluate("[...document.querySelectorAll('body *')].filter((e) => e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.tagName + '#' + e.id)")
         assert page.evaluate("document.documentElement.scrollWidth") <= width, f"wider than the screen: {wide}"
-        drawn = page.evaluate("charts[0].data.datasets[0].data.map((p) => [p.x, p.y])")
+        rest, *drawn = page.evaluate("charts[0].data.datasets[0].data.map((p) => [p.x, p.y])")
+        assert rest == [0, 0], rest
         stages = list(settled(log).values())
         assert len(drawn) == len(stages), (len(drawn), len(stages))
         for (x, y), stage in zip(drawn, stages):
