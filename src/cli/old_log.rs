@@ -11,6 +11,7 @@ use super::output::path_in_line;
 use crate::journal::{Completeness, LogLock};
 use crate::scene::Scene;
 use crate::units::count;
+use crate::whole_file::beside as with_suffix;
 
 /// Differences of scenes that are listed.
 const MOST_LISTED: usize = 12;
@@ -63,13 +64,8 @@ pub(super) fn put_aside(log: &Path) -> Result<PathBuf, Failure> {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             moved => {
                 moved.map_err(failed)?;
-                let index = |log: &Path| {
-                    let mut name = log.as_os_str().to_owned();
-                    name.push(".index");
-                    PathBuf::from(name)
-                };
-                // Only a cache: without it the log is read.
-                let _ = moved_index(&index(log), &index(&aside));
+                // Only a cache, and not there for a short log: without it the log is read.
+                let _ = self::moved(&with_suffix(log, ".index"), &with_suffix(&aside, ".index"));
                 return Ok(aside);
             }
         }
@@ -87,8 +83,4 @@ fn moved(from: &Path, to: &Path) -> io::Result<()> {
         }
         Err(error) => Err(error),
     }
-}
-
-fn moved_index(from: &Path, to: &Path) -> io::Result<()> {
-    if from.symlink_metadata().is_ok() { moved(from, to) } else { Ok(()) }
 }

@@ -1,5 +1,6 @@
 //! `foldline report`: runs as one page.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -72,8 +73,9 @@ fn reported(path: &Path, name: &str) -> Result<ReportedRun, Failure> {
     if steps.is_empty() {
         return Err(PlotError::NoEquilibrium.into());
     }
-    let jumped = |step: u64| records.iter().any(|record| record.report.step == step && record.report.jumped);
-    let chosen = chosen_frames(&steps, |step| jumped(step) || jumped(step + 1));
+    let jumps: BTreeSet<u64> =
+        records.iter().filter(|record| record.report.jumped).map(|record| record.report.step).collect();
+    let chosen = chosen_frames(&steps, |step| jumps.contains(&step) || jumps.contains(&(step + 1)));
     let mut states = States::of(&read.log);
     let mut frames = Vec::new();
     for end in ends.records.iter().filter(|end| chosen.contains(&end.report.step)) {
