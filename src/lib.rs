@@ -19,7 +19,7 @@
 //! | [`adapt`] | where the mesh is refined |
 //! | [`pipeline`], [`record`], [`state`] | stages and the loop; what is kept of them, and sinks; what a checkpoint holds |
 //! | [`journal`], [`history`] | logs; continuing, replaying and bisecting them |
-//! | [`study`], [`view`] | error against run time; pictures |
+//! | [`study`], [`sweep`], [`view`] | error against run time; tables over designs; pictures |
 //!
 //! # What stays
 //!
@@ -89,6 +89,7 @@ pub mod shell;
 pub mod spline;
 pub mod state;
 pub mod study;
+pub mod sweep;
 mod units;
 pub mod view;
 mod whole_file;

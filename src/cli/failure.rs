@@ -9,7 +9,8 @@ use crate::printable::one_line;
 use crate::record::Parameter;
 use crate::scene::{Scene, Stage};
 use crate::study::{AccuracyError, BenchError, CalibrationError, ConvergenceError, TaskError};
-use crate::units::rounded;
+use crate::sweep::SweepError;
+use crate::units::{count, rounded};
 use crate::view::{AnimationError, PlotError, SamplesError};
 
 /// Stopped by a signal; nothing is wrong.
@@ -151,6 +152,16 @@ pub(super) enum Failure {
     VariedTwice { key: String },
     #[error("{case} gave nothing to compare")]
     Study { case: String, source: Box<AccuracyError> },
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    #[error(
+        "{} has not been begun: `foldline sweep run {}` does, and a folder is named by itself", sweep.display(), sweep.display()
+    )]
+    NoSweep { sweep: PathBuf },
+    #[error("interrupted; continue with: foldline sweep resume {}", folder.display())]
+    SweepInterrupted { folder: PathBuf },
+    #[error("{} left, for reasons that are none of their own; continue with: foldline sweep resume {}", count(*left, "task"), folder.display())]
+    SweepLeft { left: usize, folder: PathBuf },
     #[error("the stability of stage {index} of {} cannot be found", log.display())]
     Stability { log: PathBuf, index: usize, source: Box<StabilityError> },
     #[error("{}; there is {}", none_chosen(filter.as_deref(), folder), if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
@@ -192,7 +203,9 @@ impl Failure {
             | Failure::MeshesInOneFile { .. }
             | Failure::FieldsForViewers { .. }
             | Failure::TimesOfNoViewer
+            | Failure::NoSweep { .. }
             | Failure::NoSuchScene { .. } => 2,
+            Failure::Sweep(error) if !matches!(error, SweepError::Write { .. }) => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,
             Failure::Calibration { source, .. }
@@ -211,7 +224,7 @@ impl Failure {
             {
                 2
             }
-            Failure::Interrupted { .. } | Failure::StudyInterrupted => INTERRUPTED,
+            Failure::Interrupted { .. } | Failure::StudyInterrupted | Failure::SweepInterrupted { .. } => INTERRUPTED,
             _ => 1,
         }
     }

@@ -15,6 +15,7 @@
 //! | `export`, `export_choice` | states in the formats of other programs; which of them, and of what |
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
+//! | `sweep`, `sweep_progress`, `sweep_table` | tables over designs: what is done, as it is shown; their rows |
 //! | `calibrate` | the threshold at which a scene's mesh keeps an error |
 //! | `help`, `man`, `completions` | help on subcommands and topics, as manual pages, and for a shell |
 //! | `scenes`, `shipped` | the scenes that come with the program |
@@ -70,6 +71,9 @@ mod stability;
 mod stage_csv;
 mod stage_table;
 mod study;
+mod sweep;
+mod sweep_progress;
+mod sweep_table;
 mod terminal;
 mod thin;
 mod trace;
@@ -126,6 +130,7 @@ enum Command {
     Converge(converge::Arguments),
     Calibrate(calibrate::Arguments),
     Study(study::Arguments),
+    Sweep(sweep::Arguments),
     #[command(alias = "stress")]
     Extremes(extremes::Arguments),
     Completions(completions::Arguments),
@@ -171,6 +176,7 @@ impl Command {
             Command::Converge(arguments) => arguments.run().map(|()| 0),
             Command::Calibrate(arguments) => arguments.run().map(|()| 0),
             Command::Study(arguments) => arguments.run().map(|()| 0),
+            Command::Sweep(arguments) => arguments.run().map(|()| 0),
             Command::Bench(arguments) => arguments.run().map(|()| 0),
             Command::Extremes(arguments) => arguments.run(),
             Command::Completions(arguments) => arguments.run(Arguments::command()).map(|()| 0),

@@ -37,6 +37,11 @@ pub(crate) fn room_in(_: &Path) -> Option<u64> {
     None
 }
 
+/// Bytes of memory that are free for this process, which is not known here.
+pub(crate) fn free_memory() -> Option<u64> {
+    None
+}
+
 /// Makes the names in a folder durable, which the file system does by itself.
 pub(crate) fn sync_folder(_: &Path) -> io::Result<()> {
     Ok(())

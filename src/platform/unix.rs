@@ -45,6 +45,26 @@ pub(crate) fn room_in(folder: &Path) -> Option<u64> {
     Some(disk.f_bavail.saturating_mul(disk.f_frsize))
 }
 
+/// Bytes of memory that are free for this process, where that is known: what the machine has, or the limit of the group that it
+/// belongs to leaves.
+pub(crate) fn free_memory() -> Option<u64> {
+    let known = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let available = known.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let of_machine = 1024 * available.trim().trim_end_matches("kB").trim().parse::<u64>().ok()?;
+    Some(left_to_group().map_or(of_machine, |left| left.min(of_machine)))
+}
+
+/// What the limit of this process's control group (version 2) leaves, where it has one.
+fn left_to_group() -> Option<u64> {
+    let groups = std::fs::read_to_string("/proc/self/cgroup").ok()?;
+    let group = groups.lines().find_map(|line| line.strip_prefix("0::"))?;
+    let number = |file: &str| {
+        let path = Path::new("/sys/fs/cgroup").join(group.trim_start_matches('/')).join(file);
+        std::fs::read_to_string(path).ok()?.trim().parse::<u64>().ok()
+    };
+    Some(number("memory.max")?.saturating_sub(number("memory.current")?))
+}
+
 /// Makes the names in a folder durable.
 pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()

@@ -28,6 +28,12 @@ const FREE_OF_PLIES: &str = "ply: strengths";
 /// What the hash of a scene begins with; changes when the meaning of a scene does.
 const DOMAIN: &str = "foldline scene 1";
 
+/// What the hash of results begins with.
+const RESULTS_DOMAIN: &str = "foldline results 1";
+
+/// Tables of a scene that change nothing that a finished run shows.
+const WITHOUT_RESULTS: [&str; 2] = ["output.", "expect."];
+
 impl Scene {
     /// Hashes everything that decides states: all keys but those that reach nothing ([`Reach::Free`]: outputs, expectations, the
     /// target, strengths, probes; though of these the first, without its name, where a tolerance asks for its error). Those may
@@ -36,19 +42,13 @@ impl Scene {
     /// Fed are the domain string and then, in the order of their paths, each key and its value as JSON, each with its
     /// length in front: independent of the order of fields, of formatting and of comments in the scene file.
     pub fn hash(&self) -> blake3::Hash {
-        let mut hasher = blake3::Hasher::new();
-        let mut feed = |text: &str| {
-            hasher.update(&(text.len() as u64).to_le_bytes());
-            hasher.update(text.as_bytes());
-        };
-        feed(DOMAIN);
-        for (path, value) in self.leaves() {
-            if reach(SECTIONS, &path) != Reach::Free {
-                feed(&path);
-                feed(&value.to_string());
-            }
-        }
-        hasher.finalize()
+        hash_of(DOMAIN, self.leaves(), |path| reach(SECTIONS, path) != Reach::Free)
+    }
+
+    /// Hashes everything that decides what a finished run shows, fed as in [`Self::hash`]: besides what decides states also the
+    /// target, probes and strengths. Runs of scenes that share it are one run, whatever else is written of them.
+    pub fn results_hash(&self) -> blake3::Hash {
+        hash_of(RESULTS_DOMAIN, self.leaves(), |path| !WITHOUT_RESULTS.iter().any(|table| path.starts_with(table)))
     }
 
     /// Lists every key on which the scenes differ, in alphabetical order; supports, actions and probes table by table.
@@ -90,6 +90,21 @@ impl Scene {
         }
         leaves
     }
+}
+
+/// Hashes the values that are chosen by their path.
+fn hash_of(domain: &str, leaves: BTreeMap<String, Value>, is_chosen: impl Fn(&str) -> bool) -> blake3::Hash {
+    let mut hasher = blake3::Hasher::new();
+    let mut feed = |text: &str| {
+        hasher.update(&(text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    };
+    feed(domain);
+    for (path, value) in leaves.iter().filter(|(path, _)| is_chosen(path)) {
+        feed(path);
+        feed(&value.to_string());
+    }
+    hasher.finalize()
 }
 
 /// Takes from each ply what reaches nothing, where there is any.

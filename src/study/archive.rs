@@ -1,4 +1,5 @@
-//! Runs that a study needs, each in a log of its own that is named after the hash of its scene: what is done is not done again.
+//! Runs that a study or a sweep needs, each in a log of its own that is named after what decides its results
+//! ([`Scene::results_hash`]): what is done is not done again.
 //!
 //! A run whose time counts has a record of that beside its log, since time is no function of a scene: it is kept only for the
 //! same number of threads and the same version and numerics of the program (where its speed is worked on, a folder of its own for each
@@ -21,8 +22,13 @@ use crate::scene::{Scene, SyncPolicy};
 use crate::state::State;
 use crate::whole_file::WholeFile;
 
-/// Digits of a scene's hash in the name of its log.
+/// Digits of a hash in the name of a log.
 const DIGITS: usize = 16;
+
+/// The name of a run of a scene among others: the first digits of what decides its results, in hexadecimal.
+pub fn run_name(scene: &Scene) -> String {
+    scene.results_hash().to_hex()[..DIGITS].to_owned()
+}
 
 /// A folder with the logs of finished and interrupted runs.
 #[derive(Clone, Debug)]
@@ -113,6 +119,17 @@ pub enum TaskError {
     },
 }
 
+impl TaskError {
+    /// Whether the scene is the cause, so that the task ends the same wherever it is done again; else the machine or the caller is.
+    pub fn is_of_scene(&self) -> bool {
+        match self {
+            TaskError::Model(_) => true,
+            TaskError::Run { source, .. } => matches!(**source, RunError::Stage(_)),
+            _ => false,
+        }
+    }
+}
+
 /// Writes a log, and keeps what was reported.
 struct Logged {
     writer: JournalWriter,
@@ -139,8 +156,8 @@ impl Archive {
     }
 
     /// Where the log of a scene lies.
-    fn log_of(&self, scene: &Scene) -> PathBuf {
-        self.folder.join(format!("{}.mcap", &scene.hash().to_hex()[..DIGITS]))
+    pub fn log_of(&self, scene: &Scene) -> PathBuf {
+        self.folder.join(run_name(scene) + ".mcap")
     }
 
     /// Returns a finished run of a scene, which is read, continued or run from the start.

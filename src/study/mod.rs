@@ -10,7 +10,8 @@
 //! | `timed_run`, `bench` | what it costs |
 //! | `accuracy`, `convergence` | error against that |
 //! | `comparison` | runs next to each other |
-//! | `archive` | runs by the hash of their scene, each in a log |
+//! | `engine`, `room` | the loop over tasks; memory that they share |
+//! | `archive` | runs by what decides their results, each in a log |
 //! | `study_file`, `speed_up` | studies of structures, and what they show |
 //! | `calibration` | the threshold of the bending indicator |
 //! | `extremes`, `extremes_run`, `extremes_curve`, `extremes_fault` | scenes that state how they end |
@@ -21,12 +22,14 @@ mod bench;
 mod calibration;
 mod comparison;
 mod convergence;
+mod engine;
 mod extremes;
 mod extremes_curve;
 mod extremes_fault;
 mod extremes_run;
 mod forecast;
 mod path;
+mod room;
 mod section_shape;
 mod speed_up;
 mod study_file;
@@ -36,7 +39,7 @@ mod timed_run;
 mod wuest;
 
 pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_comparable, is_one_structure, measure};
-pub use archive::{Archive, Done, Purpose, TaskError};
+pub use archive::{Archive, Done, Purpose, TaskError, run_name};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use calibration::{
     Calibrated, Calibration, CalibrationError, CalibrationPoint, CoarseIn, EndedBy, Verdict, calibrate,
@@ -44,11 +47,13 @@ pub use calibration::{
 };
 pub use comparison::{Curve, CurveError, Deviation, Finding};
 pub use convergence::{ConvergenceError, ConvergenceRow, check_spring, converge};
+pub use engine::{Ended, EngineError, Workers};
 pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;
 pub use forecast::{Forecast, StepCost};
 pub use path::{OnPath, Passed, PathPoint, Snap, equilibria, equilibrium_path, records_on_path, snaps};
+pub use room::{Held, Room};
 pub use speed_up::{Errors, MeshPoint, SpeedUp, error_of_finer, speed_up};
 pub use study_file::{Adaptive, Family, Planned, ReferenceMesh, Role, Structure, StudyError, StudyFile};
 pub use summary::{EnergyBalance, FoldMean, MeasuredPeak, MeshChange, PeakFound, StageWork, Summary, WarningCount};

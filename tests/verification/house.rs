@@ -3,7 +3,7 @@
 use crate::imports::{Import, Sources, Token, circles, imports, sources, tokens};
 
 /// From the bottom of the stack to its top: each folder imports only from those before it.
-const ORDER: [&str; 22] = [
+const ORDER: [&str; 23] = [
     "units",
     "printable",
     "digest",
@@ -22,6 +22,7 @@ const ORDER: [&str; 22] = [
     "journal",
     "history",
     "study",
+    "sweep",
     "view",
     "cli",
     "guide",

@@ -1,0 +1,198 @@
+//! `foldline sweep`: tables over designs.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use clap::{Args, Subcommand};
+
+use super::failure::{EXIT_CODES, Failure};
+use super::output::{eprint, path_in_line, print};
+use super::scene_file::{NamedText, read_named};
+use super::session::watch_signals;
+use super::settings::Settings;
+use super::shipped::Shipped;
+use super::sweep_progress::SweepProgress;
+use super::sweep_table::{Chosen, table_of};
+use crate::study::{Archive, EngineError, Workers};
+use crate::sweep::{Folder, Plan, SweepError, SweepFile, Task, Work, do_tasks, planned_from, to_do};
+use crate::units::{count, duration};
+
+/// Run a scene over many designs and collect what each run shows, in a table
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    Run(RunArguments),
+    Resume(ResumeArguments),
+    Status(StatusArguments),
+    Task(TaskArguments),
+}
+
+/// Do all tasks of a sweep that are not done yet, on this machine
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+struct RunArguments {
+    /// Sweep file (TOML), or the name of one of `foldline scenes`
+    sweep: PathBuf,
+    /// Folder for its plan, logs and table [default: checkpoints/sweeps/NAME]
+    #[arg(long, value_name = "DIR")]
+    folder: Option<PathBuf>,
+    #[command(flatten)]
+    pool: PoolArguments,
+}
+
+/// Continue a sweep from its folder alone, as it was planned
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+struct ResumeArguments {
+    /// Folder of the sweep
+    folder: PathBuf,
+    #[command(flatten)]
+    pool: PoolArguments,
+}
+
+#[derive(Args, Debug)]
+struct PoolArguments {
+    /// Tasks at a time [default: one for each core, where there is memory for them]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    tasks: Option<u16>,
+    /// Threads of each task
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: u16,
+    /// Do tasks again that failed
+    #[arg(long)]
+    retry: bool,
+    /// Print a JSON object for each task
+    #[arg(long)]
+    json: bool,
+}
+
+/// Show the table of a sweep as far as it is done
+#[derive(Args, Debug)]
+struct StatusArguments {
+    /// Folder of the sweep, or its file
+    sweep: PathBuf,
+    #[command(flatten)]
+    chosen: Chosen,
+}
+
+/// Do one task of a sweep, as a job of a cluster does
+#[derive(Args, Debug)]
+struct TaskArguments {
+    /// Folder of the sweep
+    folder: PathBuf,
+    /// Number of the task
+    number: usize,
+}
+
+impl Arguments {
+    /// Does what is asked for.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        match self.command {
+            Command::Run(arguments) => {
+                let folder = planned(&arguments.sweep, arguments.folder.as_deref())?;
+                arguments.pool.run(&folder)
+            }
+            Command::Resume(arguments) => arguments.pool.run(&Folder::at(&arguments.folder)),
+            Command::Status(StatusArguments { sweep, chosen }) => print_table(&folder_of(&sweep)?, &chosen),
+            Command::Task(TaskArguments { folder, number }) => one_task(&Folder::at(&folder), number),
+        }
+    }
+}
+
+/// Where a sweep of this name is kept.
+fn default_folder(file: &Path) -> Result<PathBuf, Failure> {
+    let logs = Settings::read()?.logs.unwrap_or_else(|| PathBuf::from("checkpoints"));
+    Ok(logs.join("sweeps").join(file.file_stem().unwrap_or(file.as_os_str())))
+}
+
+/// The folder that an argument means: a folder, or that of a file.
+fn folder_of(sweep: &Path) -> Result<Folder, Failure> {
+    let folder = Folder::at(sweep);
+    if folder.holds_sweep() {
+        return Ok(folder);
+    }
+    let folder = Folder::at(&default_folder(&read_named(sweep)?.file)?);
+    if folder.holds_sweep() { Ok(folder) } else { Err(Failure::NoSweep { sweep: sweep.to_path_buf() }) }
+}
+
+/// Plans a sweep and keeps the plan in its folder.
+fn planned(sweep: &Path, folder: Option<&Path>) -> Result<Folder, Failure> {
+    let NamedText { text, file, is_shipped } = read_named(sweep)?;
+    let name = path_in_line(sweep);
+    let parsed = SweepFile::parse(&text, &name)?;
+    let beside = file.parent().unwrap_or(Path::new("")).join(&parsed.scene);
+    let (scene_text, scene_file) = match Shipped::at(&beside) {
+        Some(scene) if is_shipped => (scene.text.to_owned(), scene.file()),
+        _ if beside.is_file() => (read_named(&beside)?.text, beside),
+        _ => read_named(Path::new(&parsed.scene)).map(|found| (found.text, found.file))?,
+    };
+    let folder = Folder::at(&folder.map_or_else(|| default_folder(&file), |folder| Ok(folder.to_path_buf()))?);
+    let is_planned = folder.holds_sweep() && folder.head()?.planned_from == planned_from(&text, &scene_text);
+    if !is_planned {
+        folder.keep(&Plan::of(&parsed, [&text, &scene_text], [&name, &scene_file.display().to_string()])?)?;
+    }
+    Ok(folder)
+}
+
+fn print_table(folder: &Folder, chosen: &Chosen) -> Result<(), Failure> {
+    print(&table_of(folder, chosen)?)
+}
+
+impl PoolArguments {
+    fn run(self, folder: &Folder) -> Result<(), Failure> {
+        let raised = watch_signals()?;
+        let (head, scene_text) = (folder.head()?, folder.scene_text()?);
+        if self.retry {
+            let failed = folder.rows()?.into_iter().filter(|row| row.ending() == "failed");
+            let keys: Vec<String> = failed.map(|row| row.task.key).collect();
+            folder.forget(keys.iter().map(String::as_str))?;
+        }
+        let tasks = to_do(folder)?;
+        let begin = Instant::now();
+        let threads = usize::from(self.threads);
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let workers = Workers { tasks: self.tasks.map_or(cores.div_ceil(threads), usize::from), threads };
+        let archive =
+            Archive::open(&folder.logs(), threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let work = Work { head: &head, scene_text: &scene_text, archive: &archive };
+        let mut progress = SweepProgress::new(&head, tasks.len(), folder, self.json)?;
+        let interrupted = || raised.load(Ordering::Relaxed);
+        let done = do_tasks(folder, &work, &tasks, workers, &interrupted, |task, outcome| progress.take(task, outcome));
+        let left = progress.finish();
+        done.map_err(|error| match error {
+            EngineError::Take(error) => Failure::Sweep(error),
+            error => Failure::Threads { source: Box::new(error) },
+        })?;
+        if interrupted() {
+            return Err(Failure::SweepInterrupted { folder: folder.path().to_path_buf() });
+        }
+        if !self.json {
+            print_table(folder, &Chosen::default())?;
+            eprint(&format!("{} in {}", count(tasks.len() - left, "task"), duration(begin.elapsed().as_secs_f64())));
+        }
+        if left > 0 { Err(Failure::SweepLeft { left, folder: folder.path().to_path_buf() }) } else { Ok(()) }
+    }
+}
+
+/// Does a task unless it is on record.
+fn one_task(folder: &Folder, number: usize) -> Result<(), Failure> {
+    let raised = watch_signals()?;
+    let (head, scene_text, tasks) = (folder.head()?, folder.scene_text()?, folder.tasks()?);
+    let no_such = || SweepError::NoSuchTask { folder: folder.path().to_path_buf(), count: tasks.len(), number };
+    let task: &Task = number.checked_sub(1).and_then(|index| tasks.get(index)).ok_or_else(no_such)?;
+    if folder.record(&task.key).is_some_and(|record| record.answers(&head.outputs)) {
+        return Ok(());
+    }
+    let archive = Archive::open(&folder.logs(), 1).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+    let work = Work { head: &head, scene_text: &scene_text, archive: &archive };
+    let record = work
+        .of(task, &|| raised.load(Ordering::Relaxed))
+        .map_err(|source| Failure::Archive { source: Box::new(source) })?;
+    Ok(folder.keep_record(&record)?)
+}

@@ -1,0 +1,110 @@
+//! What a sweep shows while it continues: a line that changes in place, a line for each task, or JSON.
+
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressDrawTarget};
+use serde_json::json;
+
+use super::failure::Failure;
+use super::output::{eprint, path_in_line, print_json};
+use super::terminal::{can_overwrite, error_columns};
+use super::wrapped::{fitted, wrapped};
+use crate::sweep::{Ending, Folder, Head, Outcome, Task, in_full};
+use crate::units::{count, duration};
+
+/// The progress of a sweep.
+pub(super) struct SweepProgress<'h> {
+    head: &'h Head,
+    bar: Option<ProgressBar>,
+    json: bool,
+    begin: Instant,
+    tasks: usize,
+    ended: usize,
+    failed: usize,
+    /// Tasks that are not on record, and can be continued.
+    left: usize,
+}
+
+impl<'h> SweepProgress<'h> {
+    /// Says what is going to be done.
+    pub(super) fn new(head: &'h Head, tasks: usize, folder: &Folder, json: bool) -> Result<Self, Failure> {
+        let known = head.tasks - tasks;
+        if !json {
+            let known = if known > 0 { format!(", {known} of them on record") } else { String::new() };
+            eprint(&wrapped(
+                "",
+                &format!("{}: {}{known} → {}", head.title, count(head.tasks, "task"), path_in_line(folder.path())),
+            ));
+        }
+        let bar = (!json && can_overwrite() && tasks > 0).then(|| {
+            let bar = ProgressBar::with_draw_target(Some(tasks as u64), ProgressDrawTarget::stderr());
+            bar.enable_steady_tick(std::time::Duration::from_millis(200));
+            bar.set_style(
+                indicatif::ProgressStyle::with_template("{msg}")
+                    .unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()),
+            );
+            bar
+        });
+        Ok(Self { head, bar, json, begin: Instant::now(), tasks, ended: 0, failed: 0, left: 0 })
+    }
+
+    /// Shows what came of a task.
+    pub(super) fn take(&mut self, task: &Task, outcome: &Outcome) {
+        self.ended += 1;
+        let named = name_of(self.head, task);
+        match outcome {
+            Outcome::OnRecord(record) => {
+                self.failed += usize::from(record.ending != Ending::Done);
+                if self.json {
+                    // Whoever reads may have gone; the record is kept.
+                    let _ = print_json(&json!({ "task": task, "record": record }));
+                } else if record.ending != Ending::Done {
+                    let reason =
+                        record.reason.as_deref().unwrap_or_default().lines().next().unwrap_or_default().to_owned();
+                    self.say(&wrapped("", &format!("task {} ({named}): {reason}", task.number)));
+                } else if self.bar.is_none() {
+                    self.say(&fitted(&self.line(&named), error_columns()));
+                }
+            }
+            Outcome::Left(error) => {
+                self.left += 1;
+                self.say(&wrapped("", &format!("task {} ({named}) is left: {}", task.number, in_full(error))));
+            }
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_message(fitted(&self.line(&named), error_columns()));
+        }
+    }
+
+    /// Ends what is shown; gives back how many tasks are left.
+    pub(super) fn finish(self) -> usize {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+        self.left
+    }
+
+    fn line(&self, named: &str) -> String {
+        let failed = if self.failed > 0 { format!(", {} failed", self.failed) } else { String::new() };
+        let rest = self.tasks - self.ended;
+        let time = self.begin.elapsed().as_secs_f64() / self.ended.max(1) as f64 * rest as f64;
+        let time = if rest > 0 { format!(", {} left", duration(time)) } else { String::new() };
+        format!("{}/{}{failed}{time}  {named}", self.ended, self.tasks)
+    }
+
+    fn say(&self, line: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| eprint(line)),
+            None => eprint(line),
+        }
+    }
+}
+
+/// A task by its values: the last parts of the keys suffice.
+fn name_of(head: &Head, task: &Task) -> String {
+    let part =
+        |(key, value): (&String, &serde_json::Value)| format!("{} {value}", key.rsplit('.').next().unwrap_or(key));
+    let values: Vec<String> = head.columns.iter().zip(&task.values).map(part).collect();
+    let what = if task.is_reference { "reference, " } else { "" };
+    format!("{what}{}", values.join(", "))
+}

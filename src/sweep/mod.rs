@@ -1,0 +1,38 @@
+//! Sweeps over designs: a scene, what of it varies, and a table of what each design's run shows.
+//!
+//! Every task is a run in a log of its own, named after what decides its results: what is done is never done again, and whatever was
+//! interrupted continues where it stopped, on whatever machine.
+//!
+//! | file | what |
+//! |---|---|
+//! | `sweep_file`, `axis` | a sweep as it is written; what varies |
+//! | `sampling` | points spread over what is scattered |
+//! | `quantity` | what is collected of a run |
+//! | `plan` | the tasks |
+//! | `record`, `folder` | what is on record of a task; the folder of a sweep |
+//! | `table` | rows, filtered and written |
+//! | `work`, `pool` | one task, done; all of them on this machine |
+//! | `error` | what can be wrong |
+
+mod axis;
+mod error;
+mod folder;
+mod plan;
+mod pool;
+mod quantity;
+mod record;
+mod sampling;
+mod sweep_file;
+mod table;
+mod work;
+
+pub use axis::{Axis, Scatter, Spacing};
+pub use error::SweepError;
+pub use folder::Folder;
+pub use plan::{Head, Plan, Task, planned_from};
+pub use pool::{Outcome, do_tasks, to_do};
+pub use quantity::{FIELDS, FIGURES, Field, Figure, Finished, Quantity, Which};
+pub use record::{Ending, Row, TaskRecord};
+pub use sweep_file::{Combine, Method, Reference, Sample, SweepFile};
+pub use table::{Condition, Table};
+pub use work::{Work, in_full};

@@ -1,0 +1,222 @@
+//! The tasks of a sweep: a scene for each combination of values, with what decides its results as its key.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::error::SweepError;
+use super::quantity::Quantity;
+use super::sampling::{MOST_OF_SOBOL, points};
+use super::sweep_file::{Combine, Method, SweepFile};
+use crate::scene::{Geometry, Scene, parse, parse_with_settings};
+use crate::study::run_name;
+
+/// What all tasks of a sweep share.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Head {
+    /// What the sweep shows.
+    pub title: String,
+    /// Its file, as it was called.
+    pub file: String,
+    /// File of the scene that is varied.
+    pub scene: String,
+    /// Settings laid over every task.
+    pub settings: Vec<String>,
+    /// Settings laid over those of a task for its reference.
+    pub reference: Option<Vec<String>>,
+    /// Keys that vary.
+    pub columns: Vec<String>,
+    /// What is collected.
+    pub outputs: Vec<Quantity>,
+    /// Number of tasks, references among them.
+    pub tasks: usize,
+    /// Number of them that are references: the first ones.
+    pub references: usize,
+    /// Hash of the texts that it was planned from.
+    pub planned_from: String,
+}
+
+/// A task of a sweep.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Task {
+    /// Its number, from 1 on: references first.
+    pub number: usize,
+    /// What decides its results, hashed.
+    pub key: String,
+    /// Values of the columns.
+    pub values: Vec<Value>,
+    /// Whether others are compared with it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_reference: bool,
+    /// Key of its reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference: Option<String>,
+    /// What is wrong with its scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refused: Option<String>,
+}
+
+/// A sweep with all its tasks.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What they share.
+    pub head: Head,
+    /// Text of the scene that is varied.
+    pub scene_text: String,
+    /// The tasks by their numbers.
+    pub tasks: Vec<Task>,
+}
+
+impl Head {
+    /// The scene of a task, from the text of the scene that is varied.
+    ///
+    /// # Errors
+    /// What is wrong with it, with the lines of its text.
+    pub fn scene_of(&self, scene_text: &str, task: &Task) -> Result<Scene, String> {
+        let own = self.columns.iter().zip(&task.values).map(|(key, value)| format!("{key}={value}"));
+        let of_reference = self.reference.iter().flatten().filter(|_| task.is_reference).cloned();
+        let settings: Vec<String> = self.settings.iter().cloned().chain(own).chain(of_reference).collect();
+        scene_with(scene_text, &self.scene, &settings)
+    }
+}
+
+fn scene_with(text: &str, name: &str, settings: &[String]) -> Result<Scene, String> {
+    parse_with_settings(text, name, settings).map_err(|error| error.plain())
+}
+
+impl Plan {
+    /// Plans the tasks of a sweep in `file`, whose text is `sweep_text`, over the scene of `scene_text` in the file `scene_file`.
+    ///
+    /// # Errors
+    /// Where not one of the scenes can be run, or more is scattered than Sobol's sequence has axes.
+    pub fn of(
+        sweep: &SweepFile,
+        [sweep_text, scene_text]: [&str; 2],
+        [file, scene_file]: [&str; 2],
+    ) -> Result<Self, SweepError> {
+        let wrong = |problem: String| SweepError::Wrong { file: file.to_owned(), problem };
+        let sobol = sweep.sample.is_some_and(|sample| sample.method == Method::Sobol);
+        if sobol && sweep.scatter.len() > MOST_OF_SOBOL {
+            return Err(wrong(format!(
+                "{} keys scatter, and Sobol's sequence is known for {MOST_OF_SOBOL}: write method = \"latin-hypercube\"",
+                sweep.scatter.len()
+            )));
+        }
+        let mut head = Head {
+            title: sweep.title.clone(),
+            file: file.to_owned(),
+            scene: scene_file.to_owned(),
+            settings: sweep.settings.clone(),
+            reference: sweep.reference.as_ref().map(|reference| reference.settings.clone()),
+            columns: sweep.columns(),
+            outputs: sweep.outputs.clone(),
+            tasks: 0,
+            references: 0,
+            planned_from: planned_from(sweep_text, scene_text),
+        };
+        let scene_text = whole(scene_text, scene_file);
+        let values = all_values(sweep);
+        let made = |values: Vec<Value>, is_reference| {
+            let mut task = Task { number: 0, key: String::new(), values, is_reference, reference: None, refused: None };
+            match head.scene_of(&scene_text, &task) {
+                Ok(scene) => task.key = run_name(&scene),
+                Err(why) => (task.key, task.refused) = (name_of_refused(&scene_text, &task, &why), Some(why)),
+            }
+            task
+        };
+        let mut tasks: Vec<Task> = values.into_par_iter().map(|values| made(values, false)).collect();
+        if let Some(first) = tasks.first().filter(|_| tasks.iter().all(|task| task.refused.is_some())) {
+            let (file, reason) = (file.to_owned(), first.refused.clone().unwrap_or_default());
+            return Err(SweepError::AllRefused { file, tasks: tasks.len(), reason });
+        }
+        let mut references: Vec<Task> = Vec::new();
+        if head.reference.is_some() {
+            let of_tasks: Vec<Task> = tasks.par_iter().map(|task| made(task.values.clone(), true)).collect();
+            let mut seen = std::collections::BTreeSet::new();
+            for (task, reference) in tasks.iter_mut().zip(of_tasks) {
+                task.reference = Some(reference.key.clone());
+                if seen.insert(reference.key.clone()) {
+                    references.push(reference);
+                }
+            }
+        }
+        head.references = references.len();
+        references.append(&mut tasks);
+        let mut tasks = references;
+        tasks.iter_mut().enumerate().for_each(|(index, task)| task.number = index + 1);
+        head.tasks = tasks.len();
+        if head.outputs.is_empty() {
+            let scenes = tasks.iter().find(|task| task.refused.is_none());
+            let scene = scenes.and_then(|task| head.scene_of(&scene_text, task).ok());
+            head.outputs = scene.map_or_else(Vec::new, |scene| Quantity::of_scene(&scene));
+        }
+        if let Some(output) = head.outputs.iter().find(|output| is_of_no_probe(output, &head, &scene_text, &tasks)) {
+            return Err(wrong(format!("{output}: the scene has no [[probe]] of that name")));
+        }
+        Ok(Self { head, scene_text, tasks })
+    }
+}
+
+/// Hash of what a plan follows from.
+pub fn planned_from(sweep_text: &str, scene_text: &str) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for text in [sweep_text, scene_text] {
+        hasher.update(&(text.len() as u64).to_le_bytes()).update(text.as_bytes());
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+/// A scene needs no other file: a surface from a file of its own goes into the text.
+fn whole(scene_text: &str, name: &str) -> String {
+    match parse(scene_text, name) {
+        Ok(scene) if matches!(scene.geometry, Geometry::Nurbs(_)) => scene.to_toml(),
+        _ => scene_text.to_owned(),
+    }
+}
+
+/// The name of a task whose scene is wrong.
+fn name_of_refused(scene_text: &str, task: &Task, why: &str) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let values = task.values.iter().map(Value::to_string).collect::<Vec<_>>().join("\n");
+    for text in ["foldline refused 1", scene_text, &values, why] {
+        hasher.update(&(text.len() as u64).to_le_bytes()).update(text.as_bytes());
+    }
+    hasher.finalize().to_hex()[..16].to_owned()
+}
+
+/// Whether an output is of a probe that the first scene that can be run does not have.
+fn is_of_no_probe(output: &Quantity, head: &Head, scene_text: &str, tasks: &[Task]) -> bool {
+    let Quantity::Probe(_, name) = output else { return false };
+    let runs = tasks.iter().find(|task| task.refused.is_none());
+    let scene = runs.and_then(|task| head.scene_of(scene_text, task).ok());
+    scene.is_some_and(|scene| scene.probes.iter().all(|probe| probe.name != *name))
+}
+
+/// Values of the columns for each task, samples changing fastest.
+fn all_values(sweep: &SweepFile) -> Vec<Vec<Value>> {
+    let lengths: Vec<usize> = sweep.axis.iter().map(|axis| axis.len()).collect();
+    let combinations: Vec<Vec<usize>> = match sweep.combine {
+        Combine::Zip => (0..lengths.first().copied().unwrap_or(1)).map(|index| vec![index; lengths.len()]).collect(),
+        Combine::All => lengths.iter().fold(vec![vec![]], |shorter: Vec<Vec<usize>>, length| {
+            let longer =
+                |places: &Vec<usize>| (0..*length).map(|index| [&places[..], &[index]].concat()).collect::<Vec<_>>();
+            shorter.iter().flat_map(longer).collect()
+        }),
+    };
+    let samples = match sweep.sample {
+        Some(sample) if !sweep.scatter.is_empty() => points(&sample, sweep.scatter.len()),
+        _ => vec![vec![]],
+    };
+    let mut all = Vec::with_capacity(combinations.len() * samples.len());
+    for places in &combinations {
+        let of_axes = sweep.axis.iter().zip(places).flat_map(|(axis, index)| axis.at(*index));
+        let of_axes: Vec<Value> = of_axes.map(|value| serde_json::to_value(value).unwrap_or_default()).collect();
+        for sample in &samples {
+            let scattered =
+                sweep.scatter.iter().zip(sample).map(|(scatter, share)| Value::from(scatter.quantile(*share)));
+            all.push(of_axes.iter().cloned().chain(scattered).collect());
+        }
+    }
+    all
+}
