@@ -1,14 +1,16 @@
 //! `foldline converge`: a tape spring's path of equilibria on one mesh after another, error against run time.
 
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 use clap::Args;
 
 use super::failure::Failure;
 use super::output::{path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
+use super::session::{use_threads, watch_signals};
 use crate::scene::Scene;
-use crate::study::{ConvergenceRow, check_spring, converge};
+use crate::study::{Archive, ConvergenceRow, Purpose, TaskError, converged, in_turn, path_scene};
 
 /// Follow a tape spring past its limit point, down the unstable path and up the fold, on uniform meshes of every degree and
 /// size asked for: peak, limit rotation and moments of each, with its run time
@@ -28,6 +30,9 @@ pub(super) struct Arguments {
     /// Lay a setting over the scene, such as load.rotation_deg=10; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Folder for the logs of the runs, each named after the hash of its scene: those that are finished are read, not run again
+    #[arg(long, value_name = "DIR", default_value = "checkpoints/studies")]
+    logs: PathBuf,
     /// Print a JSON object for each mesh
     #[arg(long)]
     json: bool,
@@ -46,22 +51,28 @@ impl Arguments {
                 scenes.push(checked(&text, &name, &settings)?);
             }
         }
-        let failed = |scene: &Scene| {
-            let (degree, elements) = (scene.mesh.degree, scene.mesh.elements);
-            move |source| Failure::Convergence { degree, elements, source: Box::new(source) }
-        };
-        scenes.iter().try_for_each(|scene| check_spring(scene).map_err(failed(scene)))?;
+        let threads = use_threads(None)?;
+        let raised = watch_signals()?;
+        let scenes = scenes.iter().map(path_scene).collect::<Result<Vec<_>, _>>()?;
+        let archive =
+            Archive::open(&self.logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
         if !self.json {
             print(&head(self.unstable_at, scenes.first().map_or(0.0, |scene| scene.load.target())))?;
         }
-        for scene in &scenes {
-            let found = converge(scene, self.unstable_at).map_err(failed(scene))?;
+        let runs: Vec<(&Scene, Purpose)> = scenes.iter().map(|scene| (scene, Purpose::Time)).collect();
+        let interrupted = || raised.load(Ordering::Relaxed);
+        in_turn(&archive, &runs, &interrupted, |index, done| {
+            let Scene { mesh, .. } = runs[index].0;
+            let done = done.map_err(|error| match error {
+                TaskError::Interrupted => Failure::StudyInterrupted,
+                error => Failure::Convergence { degree: mesh.degree, elements: mesh.elements, source: Box::new(error) },
+            })?;
+            let found = converged(runs[index].0, &done, self.unstable_at);
             match self.json {
-                true => print_json(&found)?,
-                false => print(&row(&found))?,
+                true => print_json(&found),
+                false => print(&row(&found)),
             }
-        }
-        Ok(())
+        })
     }
 }
 

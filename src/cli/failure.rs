@@ -8,7 +8,7 @@ use crate::model::ModelError;
 use crate::printable::one_line;
 use crate::record::Parameter;
 use crate::scene::{Scene, Stage};
-use crate::study::{AccuracyError, BenchError, CalibrationError, ConvergenceError, TaskError};
+use crate::study::{AccuracyError, BenchError, CalibrationError, NotASpring, TaskError};
 use crate::sweep::SweepError;
 use crate::units::{count, rounded};
 use crate::view::{AnimationError, PlotError, SamplesError};
@@ -136,7 +136,9 @@ pub(super) enum Failure {
     #[error("nothing can be timed")]
     Bench { source: Box<BenchError> },
     #[error("degree {}, {} × {} elements gave nothing", degree[0], elements[0], elements[1])]
-    Convergence { degree: [usize; 2], elements: [usize; 2], source: Box<ConvergenceError> },
+    Convergence { degree: [usize; 2], elements: [usize; 2], source: Box<TaskError> },
+    #[error(transparent)]
+    NotASpring(#[from] NotASpring),
     #[error("{scene} cannot be calibrated")]
     Calibration { scene: String, source: Box<CalibrationError> },
     #[error("{failed} of {of} runs gave nothing to compare")]
@@ -206,8 +208,9 @@ impl Failure {
             | Failure::NoSweep { .. }
             | Failure::NoSuchScene { .. } => 2,
             Failure::Sweep(error) if !matches!(error, SweepError::Write { .. }) => 2,
+            Failure::NotASpring(_) => 2,
             // A wrong scene as well.
-            Failure::Convergence { source, .. } if matches!(**source, ConvergenceError::NotASpring) => 2,
+            Failure::Convergence { source, .. } if matches!(**source, TaskError::Model(_)) => 2,
             Failure::Calibration { source, .. }
                 if !matches!(**source, CalibrationError::Run { .. } | CalibrationError::NothingInCommon) =>
             {
@@ -219,8 +222,7 @@ impl Failure {
                     AccuracyError::NothingMeasured
                         | AccuracyError::AlongPath { .. }
                         | AccuracyError::OtherStructure { .. }
-                        | AccuracyError::Model(_)
-                ) =>
+                ) || matches!(&**source, AccuracyError::Task(task) if matches!(**task, TaskError::Model(_))) =>
             {
                 2
             }

@@ -152,7 +152,6 @@ impl Command {
                 | Command::Bisect(_)
                 | Command::Stability(_)
                 | Command::Recover(_)
-                | Command::Converge(_)
         ) {
             session::use_threads(None)?;
         }

@@ -1,5 +1,6 @@
 //! `foldline study STUDY`: the runs of a study file, their errors and times, and the speed-ups over uniform meshes.
 
+use std::cell::Cell;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -13,9 +14,10 @@ use super::session::watch_signals;
 use super::shipped::Shipped;
 use crate::scene::Scene;
 use crate::study::{
-    AccuracyRow, Archive, Errors, Measured, MeshPoint, Planned, Purpose, Role, SpeedUp, Structure, StudyError,
-    StudyFile, TaskError, error_of_finer, is_comparable, speed_up,
+    AccuracyRow, Archive, Done, Errors, Measured, MeshPoint, Planned, Purpose, Role, SpeedUp, Structure, StudyError,
+    StudyFile, TaskError, error_of_finer, in_turn, is_comparable, speed_up,
 };
+use crate::sweep::in_full;
 use crate::view::study_page;
 
 /// Width of names of runs in tables.
@@ -76,6 +78,17 @@ pub(super) fn run(
     }
 }
 
+/// Reads what a run measures; `None` where it was interrupted.
+fn measured(planned: &Planned, reference: &Scene, done: Result<Done, TaskError>) -> Result<Option<Measured>, String> {
+    is_comparable(&planned.scene, reference).map_err(|error| in_full(&error))?;
+    let done = match done {
+        Err(TaskError::Interrupted) => return Ok(None),
+        done => done.map_err(|error| in_full(&error))?,
+    };
+    let measured = Measured::of(&planned.scene, &done.records, done.wall_s);
+    measured.map(Some).map_err(|error| in_full(&error))
+}
+
 /// Reads a study, with the runs of each of its structures.
 fn planned(file: &Path, set: &[String]) -> Result<(StudyFile, Vec<Vec<Planned>>), Failure> {
     let NamedText { text, file: place, is_shipped } = read_named(file)?;
@@ -98,9 +111,17 @@ impl Running<'_> {
         let mut found: Vec<Found> = Vec::new();
         let mut own: Option<Errors> = None;
         let [reference_scene, ..] = planned else { return Ok(()) };
-        for planned in planned {
+        let runs: Vec<(&Scene, Purpose)> = planned.iter().map(|run| (&run.scene, run.role.purpose())).collect();
+        let (archive, interrupted) = (self.archive.clone(), self.interrupted);
+        // Without the reference nothing is known of the others.
+        let is_over = Cell::new(false);
+        in_turn(&archive, &runs, &|| is_over.get() || interrupted(), |index, done| {
+            if is_over.get() {
+                return Ok(());
+            }
+            let planned = &planned[index];
             self.runs += 1;
-            let compared = self.measured(planned, &reference_scene.scene).and_then(|measured| {
+            let compared = measured(planned, &reference_scene.scene, done).and_then(|measured| {
                 let Some(measured) = measured else { return Ok(None) };
                 let row = measured.against(reference.as_ref().unwrap_or(&measured));
                 row.map(|row| Some((row, measured))).map_err(|error| in_full(&error))
@@ -111,10 +132,8 @@ impl Running<'_> {
                 Err(why) => {
                     self.failed += 1;
                     self.show_failure(structure, planned, &why)?;
-                    if planned.role == Role::Reference {
-                        return Ok(());
-                    }
-                    continue;
+                    is_over.set(planned.role == Role::Reference);
+                    return Ok(());
                 }
             };
             let errors = [row.error_before, row.error_after];
@@ -136,20 +155,10 @@ impl Running<'_> {
             if let (Role::Coarser, Some(own)) = (planned.role, own) {
                 self.show_own(structure, own)?;
             }
-        }
+            Ok(())
+        })?;
         // Without it no error of the others is known.
         own.map_or(Ok(()), |own| self.show_speed_ups(study, structure, &found, own))
-    }
-
-    /// Does a run, and reads what it measures; `None` where it was interrupted.
-    fn measured(&self, planned: &Planned, reference: &Scene) -> Result<Option<Measured>, String> {
-        is_comparable(&planned.scene, reference).map_err(|error| in_full(&error))?;
-        let done = match self.archive.done(&planned.scene, planned.role.purpose(), self.interrupted) {
-            Err(TaskError::Interrupted) => return Ok(None),
-            done => done.map_err(|error| in_full(&error))?,
-        };
-        let measured = Measured::of(&planned.scene, &done.records, done.wall_s);
-        measured.map(Some).map_err(|error| in_full(&error))
     }
 
     /// Takes a row, and prints it where JSON is wanted; returns whether it was.
@@ -311,10 +320,4 @@ fn in_words(found: &Option<SpeedUp>) -> String {
         Some(SpeedUp { at_least, .. }) => format!("{at_least:.1}"),
         None => "-".to_owned(),
     }
-}
-
-/// An error with its causes.
-fn in_full(error: &dyn std::error::Error) -> String {
-    let causes = std::iter::successors(error.source(), |cause| cause.source());
-    causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))
 }

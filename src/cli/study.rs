@@ -1,16 +1,19 @@
 //! `foldline study`: error against run time of scenes and settings.
 
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 use clap::Args;
 
 use super::failure::Failure;
 use super::output::{eprint, file_name, path_in_line, print, print_json, say};
 use super::scene_file::{checked, read_scene};
-use super::session::use_threads;
+use super::session::{use_threads, watch_signals};
 use super::speed_ups;
 use crate::scene::Scene;
-use crate::study::{AccuracyError, AccuracyRow, is_one_structure, measure};
+use crate::study::{
+    AccuracyError, AccuracyRow, Archive, Measured, Purpose, TaskError, in_turn, is_comparable, is_one_structure,
+};
 
 /// Run scenes with one setting after another, and hold each against a reference: the error of its moment (or first probe)
 /// before and after the first snap, with its run time; or run study files, which say all that themselves
@@ -30,9 +33,8 @@ pub(super) struct Arguments {
     /// Lay a setting over every scene, the reference too, such as load.rotation_deg=20; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Folder for the logs of a study file's runs, each named after the hash of its scene: those that are finished are read,
-    /// not run again
-    #[arg(long, value_name = "DIR", default_value = "checkpoints/studies", conflicts_with = "against")]
+    /// Folder for the logs of the runs, each named after the hash of its scene: those that are finished are read, not run again
+    #[arg(long, value_name = "DIR", default_value = "checkpoints/studies")]
     logs: PathBuf,
     /// Threads [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -84,33 +86,53 @@ impl Arguments {
         let cases = self.cases()?;
         let name = path_in_line(against);
         let reference = checked(&read_scene(against, &[])?.text, &name, &self.set)?;
+        let failed = |case: String| move |source: AccuracyError| Failure::Study { case, source: Box::new(source) };
         for case in &cases {
-            let comparable = is_one_structure(&case.scene, &reference);
-            comparable.map_err(|cause| Failure::Study { case: case.label(), source: Box::new(cause) })?;
+            is_one_structure(&case.scene, &reference).map_err(failed(case.label()))?;
         }
+        is_comparable(&reference, &reference).map_err(failed(name.clone()))?;
         if !self.json {
             eprint(&format!("reference: {name}"));
         }
-        let failed = |case: String| move |source: AccuracyError| Failure::Study { case, source: Box::new(source) };
-        let expected = measure(&reference).map_err(failed(name.clone()))?;
+        let raised = watch_signals()?;
+        let archive =
+            Archive::open(&self.logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let scenes = std::iter::once(&reference).chain(cases.iter().map(|case| &case.scene));
+        let runs: Vec<(&Scene, Purpose)> = scenes.map(|scene| (scene, Purpose::Time)).collect();
         let labels = cases.iter().map(Case::label).chain([name.clone()]);
         let width = labels.map(|label| label.chars().count()).max().unwrap_or(0);
-        if !self.json {
-            print(&head(width, expected.quantity()))?;
-        }
-        let own = expected.against(&expected).map_err(failed(name.clone()))?;
-        self.show(&name, &[], &own, width)?;
+        let mut expected: Option<Measured> = None;
         let mut failures = 0;
-        for case in &cases {
-            match measure(&case.scene).and_then(|found| found.against(&expected)) {
-                Ok(found) => self.show(&case.scene_name, &case.settings, &found, width)?,
-                Err(cause) => {
-                    failures += 1;
-                    self.show_failure(case, cause, width)?;
+        in_turn(&archive, &runs, &|| raised.load(Ordering::Relaxed), |index, done| {
+            let scene = runs[index].0;
+            let measured = match done {
+                Err(TaskError::Interrupted) => return Err(Failure::StudyInterrupted),
+                Err(error) => Err(AccuracyError::from(Box::new(error))),
+                Ok(done) => {
+                    is_comparable(scene, &reference).and_then(|()| Measured::of(scene, &done.records, done.wall_s))
+                }
+            };
+            match (index.checked_sub(1).and_then(|case| cases.get(case)), &expected) {
+                (Some(case), Some(expected)) => match measured.and_then(|found| found.against(expected)) {
+                    Ok(found) => self.show(&case.scene_name, &case.settings, &found, width),
+                    Err(cause) => {
+                        failures += 1;
+                        self.show_failure(case, cause, width)
+                    }
+                },
+                _ => {
+                    let found = measured.map_err(failed(name.clone()))?;
+                    if !self.json {
+                        print(&head(width, found.quantity()))?;
+                    }
+                    let own = found.against(&found).map_err(failed(name.clone()))?;
+                    expected = Some(found);
+                    self.show(&name, &[], &own, width)
                 }
             }
-        }
+        })?;
         match failures {
+            _ if raised.load(Ordering::Relaxed) => Err(Failure::StudyInterrupted),
             0 => Ok(()),
             failed => Err(Failure::StudyIncomplete { failed, of: cases.len() }),
         }

@@ -191,8 +191,7 @@ fn one_task(folder: &Folder, number: usize) -> Result<(), Failure> {
     }
     let archive = Archive::open(&folder.logs(), 1).map_err(|source| Failure::Archive { source: Box::new(source) })?;
     let work = Work { head: &head, scene_text: &scene_text, archive: &archive };
-    let record = work
-        .of(task, &|| raised.load(Ordering::Relaxed))
-        .map_err(|source| Failure::Archive { source: Box::new(source) })?;
+    let ended = work.of(task, &|| raised.load(Ordering::Relaxed));
+    let record = work.record(task, ended).map_err(|source| Failure::Archive { source: Box::new(source) })?;
     Ok(folder.keep_record(&record)?)
 }

@@ -6,12 +6,10 @@
 
 use serde::Serialize;
 
-use crate::model::ModelError;
-use crate::pipeline::RunError;
 use crate::record::{Parameter, Record};
 use crate::scene::{Drive, Reach, Scene, Stage};
+use crate::study::archive::TaskError;
 use crate::study::path::{PathPoint, equilibrium_path, snaps};
-use crate::study::timed_run::timed_run;
 
 /// Parameters closer than this, relatively, are one.
 pub(super) const SAME: f64 = 1e-9;
@@ -80,12 +78,9 @@ pub struct AccuracyRow {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AccuracyError {
-    /// The scene cannot be made discrete.
+    /// The run is not done.
     #[error(transparent)]
-    Model(#[from] ModelError),
-    /// The run stopped.
-    #[error("the run stopped")]
-    Run(#[from] Box<RunError>),
+    Task(#[from] Box<TaskError>),
     /// The run has nothing that can be compared.
     #[error("the scene has no moment and no probe to compare: turn its ends, or write a [[probe]]")]
     NothingMeasured,
@@ -143,16 +138,6 @@ pub fn is_one_structure(scene: &Scene, reference: &Scene) -> Result<(), Accuracy
 pub fn is_comparable(scene: &Scene, reference: &Scene) -> Result<(), AccuracyError> {
     is_one_structure(scene, reference)?;
     parameter_of(scene).and(parameter_of(reference)).map(|_| ())
-}
-
-/// Runs a scene to its end, with nothing logged, and measures its results and its time.
-///
-/// # Errors
-/// Where the run stops before, or measures nothing.
-pub fn measure(scene: &Scene) -> Result<Measured, AccuracyError> {
-    parameter_of(scene)?;
-    let (records, wall_s) = timed_run::<AccuracyError>(scene)?;
-    Measured::of(scene, &records, wall_s)
 }
 
 /// What drives a run that can be compared with others at the same value of it.

@@ -81,6 +81,12 @@ pub enum TaskError {
         /// Why it stopped.
         source: Box<RunError>,
     },
+    /// The program panicked, which is a fault of its own.
+    #[error("the program panicked, which is a fault of its own: {message}")]
+    Panicked {
+        /// What it said.
+        message: String,
+    },
     /// The caller asked to stop.
     #[error("interrupted")]
     Interrupted,
@@ -123,7 +129,7 @@ impl TaskError {
     /// Whether the scene is the cause, so that the task ends the same wherever it is done again; else the machine or the caller is.
     pub fn is_of_scene(&self) -> bool {
         match self {
-            TaskError::Model(_) => true,
+            TaskError::Model(_) | TaskError::Panicked { .. } => true,
             TaskError::Run { source, .. } => matches!(**source, RunError::Stage(_)),
             _ => false,
         }

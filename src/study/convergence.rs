@@ -4,11 +4,9 @@
 //! fold. What is compared are the peak of the moment, the two limit points, and the moments at one rotation on the unstable
 //! path and on the fold.
 
-use crate::model::ModelError;
-use crate::pipeline::RunError;
 use crate::record::{Outcome, Record};
 use crate::scene::{ArcLength, ArcLengthWord, Load, Scene, Stage};
-use crate::study::timed_run::timed_run;
+use crate::study::archive::Done;
 
 /// Points of the path through which its quantities are interpolated.
 const INTERPOLATED: usize = 6;
@@ -45,22 +43,12 @@ pub struct ConvergenceRow {
     pub wall_s: f64,
 }
 
-/// Why a mesh gives no results.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ConvergenceError {
-    /// Not a tape spring whose ends turn.
-    #[error(
-        "only a tape spring whose ends turn has a peak, a limit rotation and a fold: write load.kind = \"end-rotation\""
-    )]
-    NotASpring,
-    /// The scene cannot be made discrete.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// A stage failed.
-    #[error(transparent)]
-    Run(#[from] Box<RunError>),
-}
+/// A scene that is not one of a tape spring whose ends turn.
+#[derive(Clone, Copy, Debug, thiserror::Error)]
+#[error(
+    "only a tape spring whose ends turn has a peak, a limit rotation and a fold: write load.kind = \"end-rotation\""
+)]
+pub struct NotASpring;
 
 /// A point of the path.
 #[derive(Clone, Copy, Debug)]
@@ -71,23 +59,14 @@ struct Point {
     passed_limit: bool,
 }
 
-/// Checks that a scene is a tape spring whose critical moment can be found.
+/// The scene of the path along the uniform mesh that a scene starts with.
 ///
 /// # Errors
-/// Where it is not one of a tape spring whose ends turn.
-pub fn check_spring(scene: &Scene) -> Result<(), ConvergenceError> {
-    match scene.load {
-        Load::EndRotation(_) => Ok(()),
-        Load::Steps(_) => Err(ConvergenceError::NotASpring),
+/// Where the scene is not one of a tape spring.
+pub fn path_scene(scene: &Scene) -> Result<Scene, NotASpring> {
+    if let Load::Steps(_) = scene.load {
+        return Err(NotASpring);
     }
-}
-
-/// Follows the path of a scene on the uniform mesh that it starts with, and evaluates its critical points and moments.
-///
-/// # Errors
-/// Where the scene is not one of a tape spring, or its path is lost.
-pub fn converge(scene: &Scene, unstable_at_deg: f64) -> Result<ConvergenceRow, ConvergenceError> {
-    check_spring(scene)?;
     let mut scene = scene.clone();
     scene.adapt = None;
     scene.pipeline = vec![Stage::Solve];
@@ -96,8 +75,12 @@ pub fn converge(scene: &Scene, unstable_at_deg: f64) -> Result<ConvergenceRow, C
     scene.continuation.get_or_insert(limits);
     scene.solver.snap_tolerance_deg = Some(LOCATED_DEG);
     scene.solver.least_increment_deg = scene.solver.least_increment_deg.map(|least| least.min(LOCATED_DEG));
-    let (records, wall_s) = timed_run::<ConvergenceError>(&scene)?;
-    Ok(read_off(&scene, &records, unstable_at_deg, wall_s))
+    Ok(scene)
+}
+
+/// Evaluates the critical points and moments of a path that was followed.
+pub fn converged(scene: &Scene, done: &Done, unstable_at_deg: f64) -> ConvergenceRow {
+    read_off(scene, &done.records, unstable_at_deg, done.wall_s)
 }
 
 fn read_off(scene: &Scene, records: &[Record], unstable_at_deg: f64, wall_s: f64) -> ConvergenceRow {

@@ -1,7 +1,8 @@
 //! The loop over tasks: so many at a time, each on threads of its own, and a row of each as soon as it is done.
 //!
 //! Every suite of runs goes through it: sweeps over designs, studies of error against time, paths on one mesh after another,
-//! scenes that state how they end. What a suite makes of a run is its measure; a panic in one task ends that task alone.
+//! scenes that state how they end. What a suite makes of a run is its measure; a row is what the measure found, or why it found
+//! nothing. A panic in one task ends that task alone.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -9,6 +10,8 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
+use crate::scene::Scene;
+use crate::study::archive::{Archive, Done, Purpose, TaskError};
 use crate::study::room::Room;
 
 /// How tasks share a machine.
@@ -32,15 +35,6 @@ pub enum EngineError<E: std::error::Error + 'static> {
     Take(E),
 }
 
-/// What came of a task.
-#[derive(Debug)]
-pub enum Ended<R> {
-    /// What its measure found.
-    Measured(R),
-    /// It panicked, with this message.
-    Panicked(String),
-}
-
 impl Workers {
     /// Tasks one at a time, on the threads that the caller has.
     pub const ONE: Self = Self { tasks: 1, threads: 0 };
@@ -57,8 +51,8 @@ impl Workers {
         interrupted: &(dyn Fn() -> bool + Sync),
         room: &Room,
         bytes: &(dyn Fn(usize) -> u64 + Sync),
-        measure: &(dyn Fn(usize) -> R + Sync),
-        mut take: impl FnMut(usize, Ended<R>) -> Result<(), E>,
+        measure: &(dyn Fn(usize) -> Result<R, TaskError> + Sync),
+        mut take: impl FnMut(usize, Result<R, TaskError>) -> Result<(), E>,
     ) -> Result<(), EngineError<E>> {
         let one = |index: usize| {
             let _held = room.take(bytes(index));
@@ -74,7 +68,7 @@ impl Workers {
         let stops = || is_over.load(Ordering::Relaxed) || interrupted();
         // Rows are taken one by one: where that is slow, tasks wait.
         let (hand, rows) = sync_channel(self.tasks);
-        let work = |hand: SyncSender<Result<(usize, Ended<R>), ThreadPoolBuildError>>| {
+        let work = |hand: SyncSender<Result<(usize, Result<R, TaskError>), ThreadPoolBuildError>>| {
             let threads = match self.pool() {
                 Ok(threads) => threads,
                 Err(error) => return drop(hand.send(Err(error))),
@@ -113,15 +107,35 @@ impl Workers {
     }
 }
 
-/// Does something whose panic is its own affair.
-fn guarded<R>(work: impl FnOnce() -> R) -> Ended<R> {
-    match catch_unwind(AssertUnwindSafe(work)) {
-        Ok(found) => Ended::Measured(found),
-        Err(payload) => {
-            let said = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
-            Ended::Panicked(said.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default())
-        }
+/// Does the runs of scenes one after another on the threads of the caller, each in its log, and hands each to `take` as soon as it
+/// has ended. None begins after `interrupted`: that is what comes of the others.
+///
+/// # Errors
+/// What `take` returns: no run begins behind it.
+pub fn in_turn<E>(
+    archive: &Archive,
+    runs: &[(&Scene, Purpose)],
+    interrupted: &dyn Fn() -> bool,
+    mut take: impl FnMut(usize, Result<Done, TaskError>) -> Result<(), E>,
+) -> Result<(), E> {
+    for (index, (scene, purpose)) in runs.iter().enumerate() {
+        let done = if interrupted() {
+            Err(TaskError::Interrupted)
+        } else {
+            guarded(|| archive.done(scene, *purpose, interrupted))
+        };
+        take(index, done)?;
     }
+    Ok(())
+}
+
+/// Does a task whose panic is its own affair.
+fn guarded<R>(task: impl FnOnce() -> Result<R, TaskError>) -> Result<R, TaskError> {
+    catch_unwind(AssertUnwindSafe(task)).unwrap_or_else(|payload| {
+        let said = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+        let message = said.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
+        Err(TaskError::Panicked { message })
+    })
 }
 
 #[cfg(test)]
@@ -132,14 +146,9 @@ mod tests {
 
     fn rows(workers: Workers, count: usize, measure: &(dyn Fn(usize) -> usize + Sync)) -> Vec<(usize, Option<usize>)> {
         let mut rows = Vec::new();
-        let taken = workers.run(count, &|| false, &Room::unlimited(), &|_| 0, measure, |index, ended| {
-            rows.push((
-                index,
-                match ended {
-                    Ended::Measured(found) => Some(found),
-                    Ended::Panicked(_) => None,
-                },
-            ));
+        let measured = |index| Ok(measure(index));
+        let taken = workers.run(count, &|| false, &Room::unlimited(), &|_| 0, &measured, |index, ended| {
+            rows.push((index, ended.ok()));
             Ok::<(), Infallible>(())
         });
         taken.unwrap();
@@ -187,7 +196,7 @@ mod tests {
         let done = AtomicUsize::new(0);
         let interrupted = || done.load(Ordering::Relaxed) >= 3;
         let count = |_, _| -> Result<(), Infallible> { Ok(()) };
-        let begun = |_| done.fetch_add(1, Ordering::Relaxed);
+        let begun = |_| Ok(done.fetch_add(1, Ordering::Relaxed));
         Workers { tasks: 2, threads: 1 }.run(1000, &interrupted, &Room::unlimited(), &|_| 0, &begun, count).unwrap();
         assert!(done.load(Ordering::Relaxed) <= 4);
     }
@@ -195,7 +204,7 @@ mod tests {
     #[test]
     fn a_row_that_cannot_be_taken_ends_the_loop() {
         let begun = AtomicUsize::new(0);
-        let measure = |_| begun.fetch_add(1, Ordering::Relaxed);
+        let measure = |_| Ok(begun.fetch_add(1, Ordering::Relaxed));
         let full = |_, _| Err(std::io::Error::other("no room"));
         let ended = Workers { tasks: 2, threads: 1 }.run(1000, &|| false, &Room::unlimited(), &|_| 0, &measure, full);
         assert!(matches!(ended, Err(EngineError::Take(_))));

@@ -38,7 +38,7 @@ mod summary_text;
 mod timed_run;
 mod wuest;
 
-pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_comparable, is_one_structure, measure};
+pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_comparable, is_one_structure};
 pub use archive::{Archive, Done, Purpose, TaskError, run_name};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use calibration::{
@@ -46,8 +46,8 @@ pub use calibration::{
     check_calibratable, fine_elements,
 };
 pub use comparison::{Curve, CurveError, Deviation, Finding};
-pub use convergence::{ConvergenceError, ConvergenceRow, check_spring, converge};
-pub use engine::{Ended, EngineError, Workers};
+pub use convergence::{ConvergenceRow, NotASpring, converged, path_scene};
+pub use engine::{EngineError, Workers, in_turn};
 pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;

@@ -6,7 +6,7 @@ use super::plan::Task;
 use super::record::TaskRecord;
 use super::work::Work;
 use crate::model::starting_mesh;
-use crate::study::{Ended, EngineError, Room, TaskError, Workers};
+use crate::study::{EngineError, Room, TaskError, Workers};
 
 /// What came of a task on this machine.
 #[derive(Debug)]
@@ -45,23 +45,15 @@ pub fn do_tasks(
     let (references, others): (Vec<&Task>, Vec<&Task>) = tasks.iter().partition(|task| task.is_reference);
     for group in [references, others] {
         let bytes = |index: usize| group.get(index).map_or(0, |task| bytes_of(work, task));
-        // A record is written by whoever did the task: others go on meanwhile.
-        let measure = |index: usize| {
-            let task: &Task = group[index];
-            match work.of(task, interrupted) {
-                Ok(record) => folder.keep_record(&record).map(|()| Outcome::OnRecord(record)),
-                Err(error) => Ok(Outcome::Left(error)),
-            }
-        };
+        let measure = |index: usize| work.of(group[index], interrupted);
         workers.run(group.len(), interrupted, &room, &bytes, &measure, |index, ended| {
             let task: &Task = group[index];
-            let outcome = match ended {
-                Ended::Measured(outcome) => outcome?,
-                Ended::Panicked(message) => {
-                    let record = work.panicked(task, &message);
+            let outcome = match work.record(task, ended) {
+                Ok(record) => {
                     folder.keep_record(&record)?;
                     Outcome::OnRecord(record)
                 }
+                Err(error) => Outcome::Left(error),
             };
             take(task, &outcome);
             Ok(())

@@ -24,31 +24,33 @@ pub struct Work<'w> {
 }
 
 impl Work<'_> {
-    /// Does a task to its end, from wherever its log stands, and says what is to be put on record. That its scene is wrong or its run
-    /// stops is on record, too.
+    /// Does a task to its end, from wherever its log stands, and says what is to be put on record.
+    ///
+    /// # Errors
+    /// Where its run stops; see [`Self::record`].
+    pub fn of(&self, task: &Task, interrupted: &dyn Fn() -> bool) -> Result<TaskRecord, TaskError> {
+        match self.head.scene_of(self.scene_text, task) {
+            Err(why) => Ok(self.ended(task, Ending::Refused, Some(why))),
+            Ok(scene) => {
+                let done = self.archive.done(&scene, Purpose::Results, interrupted)?;
+                self.measured(task, &scene, &done, interrupted)
+            }
+        }
+    }
+
+    /// What is to be put on record of a task that ended so: that its scene is wrong or its run stops is on record, too.
     ///
     /// # Errors
     /// What has nothing to do with the task: an interruption, a log that another process writes, a disk that is full.
-    pub fn of(&self, task: &Task, interrupted: &dyn Fn() -> bool) -> Result<TaskRecord, TaskError> {
-        let scene = match self.head.scene_of(self.scene_text, task) {
-            Ok(scene) => scene,
-            Err(why) => return Ok(self.ended(task, Ending::Refused, Some(why))),
+    pub fn record(&self, task: &Task, ended: Result<TaskRecord, TaskError>) -> Result<TaskRecord, TaskError> {
+        let error = match ended {
+            Err(error) if error.is_of_scene() => error,
+            ended => return ended,
         };
-        let done = match self.archive.done(&scene, Purpose::Results, interrupted) {
-            Err(error) if error.is_of_scene() => {
-                let ending = if matches!(error, TaskError::Model(_)) { Ending::Refused } else { Ending::Failed };
-                let record = self.ended(task, ending, Some(in_full(&error)));
-                return Ok(TaskRecord { log: self.log_of(&scene), ..record });
-            }
-            done => done?,
-        };
-        self.measured(task, &scene, &done, interrupted)
-    }
-
-    /// What is on record of a task whose run panicked.
-    pub fn panicked(&self, task: &Task, message: &str) -> TaskRecord {
-        let reason = format!("the program panicked, which is a fault of its own: {message}");
-        self.ended(task, Ending::Failed, Some(reason))
+        let ending = if matches!(error, TaskError::Model(_)) { Ending::Refused } else { Ending::Failed };
+        let scene = self.head.scene_of(self.scene_text, task).ok();
+        let log = scene.and_then(|scene| self.log_of(&scene));
+        Ok(TaskRecord { log, ..self.ended(task, ending, Some(in_full(&error))) })
     }
 
     fn measured(
