@@ -12,7 +12,7 @@ use super::scene_file::read_scene;
 use super::session::use_threads;
 use super::shipped::SHIPPED;
 use crate::scene::Scene;
-use crate::study::{ExtremeRow, ExtremesSuite};
+use crate::study::{Archive, ExtremeRow, ExtremesSuite};
 use crate::units::{count, duration};
 
 /// Run scenes at and beyond the edge, and report whether each ends as it states
@@ -33,6 +33,9 @@ pub(super) struct Arguments {
     /// Threads; the results are the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Folder for the logs of the runs, each named after the hash of its scene: those that are finished are read, not run again
+    #[arg(long, value_name = "DIR", default_value = "checkpoints/extremes")]
+    logs: PathBuf,
     /// Print a JSON object for each scene
     #[arg(long)]
     json: bool,
@@ -71,13 +74,15 @@ impl Arguments {
         };
         let names = self.chosen(files.keys())?;
         let scenes = read_scenes(&files, &names)?;
-        use_threads(self.threads.map(usize::from))?;
+        let threads = use_threads(self.threads.map(usize::from))?;
+        let archive =
+            Archive::open(&self.logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
         let table = ExtremesTable::new(names.iter().map(|name| stem(name)));
         if !self.json {
             print(&table.head())?;
         }
         let begin = Instant::now();
-        let mut suite = ExtremesSuite::new(scenes, Duration::from_secs(self.limit));
+        let mut suite = ExtremesSuite::new(scenes, Duration::from_secs(self.limit), archive);
         let mut failed = 0;
         for row in names.iter().filter_map(|name| suite.run(name)) {
             failed += usize::from(!row.as_stated);

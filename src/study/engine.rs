@@ -23,6 +23,9 @@ pub struct Workers {
     pub threads: usize,
 }
 
+/// What a worker hands over: what came of a task by its number, or why it has no threads.
+type Handed<R> = Result<(usize, Result<R, TaskError>), ThreadPoolBuildError>;
+
 /// Why the loop ended before its last task.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -68,7 +71,7 @@ impl Workers {
         let stops = || is_over.load(Ordering::Relaxed) || interrupted();
         // Rows are taken one by one: where that is slow, tasks wait.
         let (hand, rows) = sync_channel(self.tasks);
-        let work = |hand: SyncSender<Result<(usize, Result<R, TaskError>), ThreadPoolBuildError>>| {
+        let work = |hand: SyncSender<Handed<R>>| {
             let threads = match self.pool() {
                 Ok(threads) => threads,
                 Err(error) => return drop(hand.send(Err(error))),

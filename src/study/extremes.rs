@@ -11,6 +11,7 @@ use crate::equilibrium::{Condition, Configuration, Equilibrium, SymmetryError, W
 use crate::record::Record;
 use crate::scene::{Expectation, ExpectedOutcome, Scene};
 use crate::state::State;
+use crate::study::archive::Archive;
 use crate::study::extremes_curve::{Curve, energy_balance, is_equilibrium, largest_error, nudged, significant_bits};
 use crate::study::extremes_fault::ExtremeFault;
 use crate::study::extremes_run::{Done, ExtremeEnd};
@@ -90,12 +91,14 @@ pub struct ExtremesSuite {
     curves: BTreeMap<String, Curve>,
     /// Time for one run of a scene.
     limit: Duration,
+    /// Logs of the runs.
+    archive: Archive,
 }
 
 impl ExtremesSuite {
-    /// Creates a suite of scenes by their file names; each run may take `limit`.
-    pub fn new(scenes: BTreeMap<String, Scene>, limit: Duration) -> Self {
-        Self { scenes, curves: BTreeMap::new(), limit }
+    /// Creates a suite of scenes by their file names; each run may take `limit`, and has a log in `archive`.
+    pub fn new(scenes: BTreeMap<String, Scene>, limit: Duration, archive: Archive) -> Self {
+        Self { scenes, curves: BTreeMap::new(), limit, archive }
     }
 
     /// Runs a scene and checks its results; `None` where the suite has none of this name. A panic ends that scene
@@ -115,7 +118,7 @@ impl ExtremesSuite {
     }
 
     fn examine(&mut self, name: &str, scene: &Scene) -> ExtremeRow {
-        let done = Done::of(scene, self.limit);
+        let done = Done::of(scene, self.limit, &self.archive);
         let mut row = ExtremeRow::new(name, done.end.clone());
         let expectation = scene.expect.clone().unwrap_or_default();
         if !done.end.is(expectation.outcome) {
@@ -136,7 +139,7 @@ impl ExtremesSuite {
             row.energy_balance = energy_balance(done.records());
             diagnose(scene, state, &mut row);
             stands(scene, state, record, &mut row);
-            let again = Done::of(&nudged(scene), self.limit);
+            let again = Done::of(&nudged(scene), self.limit, &self.archive);
             if again.end.name() != done.end.name() {
                 row.faults.push(ExtremeFault::NudgedEndedOtherwise { ended: again.end.name() });
             }
@@ -164,7 +167,7 @@ impl ExtremesSuite {
             let Some(scene) = self.scenes.get(other) else {
                 return Some(ExtremeFault::NoOtherScene { other: other.to_owned() });
             };
-            let done = Done::of(scene, self.limit);
+            let done = Done::of(scene, self.limit, &self.archive);
             self.curves.insert(other.to_owned(), Curve::of(scene, done.records()));
         }
         curve.differs_from(&self.curves[other], other)
@@ -248,9 +251,14 @@ mod tests {
         scene
     }
 
+    fn suite(scenes: BTreeMap<String, Scene>, limit: Duration, folder: &tempfile::TempDir) -> ExtremesSuite {
+        ExtremesSuite::new(scenes, limit, Archive::open(folder.path(), 1).unwrap())
+    }
+
     fn row(scene: Scene) -> ExtremeRow {
+        let folder = tempfile::tempdir().unwrap();
         let scenes = BTreeMap::from([("a.toml".to_owned(), scene)]);
-        ExtremesSuite::new(scenes, Duration::from_secs(60)).run("a.toml").unwrap()
+        suite(scenes, Duration::from_secs(60), &folder).run("a.toml").unwrap()
     }
 
     #[test]
@@ -259,7 +267,8 @@ mod tests {
         // No kernel is made for it, and no scene file can ask for it.
         beyond.mesh.degree = [7, 7];
         let scenes = BTreeMap::from([("a.toml".to_owned(), beyond), ("b.toml".to_owned(), scene())]);
-        let mut suite = ExtremesSuite::new(scenes, Duration::from_secs(60));
+        let folder = tempfile::tempdir().unwrap();
+        let mut suite = suite(scenes, Duration::from_secs(60), &folder);
         let panicked = suite.run("a.toml").unwrap();
         assert!(matches!(panicked.outcome, ExtremeEnd::Panicked { .. }) && !panicked.as_stated);
         assert!(panicked.message.is_some_and(|message| !message.is_empty()));
@@ -293,7 +302,8 @@ mod tests {
     #[test]
     fn time_that_runs_out_is_no_end() {
         let scenes = BTreeMap::from([("a.toml".to_owned(), scene())]);
-        let found = ExtremesSuite::new(scenes, Duration::ZERO).run("a.toml").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let found = suite(scenes, Duration::ZERO, &folder).run("a.toml").unwrap();
         assert_eq!(found.outcome, ExtremeEnd::OutOfTime);
         assert!(!found.as_stated);
     }
@@ -305,7 +315,8 @@ mod tests {
         *poissons_ratio = 0.31;
         thicker.expect = Some(Expectation { same_as: Some("b.toml".to_owned()), ..Expectation::default() });
         let scenes = BTreeMap::from([("a.toml".to_owned(), thicker.clone()), ("b.toml".to_owned(), scene())]);
-        let found = ExtremesSuite::new(scenes, Duration::from_secs(60)).run("a.toml").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let found = suite(scenes, Duration::from_secs(60), &folder).run("a.toml").unwrap();
         assert!(matches!(found.faults[..], [ExtremeFault::OtherCurve { .. }]), "{:?}", found.faults);
         let found = row(thicker);
         assert!(matches!(found.faults[..], [ExtremeFault::NoOtherScene { .. }]), "{:?}", found.faults);

@@ -1,13 +1,16 @@
-//! A run of a scene in memory, how it ended, and whether what was kept of it is the run.
+//! A run of a scene, how it ended, and whether what was kept of it is a run.
 
+use std::error::Error;
 use std::time::{Duration, Instant};
 
 use serde::{Serialize, Serializer};
 
-use crate::pipeline::{Ending, Run, RunError, StageError, Stages};
-use crate::record::{Commit, MemorySink, Record};
+use crate::journal::{Log, StateError};
+use crate::pipeline::{RunError, StageError, Stages};
+use crate::record::{Commit, Record};
 use crate::scene::{ExpectedOutcome, Scene};
 use crate::state::State;
+use crate::study::archive::{Archive, Purpose, TaskError};
 use crate::study::extremes_fault::ExtremeFault;
 
 /// How the run of a scene ended.
@@ -77,34 +80,32 @@ impl Serialize for ExtremeEnd {
 pub(super) struct Done {
     pub end: ExtremeEnd,
     start: Option<State>,
-    /// The state that the run was left with.
-    last: Option<State>,
     pub stages: Vec<(State, Record)>,
     /// Wall time, seconds.
     pub wall_s: f64,
 }
 
 impl Done {
-    /// Runs a scene; after `limit` the run ends at its next stage.
-    pub fn of(scene: &Scene, limit: Duration) -> Self {
+    /// Runs a scene in a log of an archive, or reads the run that is there; after `limit` the run ends at its next stage.
+    pub fn of(scene: &Scene, limit: Duration, archive: &Archive) -> Self {
         let begin = Instant::now();
-        let mut stages = Stages::new(scene.clone());
-        let start = match stages.start() {
-            Ok(start) => start,
+        let start = Stages::new(scene.clone()).start().ok();
+        let done = archive.done(scene, Purpose::Results, &|| begin.elapsed() > limit);
+        let (end, wall_s) = match done {
+            Ok(done) => (ExtremeEnd::Finished, done.wall_s),
+            Err(error) => (stop(&error), begin.elapsed().as_secs_f64()),
+        };
+        let stages = match (&start, Log::read(&archive.log_of(scene))) {
+            (Some(_), Ok(log)) => states(&log),
+            _ => Ok(Vec::new()),
+        };
+        match stages {
+            Ok(stages) => Self { end, start, stages, wall_s },
             Err(error) => {
-                let end = ExtremeEnd::Stopped { outcome: ExpectedOutcome::Refused, message: error.to_string() };
-                return Self { end, start: None, last: None, stages: vec![], wall_s: begin.elapsed().as_secs_f64() };
+                let end = ExtremeEnd::Broken { message: error.to_string() };
+                Self { end, start, stages: Vec::new(), wall_s }
             }
-        };
-        let mut sink = MemorySink::default();
-        let mut run = Run::new(stages, start.clone(), None);
-        let end = match run.to_end(None, &|| begin.elapsed() > limit, &mut sink) {
-            Ok(Ending::Finished | Ending::Until) => ExtremeEnd::Finished,
-            Ok(Ending::Interrupted) => ExtremeEnd::OutOfTime,
-            Err(error) => stop(&error),
-        };
-        let (last, wall_s) = (Some(run.state().clone()), begin.elapsed().as_secs_f64());
-        Self { end, start: Some(start), last, stages: sink.stages, wall_s }
+        }
     }
 
     /// The records of the stages that were kept.
@@ -112,8 +113,7 @@ impl Done {
         self.stages.iter().map(|(_, record)| record)
     }
 
-    /// Checks that the stages that were kept are the run: each follows on the one before it, and the last one made the
-    /// state at the end of the run.
+    /// Checks that the stages that were kept are a run: each follows on the one before it, the first on the start of the scene.
     pub fn lost(&self) -> Option<ExtremeFault> {
         let mut previous: Option<Commit> = None;
         let mut hash = self.start.as_ref()?.hash();
@@ -132,21 +132,37 @@ impl Done {
             }
             (previous, hash) = (Some(commit), commit.state_hash);
         }
-        let left = self.last.as_ref().map(State::hash);
-        (left != Some(hash)).then_some(ExtremeFault::Lost { ordinal: self.stages.len() as u64 })
+        None
     }
 }
 
-fn stop(error: &RunError) -> ExtremeEnd {
-    let message = error.to_string();
-    let outcome = match error {
-        RunError::Stage(StageError::NoEquilibrium { .. }) => ExpectedOutcome::NoEquilibrium,
-        RunError::Stage(StageError::JumpNotFollowed { .. }) => ExpectedOutcome::JumpNotFollowed,
-        RunError::Stage(StageError::NotReEquilibrated { .. }) => ExpectedOutcome::NotReEquilibrated,
-        RunError::Stage(StageError::RefinedTooFar { .. }) => ExpectedOutcome::RefinedTooFar,
-        RunError::Stage(StageError::PathLost { .. }) => ExpectedOutcome::PathLost,
-        RunError::Stage(StageError::PathTooLong { .. }) => ExpectedOutcome::PathTooLong,
-        RunError::Stage(_) | RunError::Sink(_) => return ExtremeEnd::Broken { message },
+/// Every stage of a log with the state that it made.
+fn states(log: &Log) -> Result<Vec<(State, Record)>, StateError> {
+    let entries = log.entries().iter().enumerate();
+    entries.map(|(index, entry)| Ok((log.state(index)?, entry.record.clone()))).collect()
+}
+
+/// How a run that did not reach its target ended.
+fn stop(error: &TaskError) -> ExtremeEnd {
+    let message = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+    let stage = match error {
+        TaskError::Model(_) => return ExtremeEnd::Stopped { outcome: ExpectedOutcome::Refused, message },
+        TaskError::Interrupted => return ExtremeEnd::OutOfTime,
+        TaskError::Panicked { message } => return ExtremeEnd::Panicked { message: message.clone() },
+        TaskError::Run { source, .. } => match &**source {
+            RunError::Stage(stage) => stage,
+            RunError::Sink(_) => return ExtremeEnd::Broken { message },
+        },
+        _ => return ExtremeEnd::Broken { message },
+    };
+    let outcome = match stage {
+        StageError::NoEquilibrium { .. } => ExpectedOutcome::NoEquilibrium,
+        StageError::JumpNotFollowed { .. } => ExpectedOutcome::JumpNotFollowed,
+        StageError::NotReEquilibrated { .. } => ExpectedOutcome::NotReEquilibrated,
+        StageError::RefinedTooFar { .. } => ExpectedOutcome::RefinedTooFar,
+        StageError::PathLost { .. } => ExpectedOutcome::PathLost,
+        StageError::PathTooLong { .. } => ExpectedOutcome::PathTooLong,
+        _ => return ExtremeEnd::Broken { message },
     };
     ExtremeEnd::Stopped { outcome, message }
 }
@@ -161,14 +177,13 @@ mod tests {
         let text = include_str!("../../pipelines/baseline-quarter.toml");
         let mut scene = parse(text, "baseline-quarter.toml").unwrap();
         scene.load.set_target(0.8);
-        let whole = || Done::of(&scene, Duration::from_secs(60));
+        let folder = tempfile::tempdir().unwrap();
+        let archive = Archive::open(folder.path(), 1).unwrap();
+        let whole = || Done::of(&scene, Duration::from_secs(60), &archive);
         assert_eq!(whole().lost(), None);
         let mut changed = whole();
         changed.stages[1].0.displacement[20][0] += 1e-15;
         assert_eq!(changed.lost(), Some(ExtremeFault::Lost { ordinal: 1 }));
-        let mut short = whole();
-        short.stages.pop();
-        assert!(short.lost().is_some());
         let mut gap = whole();
         gap.stages.remove(1);
         assert_eq!(gap.lost(), Some(ExtremeFault::Lost { ordinal: 1 }));

@@ -66,7 +66,7 @@ impl Axis {
     }
 
     /// Number of values.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.values.as_ref().map_or(self.count.unwrap_or(0), Vec::len)
     }
 

@@ -195,7 +195,7 @@ fn is_of_no_probe(output: &Quantity, head: &Head, scene_text: &str, tasks: &[Tas
 
 /// Values of the columns for each task, samples changing fastest.
 fn all_values(sweep: &SweepFile) -> Vec<Vec<Value>> {
-    let lengths: Vec<usize> = sweep.axis.iter().map(|axis| axis.len()).collect();
+    let lengths: Vec<usize> = sweep.axis.iter().map(|axis| axis.count()).collect();
     let combinations: Vec<Vec<usize>> = match sweep.combine {
         Combine::Zip => (0..lengths.first().copied().unwrap_or(1)).map(|index| vec![index; lengths.len()]).collect(),
         Combine::All => lengths.iter().fold(vec![vec![]], |shorter: Vec<Vec<usize>>, length| {

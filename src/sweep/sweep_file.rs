@@ -108,7 +108,7 @@ impl SweepFile {
 
     /// Number of tasks, where it can be told without overflow.
     pub fn count(&self) -> Option<usize> {
-        let lengths = self.axis.iter().map(Axis::len);
+        let lengths = self.axis.iter().map(Axis::count);
         let axes = match self.combine {
             Combine::All => lengths.clone().try_fold(1_usize, |product, len| product.checked_mul(len)),
             Combine::Zip => Some(lengths.max().unwrap_or(1)),
@@ -152,14 +152,14 @@ impl SweepFile {
             return Some(format!("{fixed} is set for all tasks, and varies: leave one of the two out"));
         }
         if let (Combine::Zip, Some(first)) = (self.combine, self.axis.first()) {
-            let other = self.axis.iter().find(|axis| axis.len() != first.len());
+            let other = self.axis.iter().find(|axis| axis.count() != first.count());
             if let Some(other) = other {
                 return Some(format!(
                     "axes go in step (combine = \"zip\"), and {} has {} values where {} has {}",
                     other.name(),
-                    other.len(),
+                    other.count(),
                     first.name(),
-                    first.len()
+                    first.count()
                 ));
             }
         }

@@ -27,12 +27,15 @@ pub struct Table {
 #[derive(Clone, Debug)]
 pub struct Condition {
     column: String,
-    is: fn(Option<Ordering>) -> bool,
+    is: Comparison,
     value: Value,
 }
 
+/// Whether values of this order meet it; `None` where they have none.
+type Comparison = fn(Option<Ordering>) -> bool;
+
 /// Comparisons, the longer first.
-const COMPARISONS: [(&str, fn(Option<Ordering>) -> bool); 6] = [
+const COMPARISONS: [(&str, Comparison); 6] = [
     ("<=", |order| matches!(order, Some(Ordering::Less | Ordering::Equal))),
     (">=", |order| matches!(order, Some(Ordering::Greater | Ordering::Equal))),
     ("!=", |order| order != Some(Ordering::Equal)),

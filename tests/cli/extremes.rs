@@ -83,7 +83,14 @@ fn folder() -> tempfile::TempDir {
 
 fn extremes(folder: &tempfile::TempDir, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_foldline"));
-    command.arg("extremes").arg("--scenes").arg(folder.path()).args(arguments).output().unwrap()
+    command
+        .arg("extremes")
+        .arg("--scenes")
+        .arg(folder.path())
+        .args(arguments)
+        .current_dir(folder.path())
+        .output()
+        .unwrap()
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::time::Duration;
 use foldline::pipeline::{Run, RunError, StageError, Stages};
 use foldline::record::MemorySink;
 use foldline::scene::{ExpectedOutcome, Scene};
-use foldline::study::ExtremesSuite;
+use foldline::study::{Archive, ExtremesSuite};
 
 use crate::support::scene;
 
@@ -18,7 +18,9 @@ fn scenes() -> BTreeMap<String, Scene> {
 }
 
 fn end_as_stated(scenes: BTreeMap<String, Scene>, names: &[&str]) {
-    let mut suite = ExtremesSuite::new(scenes, Duration::from_secs(120));
+    let folder = tempfile::tempdir().unwrap();
+    let archive = Archive::open(folder.path(), rayon::current_num_threads()).unwrap();
+    let mut suite = ExtremesSuite::new(scenes, Duration::from_secs(120), archive);
     for name in names {
         let row = suite.run(name).unwrap();
         assert!(row.as_stated, "{name}: {:?} {:?}", row.outcome, row.faults);
