@@ -7,7 +7,7 @@ use std::time::Instant;
 use clap::{Args, Subcommand};
 
 use super::failure::{EXIT_CODES, Failure};
-use super::output::{eprint, path_in_line, print};
+use super::output::{eprint, file_name, path_in_line, print, print_as_it_is, refuse_what_is_there, write_files};
 use super::scene_file::{NamedText, read_named};
 use super::session::watch_signals;
 use super::settings::Settings;
@@ -15,8 +15,9 @@ use super::shipped::Shipped;
 use super::sweep_progress::SweepProgress;
 use super::sweep_table::{Chosen, table_of};
 use crate::study::{Archive, EngineError, Workers};
-use crate::sweep::{Folder, Plan, SweepError, SweepFile, Task, Work, do_tasks, planned_from, to_do};
+use crate::sweep::{Condition, Folder, Plan, SweepError, SweepFile, Table, Task, Work, do_tasks, planned_from, to_do};
 use crate::units::{count, duration};
+use crate::view::{PlotError, sweep_page};
 
 /// Run a scene over many designs and collect what each run shows, in a table
 #[derive(Args, Debug)]
@@ -30,6 +31,7 @@ enum Command {
     Run(RunArguments),
     Resume(ResumeArguments),
     Status(StatusArguments),
+    Report(ReportArguments),
     Task(TaskArguments),
 }
 
@@ -81,6 +83,20 @@ struct StatusArguments {
     chosen: Chosen,
 }
 
+/// Write a page about a sweep that needs no network: response curves and surfaces, distributions, parallel coordinates, and the
+/// table, each task with a link to its log
+#[derive(Args, Debug)]
+struct ReportArguments {
+    /// Folder of the sweep, or its file
+    sweep: PathBuf,
+    /// Rows that meet a condition, such as 'peak_moment_n_mm>800' or ending=done; may be repeated
+    #[arg(long = "where", value_name = "CONDITION", value_parser = Condition::parse)]
+    conditions: Vec<Condition>,
+    /// Page to write [default: report.html in the sweep's folder]
+    #[arg(short, long, value_name = "FILE", value_parser = file_name())]
+    output: Option<PathBuf>,
+}
+
 /// Do one task of a sweep, as a job of a cluster does
 #[derive(Args, Debug)]
 struct TaskArguments {
@@ -100,6 +116,7 @@ impl Arguments {
             }
             Command::Resume(arguments) => arguments.pool.run(&Folder::at(&arguments.folder)),
             Command::Status(StatusArguments { sweep, chosen }) => print_table(&folder_of(&sweep)?, &chosen),
+            Command::Report(arguments) => report(arguments),
             Command::Task(TaskArguments { folder, number }) => one_task(&Folder::at(&folder), number),
         }
     }
@@ -142,6 +159,30 @@ fn planned(sweep: &Path, folder: Option<&Path>) -> Result<Folder, Failure> {
 
 fn print_table(folder: &Folder, chosen: &Chosen) -> Result<(), Failure> {
     print(&table_of(folder, chosen)?)
+}
+
+fn report(arguments: ReportArguments) -> Result<(), Failure> {
+    let folder = folder_of(&arguments.sweep)?;
+    let output = arguments.output.unwrap_or_else(|| folder.path().join("report.html"));
+    refuse_what_is_there([&output])?;
+    let mut table = Table::read(&folder)?;
+    table.retain(&arguments.conditions)?;
+    let command = format!("foldline report {}/KEY.mcap -o page.html", path_in_line(&folder.logs()));
+    let page = sweep_page(&table, &links(&folder.logs(), &output), &command);
+    let page = page.map_err(|cause| PlotError::Drawing(cause.to_string()))?;
+    write_files(&[(output.clone(), page.into_bytes())])?;
+    print_as_it_is(&format!("{}\n", path_in_line(&output)))
+}
+
+/// What the links of a page to logs begin with: a path from the page where the logs lie below its folder, else a whole one.
+fn links(logs: &Path, page: &Path) -> String {
+    let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    let beside = page.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (logs, beside) = (whole(logs), whole(beside));
+    match logs.strip_prefix(&beside) {
+        Ok(below) => format!("{}/", below.display()),
+        Err(_) => format!("file://{}/", logs.display()),
+    }
 }
 
 impl PoolArguments {

@@ -50,7 +50,7 @@ pub use mesh_picture::{Picture, mesh_picture};
 pub use plot::{
     PlotError, PlottedRun, Quantity, curve_plot, load_probe, moment_rotation_plot, quantities_of, quantity_named,
 };
-pub use report::{FrameAt, ReportedRun, Shape, Told, chosen_frames, report_page, study_page};
+pub use report::{FrameAt, ReportedRun, Shape, Told, chosen_frames, report_page, study_page, sweep_page};
 pub use samples::{SamplesError, SurfaceSamples};
 pub use viewers::{LOG_TOPIC, MESH_HISTORY_TOPIC, MeshHistory, PictureError, StepTimes, ViewerFile};
 pub use vtu::vtu;

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `run` | what the page shows of a run |
 //! | `shape` | the deformed shell over the load steps |
-//! | `page.html`, `page.js`, `study.html`, `study.js`, `page.css` | the page of runs, that of a study, the looks of both |
+//! | `page.html`, `page.js`, `study.html`, `study.js`, `sweep.html`, `sweep.js`, `page.css` | the pages of runs, of a study, of a sweep; the looks of all |
 //! | `vendor` | libraries that it is drawn with, and their licences |
 
 mod run;
@@ -14,10 +14,12 @@ mod shape;
 pub use run::{ReportedRun, Told};
 pub use shape::{FrameAt, Shape, chosen_frames};
 
+use serde::Serialize;
 use serde_json::Value;
 
 use super::drawing::escaped;
 use crate::printable::one_line;
+use crate::sweep::{Quantity, Table};
 
 const STYLE: &str = include_str!("page.css");
 const CHARTS: &str = include_str!("vendor/chart.js");
@@ -35,6 +37,35 @@ pub fn report_page(title: &str, runs: &[ReportedRun]) -> Result<String, serde_js
 /// The page of a study: errors against run times, and tables. `rows` are what `foldline study --json` prints.
 pub fn study_page(title: &str, rows: &[Value]) -> String {
     filled(include_str!("study.html"), title, &Value::from(rows).to_string(), include_str!("study.js"))
+}
+
+/// The page of a sweep: response curves and surfaces, distributions, parallel coordinates and a table of the tasks, each with its log, whose
+/// links begin with `logs`; `command` makes a page of one.
+///
+/// # Errors
+/// Where a value of the table cannot be written as JSON.
+pub fn sweep_page(table: &Table, logs: &str, command: &str) -> Result<String, serde_json::Error> {
+    let data = SweepData {
+        columns: table.columns(),
+        varies: &table.head.columns,
+        outputs: &table.head.outputs,
+        rows: table.rows.iter().map(|row| table.values(row)).collect(),
+        logs,
+        command,
+    };
+    let data = serde_json::to_string(&data)?;
+    Ok(filled(include_str!("sweep.html"), &table.head.title, &data, include_str!("sweep.js")))
+}
+
+/// What the page of a sweep reads.
+#[derive(Serialize)]
+struct SweepData<'t> {
+    columns: Vec<String>,
+    varies: &'t [String],
+    outputs: &'t [Quantity],
+    rows: Vec<Vec<Value>>,
+    logs: &'t str,
+    command: &'t str,
 }
 
 /// A page with its title, styles, libraries, data and script in their places.
