@@ -19,7 +19,7 @@ use serde_json::Value;
 
 use super::drawing::escaped;
 use crate::printable::one_line;
-use crate::sweep::{Quantity, Table};
+use crate::sweep::{Quantity, Row, Table};
 
 const STYLE: &str = include_str!("page.css");
 const CHARTS: &str = include_str!("vendor/chart.js");
@@ -45,11 +45,18 @@ pub fn study_page(title: &str, rows: &[Value]) -> String {
 /// # Errors
 /// Where a value of the table cannot be written as JSON.
 pub fn sweep_page(table: &Table, logs: &str, command: &str) -> Result<String, serde_json::Error> {
+    let columns = table.columns();
+    // The name of a log is its task's key.
+    let kept: Vec<usize> = (0..columns.len()).filter(|index| columns[*index] != "key").collect();
+    let values = |row: &Row| {
+        let values = table.values(row);
+        kept.iter().map(|index| values[*index].clone()).collect()
+    };
     let data = SweepData {
-        columns: table.columns(),
+        columns: kept.iter().map(|index| columns[*index].clone()).collect(),
         varies: &table.head.columns,
         outputs: &table.head.outputs,
-        rows: table.rows.iter().map(|row| table.values(row)).collect(),
+        rows: table.rows.iter().map(values).collect(),
         logs,
         command,
     };

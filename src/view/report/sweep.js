@@ -55,7 +55,7 @@ options("up", numeric, moving[1] ?? moving[0]);
 
 const charts = [];
 const axis = (text) => ({ title: { display: true, text, color: css("--ink") }, ticks: { color: css("--soft") }, grid: { color: css("--line") } });
-const told = (row) => [`task ${row[0]}: ${row[2]}`, ...varies.map((name) => `${name} ${figure(row[at(name)])}`), ...outputs.map((name) => `${name} ${figure(row[at(name)])}`)];
+const told = (row) => [`task ${row[at("number")]}: ${row[at("ending")]}`, ...varies.map((name) => `${name} ${figure(row[at(name)])}`), ...outputs.map((name) => `${name} ${figure(row[at(name)])}`)];
 const opened = (row) => {
     const log = row[at("log")];
     if (log) window.open(logs + encodeURIComponent(log), "_blank");
@@ -101,9 +101,10 @@ function surface(list) {
     const [least, most] = range(some, z);
     find("ramp").style.background = `linear-gradient(to right, ${viridis.map((colour) => `rgb(${colour.join(",")})`).join(", ")})`;
     [find("least").textContent, find("most").textContent] = some.length ? [figure(least), `${figure(most)}  ${z}`] : ["", "nothing to show"];
+    some.sort((a, b) => a[at(x)] - b[at(x)]);
     const data = some.map((row) => ({ x: row[at(x)], y: row[at(y)], row }));
     const radius = some.length > 500 ? 3 : some.length > 60 ? 6 : 10;
-    scatter("surface", [{ label: z, data, pointStyle: "rect", backgroundColor: some.map((row) => coloured(share(row[at(z)], [least, most]))), pointRadius: radius, borderWidth: 0 }], x, y);
+    scatter("surface", [{ label: z, data, pointStyle: "rect", clip: false, backgroundColor: some.map((row) => coloured(share(row[at(z)], [least, most]))), pointRadius: radius, borderWidth: 0 }], x, y);
 }
 function distribution(list) {
     const name = find("y").value;
@@ -121,7 +122,7 @@ function distribution(list) {
     for (const value of values) counts[Math.min(Math.floor(share(value, [least, most]) * counts.length), counts.length - 1)] += 1;
     const middle = (bin) => Number((least + (bin + 0.5) * (most - least) / counts.length).toPrecision(4));
     chart("distribution", { type: "bar", data: { labels: counts.map((_, bin) => middle(bin)), datasets: [{ data: counts, backgroundColor: css("--accent"), categoryPercentage: 1, barPercentage: 0.95 }] },
-        options: { scales: { x: axis(name), y: axis("tasks") }, plugins: { legend: { display: false } } } });
+        options: { scales: { x: axis(name), y: { ...axis("tasks"), ticks: { color: css("--soft"), precision: 0 } } }, plugins: { legend: { display: false } } } });
 }
 
 const shownAxes = numeric.filter((name) => ranges.get(name)[0] < ranges.get(name)[1]).slice(0, 12);
@@ -190,7 +191,7 @@ window.addEventListener("pointerup", (event) => {
     draw();
 });
 
-let order = { column: 0, down: false };
+let order = { column: at("number"), down: false };
 function listed(list) {
     const table = find("tasks");
     table.replaceChildren();
@@ -208,7 +209,7 @@ function listed(list) {
         for (const name of shown) {
             const cell = element("td", undefined, line), log = row[at("log")];
             if (name === "number" && log) {
-                const link = element("a", row[0], cell);
+                const link = element("a", row[at("number")], cell);
                 link.href = logs + encodeURIComponent(log);
             } else cell.textContent = name === "reason" ? (row[at(name)] ?? "").slice(0, 200) : figure(row[at(name)]);
         }
@@ -225,7 +226,7 @@ function draw() {
     listed(list);
 }
 const endings = new Map();
-for (const row of rows) endings.set(row[2], (endings.get(row[2]) ?? 0) + 1);
+for (const row of rows) endings.set(row[at("ending")], (endings.get(row[at("ending")]) ?? 0) + 1);
 find("lead").textContent = `${rows.length} tasks: ${[...endings].map(([word, count]) => `${count} ${word}`).join(", ")}`;
 draw();
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
