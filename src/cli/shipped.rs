@@ -90,6 +90,10 @@ pub(super) const SHIPPED: &[Shipped] = shipped! {
     "studies/length-limit"
     "studies/length"
     "studies/radius-thickness"
+    "sweeps/fold-moments"
+    "sweeps/mesh-error"
+    "sweeps/roof-snap"
+    "sweeps/scattered-springs"
 };
 
 /// Names offered for a wrong one, at most.

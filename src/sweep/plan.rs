@@ -132,7 +132,8 @@ impl Plan {
         }
         let mut references: Vec<Task> = Vec::new();
         if head.reference.is_some() {
-            let of_tasks: Vec<Task> = tasks.par_iter().map(|task| made(task.values.clone(), true)).collect();
+            let of_tasks: Vec<Task> =
+                tasks.par_iter().map(|task| made(values_of_reference(&head, &task.values), true)).collect();
             let mut seen = std::collections::BTreeSet::new();
             for (task, reference) in tasks.iter_mut().zip(of_tasks) {
                 task.reference = Some(reference.key.clone());
@@ -156,6 +157,20 @@ impl Plan {
         }
         Ok(Self { head, scene_text, tasks })
     }
+}
+
+/// Values of the columns of a task's reference: what the reference sets itself replaces the task's.
+fn values_of_reference(head: &Head, values: &[Value]) -> Vec<Value> {
+    let set = |key: &String| {
+        let settings = head.reference.iter().flatten().rev();
+        let mut own = settings.filter_map(|setting| setting.split_once('=')).filter(|(name, _)| name.trim() == *key);
+        let (_, text) = own.next()?;
+        // A word needs no quotes in a setting.
+        let parsed = toml::from_str::<toml::Table>(&format!("value = {text}"));
+        let value = parsed.ok().and_then(|table| table.get("value").cloned());
+        Some(value.map_or_else(|| Value::from(text.trim()), |value| serde_json::to_value(value).unwrap_or_default()))
+    };
+    head.columns.iter().zip(values).map(|(key, value)| set(key).unwrap_or_else(|| value.clone())).collect()
 }
 
 /// Hash of what a plan follows from.

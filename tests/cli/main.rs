@@ -16,6 +16,7 @@ mod stability;
 mod stages;
 mod study;
 mod summary;
+mod sweep;
 mod synthetic;
 mod terminal;
 mod widths;

@@ -11,6 +11,7 @@ mod program;
 mod reading;
 mod replay;
 mod studies;
+mod sweeps;
 mod thin;
 mod threads;
 

@@ -1,0 +1,123 @@
+//! `foldline sweep`: rows, what becomes of tasks that fail, tables, and what it refuses.
+
+use serde_json::Value;
+
+use crate::program::Sandbox;
+
+fn rows(text: &str) -> Vec<Value> {
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+/// A sweep over the small scene to 2°, with these axes.
+fn place(axes: &str) -> Sandbox {
+    let place = Sandbox::new();
+    let head = "title = \"t\"\nscene = \"small.toml\"\nsettings = [\"load.rotation_deg=2\"]\n";
+    place.write("s.toml", format!("{head}{axes}"));
+    place
+}
+
+#[test]
+fn a_scene_that_is_wrong_and_a_run_that_stops_are_rows() {
+    // At an arc of 400° there is no section; 45 load steps of 0.01° are more than the solver may take iterations for.
+    let place = place("outputs = [\"last.moment_n_mm\", \"theory_peak_n_mm\"]\n[[axis]]\nkey = \"geometry.arc_deg\"\nvalues = [110, 400, 20]\n");
+    let said = place.foldline("sweep run s.toml").ends(0);
+    assert!(said.err.contains("arc_deg"), "{}", said.err);
+    let rows = rows(&place.foldline("sweep status s.toml --json").ends(0).out);
+    let endings: Vec<&str> = rows.iter().map(|row| row["ending"].as_str().unwrap()).collect();
+    assert_eq!(endings, ["done", "refused", "done"]);
+    assert!(rows[1]["reason"].as_str().unwrap().contains("400") && rows[1]["last.moment_n_mm"].is_null());
+    // So shallow a section has no peak: there is no such number, and a row all the same.
+    assert!(rows[2]["theory_peak_n_mm"].is_null() && rows[2]["last.moment_n_mm"].as_f64().unwrap() > 0.0);
+    place.foldline("sweep run s.toml").ends(0).says(&["3 of them on record"]);
+}
+
+#[test]
+fn a_run_that_stops_keeps_its_log_and_its_reason() {
+    let place = place("[[axis]]\nkey = \"solver.most_iterations\"\nvalues = [50, 1]\n");
+    place.foldline("sweep run s.toml").ends(0);
+    let found = rows(&place.foldline("sweep status s.toml --json --where ending=failed").ends(0).out);
+    let [failed] = &found[..] else { panic!("{found:?}") };
+    assert!(failed["reason"].as_str().unwrap().contains("no equilibrium"), "{failed}");
+    assert!(place.file("checkpoints/sweeps/s/logs").join(failed["log"].as_str().unwrap()).is_file());
+    place.foldline("sweep run s.toml").ends(0).says(&["2 of them on record"]);
+    place.foldline("sweep run s.toml --retry").ends(0).says(&["1 of them on record"]);
+}
+
+#[test]
+fn where_nothing_can_be_run_nothing_is_begun() {
+    let place = place("[[axis]]\nkey = \"geometry.radius\"\nvalues = [9, 10]\n");
+    place.foldline("sweep run s.toml").ends(2).says(&["not one of its 2 scenes", "radius_mm"]);
+    assert!(!place.file("checkpoints").exists());
+    place.foldline("sweep status s.toml").ends(2).says(&["has not been begun", "foldline sweep run s.toml"]);
+    place.foldline("sweep run nothing.toml").ends(2).says(&["nothing.toml"]);
+    place.foldline("sweep resume nothing").ends(2).says(&["nothing"]);
+    place.write("s.toml", "title = \"t\"\nscene = \"small.toml\"\noutputs = [\"probe.tip\"]\n[[axis]]\nkey = \"geometry.radius_mm\"\nvalues = [9]\n");
+    place.foldline("sweep run s.toml").ends(2).says(&["no [[probe]] of that name"]);
+}
+
+#[test]
+fn another_sweep_is_not_written_over() {
+    let place = place("[[axis]]\nkey = \"geometry.radius_mm\"\nvalues = [9]\n");
+    place.foldline("sweep run s.toml --folder f").ends(0);
+    place.write("other.toml", "title = \"other\"\nscene = \"small.toml\"\n[[axis]]\nkey = \"geometry.radius_mm\"\nvalues = [9]\n");
+    place.foldline("sweep run other.toml --folder f").ends(2).says(&["holds the sweep `t` of s.toml", "--folder"]);
+}
+
+#[test]
+fn rows_are_chosen_and_written() {
+    let place = place("outputs = [\"last.moment_n_mm\"]\n[[axis]]\nkey = \"geometry.radius_mm\"\nfrom = 9\nto = 12\ncount = 4\n");
+    place.foldline("sweep run s.toml --json").ends(0);
+    let all = rows(&place.foldline("sweep status s.toml --json").ends(0).out);
+    let moments: Vec<f64> = all.iter().map(|row| row["last.moment_n_mm"].as_f64().unwrap()).collect();
+    assert!(moments.is_sorted() && moments.len() == 4, "a larger section is stiffer: {moments:?}");
+    let some = rows(&place.foldline("sweep status s.toml --json --where radius_mm>=11").ends(0).out);
+    assert_eq!(some, all[2..]);
+    place.foldline("sweep status s.toml --where radius>3").ends(2).says(&["no column is called `radius`", "geometry.radius_mm"]);
+    place.foldline("sweep status s.toml --where radius_mm").ends(2).says(&["a comparison"]);
+    place.foldline("sweep status s.toml --csv t.csv").ends(0).says(&["4 rows: 4 done"]);
+    let csv = String::from_utf8(place.read("t.csv")).unwrap();
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(lines[0][..5], ["number", "key", "ending", "geometry.radius_mm", "last.moment_n_mm"]);
+    assert_eq!(lines[4][4].parse::<f64>().unwrap(), moments[3]);
+    place.foldline("sweep status s.toml --csv t.csv").ends(2).says(&["t.csv exists"]);
+    place.foldline("sweep report s.toml -o page.html").ends(0).says(&["page.html"]);
+    let page = String::from_utf8(place.read("page.html")).unwrap();
+    let (_, rest) = page.split_once("id=\"data\">").unwrap();
+    let held: Value = serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap();
+    assert_eq!(held["rows"].as_array().unwrap().len(), 4);
+    assert!(place.file(held["logs"].as_str().unwrap()).join(all[0]["log"].as_str().unwrap()).is_file());
+}
+
+/// A tape spring whose ends turn, a strip along its path under a growing load, meshes against a reference: one engine.
+#[test]
+fn three_kinds_go_through_one_engine() {
+    let turned = place("[[axis]]\nkey = \"geometry.radius_mm\"\nvalues = [9, 10]\n");
+    turned.foldline("sweep run s.toml").ends(0).says(&["peak_", "2 rows: 2 done"]);
+    let place = Sandbox::new();
+    place.write("along.toml", include_str!("../restart/path.toml"));
+    place.write("s.toml", "title = \"path\"\nscene = \"along.toml\"\noutputs = [\"last.path_length_mm\", \"limit_parameter\"]\n[[axis]]\nkey = \"material.thickness_mm\"\nvalues = [0.2, 0.25]\n");
+    place.foldline("sweep run s.toml --folder path").ends(0);
+    for row in rows(&place.foldline("sweep status path --json").ends(0).out) {
+        assert!(row["last.path_length_mm"].as_f64().unwrap() > 0.0, "{row}");
+    }
+    place.write(
+        "r.toml",
+        "title = \"error\"\nscene = \"small.toml\"\nsettings = [\"load.rotation_deg=4\", \"pipeline.stages=['solve']\"]\n\
+         outputs = [\"error_before\", \"error_after\"]\n[reference]\nsettings = [\"mesh.elements=[24, 8]\"]\n\
+         [[axis]]\nkey = \"mesh.elements\"\nvalues = [[4, 4], [8, 4], [16, 8]]\n",
+    );
+    place.foldline("sweep run r.toml --folder error").ends(0);
+    let rows = rows(&place.foldline("sweep status error --json").ends(0).out);
+    let errors: Vec<Option<f64>> = rows.iter().map(|row| row["error_before"].as_f64()).collect();
+    let [None, Some(coarse), Some(_), Some(fine)] = errors[..] else { panic!("{errors:?}") };
+    assert!(fine < coarse && fine > 0.0 && rows[0]["mesh.elements"] == serde_json::json!([24, 8]), "{errors:?}");
+}
+
+#[test]
+fn shipped_sweeps_are_planned() {
+    let place = Sandbox::new();
+    let told = place.foldline("scenes sweeps").ends(0).out;
+    for name in ["fold-moments", "scattered-springs", "roof-snap", "mesh-error"] {
+        assert!(told.contains(name), "{told}");
+    }
+}

@@ -1,0 +1,138 @@
+//! Sweeps: what is done is done once, whatever kills the program, and however many of them work in one folder.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use foldline::journal::{Completeness, Log};
+use serde_json::Value;
+
+use crate::program::Sandbox;
+
+const SWEEP: &str = r#"
+title = "small"
+scene = "small.toml"
+settings = ["load.rotation_deg=14"]
+outputs = ["peak_moment_n_mm", "snap_before", "fold_moment_n_mm", "last.strain_energy_n_mm"]
+
+[[axis]]
+key = "geometry.radius_mm"
+values = [9, 10, 11]
+
+[[axis]]
+key = "material.thickness_mm"
+values = [0.1, 0.12]
+"#;
+
+const COMMAND: &str = "sweep run sweep.toml --folder f --tasks 2";
+
+fn place() -> Sandbox {
+    let place = Sandbox::new();
+    place.write("sweep.toml", SWEEP);
+    place
+}
+
+/// The table of a sweep without what it cost.
+fn table(place: &Sandbox) -> Vec<Value> {
+    let text = place.foldline("sweep status f --json").ends(0).out;
+    let costless = |line: &str| {
+        let mut row: Value = serde_json::from_str(line).unwrap();
+        row.as_object_mut().unwrap().remove("wall_s");
+        row
+    };
+    text.lines().map(costless).collect()
+}
+
+fn logs(place: &Sandbox) -> BTreeMap<String, Vec<u8>> {
+    let Ok(files) = std::fs::read_dir(place.file("f/logs")) else { return BTreeMap::new() };
+    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+    let logs = names.filter(|name| name.ends_with(".mcap"));
+    logs.map(|name| (name.clone(), place.read(&format!("f/logs/{name}")))).collect()
+}
+
+fn is_finished(bytes: &[u8]) -> bool {
+    Log::from_bytes(bytes.to_vec()).is_ok_and(|log| log.completeness() == Completeness::Finished)
+}
+
+#[test]
+fn a_killed_sweep_gives_the_same_table_and_runs_nothing_twice_to_its_end() {
+    let straight = place();
+    straight.foldline(COMMAND).ends(0);
+    let expected = table(&straight);
+    assert!(expected.len() == 6 && expected.iter().all(|row| row["ending"] == "done"), "{expected:?}");
+    let place = place();
+    let (mut killed, mut kept) = (0, BTreeMap::new());
+    for delay_ms in [40, 80, 120, 160, 240, 320] {
+        let mut child = place.command(COMMAND).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(delay_ms));
+        child.kill().unwrap();
+        killed += usize::from(!child.wait().unwrap().success());
+        let now = logs(&place);
+        for (name, bytes) in &kept {
+            assert_eq!(now.get(name), Some(bytes), "{name} was finished, and is not touched again");
+        }
+        kept = now.into_iter().filter(|(_, bytes)| is_finished(bytes)).collect();
+    }
+    assert!(killed > 0, "no sweep was killed");
+    place.foldline("sweep resume f").ends(0);
+    assert_eq!(table(&place), expected);
+}
+
+/// Two at once share the tasks: what one has in hand the other leaves, and nothing is lost.
+#[test]
+fn two_sweeps_in_one_folder_do_each_task_once() {
+    let straight = place();
+    straight.foldline(COMMAND).ends(0);
+    let place = place();
+    let mut children: Vec<_> = (0..2).map(|_| place.command(COMMAND).spawn().unwrap()).collect();
+    for child in &mut children {
+        // 1 where the other still had a task in hand.
+        assert!(matches!(child.wait().unwrap().code(), Some(0 | 1)));
+    }
+    place.foldline(COMMAND).ends(0);
+    assert_eq!(table(&place), table(&straight));
+    for (name, bytes) in logs(&place) {
+        assert!(is_finished(&bytes), "{name}");
+        place.foldline(&format!("verify f/logs/{name}")).ends(0);
+    }
+}
+
+#[test]
+fn a_finished_sweep_runs_nothing_again_and_reads_what_is_newly_asked_for() {
+    let place = place();
+    place.foldline(COMMAND).ends(0);
+    let made = logs(&place);
+    place.foldline(COMMAND).ends(0).says(&["6 of them on record"]);
+    place.write("sweep.toml", SWEEP.replace("\"snap_before\"", "\"snap_after\", \"theory_peak_n_mm\""));
+    place.foldline(COMMAND).ends(0);
+    assert_eq!(logs(&place), made, "the logs tell");
+    let rows = table(&place);
+    assert!(rows.iter().all(|row| row["theory_peak_n_mm"].as_f64().is_some_and(|peak| peak > 100.0)), "{rows:?}");
+    // More values: only those are run.
+    place.write("sweep.toml", SWEEP.replace("[9, 10, 11]", "[9, 10, 11, 12]"));
+    place.foldline(COMMAND).ends(0).says(&["8 tasks, 6 of them on record"]);
+    let now = logs(&place);
+    assert_eq!((now.len(), made.iter().all(|(name, bytes)| now[name] == *bytes)), (8, true));
+}
+
+/// A log holds a finished run to a nearer target: it is no answer for a farther one.
+#[test]
+fn a_farther_target_is_another_task() {
+    let place = place();
+    place.write("sweep.toml", SWEEP.replace("load.rotation_deg=14", "load.increment_deg=2").replace("geometry.radius_mm", "load.rotation_deg").replace("[9, 10, 11]", "[4, 8]"));
+    place.foldline(COMMAND).ends(0);
+    let energies: Vec<f64> = table(&place).iter().map(|row| row["last.strain_energy_n_mm"].as_f64().unwrap()).collect();
+    assert!(energies[2] > 2.0 * energies[0] && logs(&place).len() == 4, "{energies:?}");
+}
+
+#[test]
+fn an_interrupted_sweep_says_how_it_continues() {
+    let place = place();
+    let mut child = place.command(COMMAND).stderr(std::process::Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(150));
+    let id = rustix::process::Pid::from_child(&child);
+    rustix::process::kill_process(id, rustix::process::Signal::TERM).unwrap();
+    let code = child.wait().unwrap().code();
+    assert!(matches!(code, Some(75 | 0)), "{code:?}");
+    place.foldline("sweep resume f").ends(0);
+    assert!(table(&place).iter().all(|row| row["ending"] == "done"));
+}
