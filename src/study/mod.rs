@@ -47,7 +47,7 @@ pub use convergence::{ConvergenceError, ConvergenceRow, check_spring, converge};
 pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;
-pub use forecast::{Forecast, StepCost};
+pub use forecast::{FinestCost, FinestMesh, Forecast, StepCost, hardly_moved_or_thrown_off};
 pub use path::{OnPath, Passed, PathPoint, Snap, equilibria, equilibrium_path, records_on_path, snaps};
 pub use speed_up::{Errors, MeshPoint, SpeedUp, error_of_finer, speed_up};
 pub use study_file::{Adaptive, Family, Planned, ReferenceMesh, Role, Structure, StudyError, StudyFile};
