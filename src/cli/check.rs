@@ -13,7 +13,7 @@ use super::wrapped::wrapped;
 use crate::pipeline::RunError;
 use crate::scene::{Scene, Symmetry};
 use crate::spline::Grid;
-use crate::study::{Forecast, StepCost, Summary};
+use crate::study::{FinestCost, Forecast, StepCost, Summary};
 use crate::units::{count, duration, significant};
 
 /// Check a scene before its run: its size, what a load step takes on the mesh that it starts with (the first are done to
@@ -43,6 +43,7 @@ struct Line<'l> {
     degree: [usize; 2],
     unknowns: usize,
     refines: bool,
+    finest: Option<FinestLine>,
     memory_bytes: Option<u64>,
     load_steps: Option<f64>,
     step_s: Option<f64>,
@@ -54,23 +55,54 @@ struct Line<'l> {
     remarks: &'l [String],
 }
 
+/// The finest mesh that refining may end with, as a program reads it.
+#[derive(Clone, Copy, Serialize)]
+struct FinestLine {
+    elements: [usize; 2],
+    unknowns: Option<usize>,
+    memory_bytes: Option<u64>,
+    step_s: Option<f64>,
+}
+
 impl Arguments {
     /// Checks the scene and prints what was found.
     pub(super) fn run(self) -> Result<(), Failure> {
         let threads = use_threads(self.threads.map(usize::from))?;
-        let scene = read_scene(&self.scene, &[])?.scene;
+        let file = read_scene(&self.scene, &[])?;
+        let scene = &file.scene;
         let name = path_in_line(&self.scene);
-        let forecast = Forecast::of(&scene)?;
+        let forecast = Forecast::of(scene).map_err(|refusal| file.written.refused(refusal))?;
+        // What the mesh at the start takes: the finest is tried out after it.
         let memory = peak_memory();
+        let finest = finest(scene, &forecast);
         match self.json {
-            true => print_json(&line(&name, &scene, &forecast, memory)),
-            false => print(&shown(&name, &scene, &forecast, memory, threads)),
+            true => print_json(&line(&name, scene, &forecast, memory, finest)),
+            false => print(&shown(&name, scene, &forecast, memory, finest, threads)),
         }
     }
 }
 
-fn line<'l>(name: &'l str, scene: &Scene, forecast: &'l Forecast, memory_bytes: Option<u64>) -> Line<'l> {
-    let Forecast { size, elements, unknowns, step, load_steps, refines, symmetric, odd, remarks, .. } = forecast;
+/// What the finest mesh takes, where the mesh is refined.
+fn finest(scene: &Scene, forecast: &Forecast) -> Option<FinestLine> {
+    let mesh = forecast.finest.as_ref()?;
+    let cost = mesh.cost(scene);
+    let step = |cost: FinestCost| Some((1.0 + forecast.step.as_ref().ok()?.iterations as f64) * cost.iteration_s);
+    Some(FinestLine {
+        elements: mesh.elements,
+        unknowns: cost.map(|cost| cost.unknowns),
+        memory_bytes: cost.and_then(|_| peak_memory()),
+        step_s: cost.and_then(step),
+    })
+}
+
+fn line<'l>(
+    name: &'l str,
+    scene: &Scene,
+    forecast: &'l Forecast,
+    memory_bytes: Option<u64>,
+    finest: Option<FinestLine>,
+) -> Line<'l> {
+    let Forecast { size, elements, unknowns, step, load_steps, symmetric, odd, remarks, .. } = forecast;
     Line {
         scene: name,
         box_mm: size.box_mm,
@@ -80,7 +112,8 @@ fn line<'l>(name: &'l str, scene: &Scene, forecast: &'l Forecast, memory_bytes: 
         elements: *elements,
         degree: scene.mesh.degree,
         unknowns: *unknowns,
-        refines: *refines,
+        refines: finest.is_some(),
+        finest,
         memory_bytes,
         load_steps: *load_steps,
         step_s: step.as_ref().ok().map(|step| step.wall_s),
@@ -93,27 +126,33 @@ fn line<'l>(name: &'l str, scene: &Scene, forecast: &'l Forecast, memory_bytes: 
     }
 }
 
-fn shown(name: &str, scene: &Scene, forecast: &Forecast, memory: Option<u64>, threads: usize) -> String {
-    let Forecast { size, elements: [n1, n2], unknowns, refines, odd, remarks, .. } = forecast;
+fn shown(
+    name: &str,
+    scene: &Scene,
+    forecast: &Forecast,
+    memory: Option<u64>,
+    finest: Option<FinestLine>,
+    threads: usize,
+) -> String {
+    let Forecast { size, elements: [n1, n2], unknowns, odd, remarks, .. } = forecast;
     let [p, q] = scene.mesh.degree;
     let shell = format!("{name}: {}", Summary::new(scene, &[]).shell);
     let mesh = format!(
         "{n1} × {n2} = {} of degree {p}, {q}; {}{}",
         count(Grid::new([*n1, *n2]).len(), "element"),
         count(*unknowns, "unknown"),
-        if *refines { "; the mesh is refined on the way, and what follows is of the one at the start" } else { "" }
+        if finest.is_some() { ", at the start" } else { "" }
     );
-    let memory = memory.map_or("not known on this system".to_owned(), |bytes| {
-        let megabytes = significant((bytes as f64 / 1e6).round(), 3);
-        format!("{megabytes} MB")
-    });
+    let at_start = if finest.is_some() { ", at the start" } else { "" };
+    let memory = memory.map_or("not known on this system".to_owned(), |bytes| megabytes(bytes) + at_start);
     let mut rows = vec![
         ("size", size.to_string()),
         ("mesh", mesh),
         ("memory", memory),
         ("load step", load_steps(forecast, threads)),
-        ("symmetry", symmetry(scene, forecast.symmetric)),
     ];
+    rows.extend(finest.map(|finest| ("refined", refined(&finest))));
+    rows.push(("symmetry", symmetry(scene, forecast.symmetric)));
     rows.extend(remarks.iter().map(|remark| ("note", remark.clone())));
     match &odd[..] {
         [] => rows.push(("odd", "nothing".to_owned())),
@@ -130,6 +169,27 @@ fn shown(name: &str, scene: &Scene, forecast: &Forecast, memory: Option<u64>, th
     text
 }
 
+fn megabytes(bytes: u64) -> String {
+    format!("{} MB", significant((bytes as f64 / 1e6).round(), 3))
+}
+
+/// What the mesh may become, and what that takes.
+fn refined(finest: &FinestLine) -> String {
+    let FinestLine { elements: [n1, n2], unknowns, memory_bytes, step_s } = finest;
+    let parts = [
+        unknowns.map(|unknowns| count(unknowns, "unknown")),
+        memory_bytes.map(megabytes),
+        step_s.map(|step_s| format!("{} a load step", time(step_s))),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    let cost =
+        if parts.is_empty() { ", more than is tried out here".to_owned() } else { format!(": {}", parts.join(", ")) };
+    format!(
+        "the mesh grows where the shell bends, to {n1} × {n2} elements at most, which is the length limit everywhere{cost}; a run \
+         takes between what is needed at the start and about that"
+    )
+}
+
 /// What a load step takes, and how many there are.
 fn load_steps(forecast: &Forecast, threads: usize) -> String {
     let StepCost { iterations, wall_s, first_is_cut } = match &forecast.step {
@@ -138,12 +198,14 @@ fn load_steps(forecast: &Forecast, threads: usize) -> String {
     };
     let (iterations, threads) = (count(iterations, "iteration"), count(threads, "thread"));
     let cut = if first_is_cut { "; the first is too long and is cut" } else { "" };
-    let step = format!("{} ({iterations} on {threads}){cut}", time(wall_s));
+    let at_start = if forecast.finest.is_some() { ", at the start" } else { "" };
+    let step = format!("{} ({iterations} on {threads}{at_start}){cut}", time(wall_s));
     match forecast.load_steps {
         None => format!("{step}; by arc length, how many there are shows on the way"),
         Some(steps) => {
             let steps = steps.ceil();
-            let whole = if forecast.refines { String::new() } else { format!(", {} in all", time(steps * wall_s)) };
+            let whole =
+                if forecast.finest.is_some() { String::new() } else { format!(", {} in all", time(steps * wall_s)) };
             format!("{step}; at least {steps} to the target{whole}")
         }
     }

@@ -18,7 +18,7 @@ use crate::model::{Size, oddities};
 use crate::pipeline::{Run, Stages};
 use crate::record::Parameter;
 use crate::scene::{Quadrature, SyncPolicy};
-use crate::study::Summary;
+use crate::study::{Summary, hardly_moved_or_thrown_off};
 use crate::units::rounded;
 
 /// Run a scene, and log every stage
@@ -86,7 +86,8 @@ impl Arguments {
 impl Job {
     /// Runs the scene and prints the summary.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Job { scene: SceneFile { mut scene, text, file }, options, resume, force, set, sync } = self;
+        let Job { scene: whole, options, resume, force, set, sync } = self;
+        let SceneFile { mut scene, text, file, written } = whole;
         scene.output.sync = sync.unwrap_or(scene.output.sync);
         let manifest = Manifest::here(&file, &text, options.use_threads()?);
         manifest.check_size().map_err(|source| Failure::CannotStart { source: Box::new(source) })?;
@@ -105,9 +106,10 @@ impl Job {
             found => found.is_some(),
         };
         let mut stages = Stages::new(scene.clone());
-        let start = stages.start()?;
+        let start = stages.start().map_err(|refusal| written.refused(refusal))?;
         let size = Size::of(&scene)?;
-        let odd = oddities(&scene, &size);
+        let mut odd = oddities(&scene, &size);
+        odd.extend(hardly_moved_or_thrown_off(&mut stages, &start, &size));
         let remarks = stages.remarks(&start)?;
         let raised = watch_signals()?;
         make_default_folder(&options.log)?;

@@ -7,7 +7,8 @@ use super::failure::Failure;
 use super::output::path_in_line;
 use super::shipped::{Shipped, nearest_names};
 use super::terminal::is_coloured;
-use crate::scene::{Geometry, SCENE_BYTES_LIMIT, Scene, SceneError, Stage, parse_with_settings};
+use crate::model::ModelError;
+use crate::scene::{Geometry, SCENE_BYTES_LIMIT, Scene, SceneError, Stage, parse_with_settings, tables_refused};
 
 /// A scene with the text that it came from.
 pub(super) struct SceneFile {
@@ -15,6 +16,26 @@ pub(super) struct SceneFile {
     pub(super) text: String,
     /// Where it is, or would be if it did not come with the program: logs are named after it.
     pub(super) file: PathBuf,
+    pub(super) written: WrittenScene,
+}
+
+/// A scene as its author wrote it, for errors that show its lines.
+pub(super) struct WrittenScene {
+    text: String,
+    name: String,
+    settings: Vec<String>,
+}
+
+impl WrittenScene {
+    /// The refusal of a scene that cannot be made discrete, with the lines of the tables that it is about.
+    pub(super) fn refused(&self, refusal: ModelError) -> Failure {
+        let Some((kind, name)) = refusal.concerns() else { return refusal.into() };
+        let Self { text, name: file, settings } = self;
+        match tables_refused(text, file, settings, kind, name, &refusal.to_string()) {
+            Some(error) => Failure::WrongScene { rendered: rendered(&error) },
+            None => refusal.into(),
+        }
+    }
 }
 
 /// A text where it is, or would be if it did not come with the program.
@@ -29,12 +50,13 @@ pub(super) fn read_scene(path: &Path, settings: &[String]) -> Result<SceneFile, 
     let NamedText { text, file, .. } = read_named(path)?;
     let scene = checked(&text, &path_in_line(path), settings)?;
     // A log needs no other file: a surface from a file of its own goes into the text that the log keeps, and settings do.
-    let text = match scene.geometry {
+    let kept = match scene.geometry {
         Geometry::Nurbs(_) => scene.to_toml(),
         _ if !settings.is_empty() => scene.to_toml(),
-        _ => text,
+        _ => text.clone(),
     };
-    Ok(SceneFile { scene, text, file })
+    let written = WrittenScene { text, name: path_in_line(path), settings: settings.to_vec() };
+    Ok(SceneFile { scene, text: kept, file, written })
 }
 
 /// Reads the text of a scene or a study: a file, or else what comes with the program under that name.

@@ -9,6 +9,9 @@ use crate::model::{BlockPattern, Blocks, Body, FreeMotions, HELD, ModelError, Ta
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
+/// Supports at most of which it is tried whether u and v are exchanged.
+const MOST_EXCHANGED: usize = 10;
+
 /// Refuses a shell that neither supports nor terms of the caller's own hold.
 ///
 /// # Errors
@@ -26,8 +29,25 @@ pub fn check_held(
     }
     match free.basis.ncols() {
         0 => Ok(()),
-        _ => Err(ModelError::FreeMotion { motion: free.body.words(&free.basis) }),
+        _ => Err(ModelError::FreeMotion { motion: free.body.words(&free.basis), instead: held_instead(scene, mesh) }),
     }
+}
+
+/// Supports each of which would hold the shell, with the others, at the place with u and v exchanged, and that place.
+fn held_instead(scene: &Scene, mesh: &Mesh) -> Vec<(String, String)> {
+    let holds = |index: usize| {
+        let mut other = scene.clone();
+        let support = other.supports.get_mut(index)?;
+        let place = support.on.exchanged();
+        if place == support.on {
+            return None;
+        }
+        support.on = place;
+        let unknowns = Unknowns::new(&other, mesh).ok()?;
+        let free = free_motions(Body::around(&unknowns.points), unknowns.supports(), &unknowns.points);
+        (free.basis.ncols() == 0).then(|| (other.supports.swap_remove(index).name, place.to_string()))
+    };
+    (0..scene.supports.len().min(MOST_EXCHANGED)).filter_map(holds).collect()
 }
 
 impl FreeMotions {

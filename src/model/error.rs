@@ -3,6 +3,30 @@
 use crate::model::limits::{MOST_CONTROL_POINTS, SMOOTH};
 use crate::units::significant;
 
+impl ModelError {
+    /// The tables of a scene that the error is about: their kind, and a name where it is one of them; `None` where it is about
+    /// none, or about several kinds.
+    pub fn concerns(&self) -> Option<(&'static str, Option<&str>)> {
+        match self {
+            Self::FreeMotion { .. } | Self::NothingFree { .. } => Some(("support", None)),
+            Self::NotAnEdge { support }
+            | Self::NotASymmetryPlane { support, .. }
+            | Self::NotItsOwnImage { support, .. }
+            | Self::MaterialNotMirrored { support, .. }
+            | Self::SectionShared { support, .. }
+            | Self::Contradiction { support, .. }
+            | Self::NoFreeMotion { support }
+            | Self::TooFewPoints { support, .. }
+            | Self::Unbalanced { support, .. } => Some(("support", Some(support))),
+            Self::NotALine { action } | Self::Overhang { action, .. } | Self::LoadNotMirrored { action, .. } => {
+                Some(("action", Some(action)))
+            }
+            Self::NotASection { probe } => Some(("probe", Some(probe))),
+            _ => None,
+        }
+    }
+}
+
 /// Reasons why a scene cannot be made discrete.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -315,10 +339,15 @@ pub enum ModelError {
         mesh: usize,
     },
     /// The supports leave a rigid motion free.
-    #[error("the supports do not hold the shell: {motion}; add a support, or hold more components")]
+    #[error(
+        "the supports do not hold the shell: {motion}; {}add a support, or hold more components",
+        exchanged(instead)
+    )]
     FreeMotion {
         /// Motion that is free, in words.
         motion: String,
+        /// Supports, each with the place of exchanged u and v, as a scene has it, if all would be held with that.
+        instead: Vec<(String, String)>,
     },
     /// A support holds rigid motions, but none is free.
     #[error(
@@ -410,4 +439,14 @@ pub enum ModelError {
         /// Number of control points.
         count: usize,
     },
+}
+
+/// Places that would hold the shell, in words.
+fn exchanged(instead: &[(String, String)]) -> String {
+    let places: Vec<String> =
+        instead.iter().map(|(support, on)| format!("with on = {on} in support \"{support}\"")).collect();
+    match places.is_empty() {
+        true => String::new(),
+        false => format!("{} they would (are u and v exchanged there?), or ", places.join(", or ")),
+    }
 }

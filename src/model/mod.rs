@@ -86,7 +86,7 @@ pub(crate) use gauss::gauss_points;
 pub use limits::MOST_CONTROL_POINTS;
 pub(crate) use limits::ROUNDING;
 pub(crate) use mirror::Mirror;
-pub use oddity::oddities;
+pub use oddity::{is_driven_by_loads, odd_motion, oddities};
 pub(crate) use parametrize::{line_place, parameters_of};
 pub use placement::Placement;
 pub(crate) use quadrature::PointCounts;

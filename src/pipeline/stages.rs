@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::adapt::{Coarsened, project_displacements};
+use crate::adapt::{Coarsened, Finest, project_displacements};
 use crate::digest::Hash;
 use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_energy};
 use crate::equilibrium::{Configuration, Iterate, Workspace, WorkspaceError};
 use crate::model::{FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, starting_mesh};
 use crate::pipeline::StageError;
 use crate::pipeline::current_mesh::CurrentMesh;
-use crate::pipeline::doubts::{Doubts, doubtful};
+use crate::pipeline::doubts::{Doubts, ReadAt, doubtful};
 use crate::pipeline::evaluation::Evaluation;
 use crate::pipeline::load_drive::LoadDrive;
 use crate::pipeline::path_drive::PathDrive;
@@ -90,6 +90,40 @@ impl Stages {
     /// Where supports or loads do not fit the mesh of the state.
     pub fn remarks(&mut self, state: &State) -> Result<Vec<String>, ModelError> {
         remarks(&self.scene, &state.mesh, self.current.unknowns(&self.scene, &state.mesh)?, &self.own)
+    }
+
+    /// Warnings about the equilibrium that a run ends with, which a run that ends there gives itself.
+    ///
+    /// # Errors
+    /// Where the scene does not fit the mesh of the state, or the mesh not in memory.
+    pub fn warnings_at_end(&mut self, state: &State) -> Result<Vec<Warning>, StageError> {
+        let Self { scene, own, current } = self;
+        let work = current.workspace(scene, own, &state.mesh);
+        let work = work.map_err(|cause| no_workspace(cause, &state.mesh, state.step, Stage::Solve))?;
+        Ok(Doubts { scene, own, work, state }.all(ReadAt::AtEnd))
+    }
+
+    /// How far loads and free strains move the shell at most on the way to the target by linear theory, at its control points, mm;
+    /// `None` where the stiffness of the start has no factor.
+    pub fn linear_motion_mm(&mut self, start: &State) -> Option<f64> {
+        let Self { scene, own, current } = self;
+        let work = current.workspace(scene, own, &start.mesh).ok()?;
+        let kinks = scene.actions.iter().flat_map(|action| action.history.kinks());
+        let mut largest = None;
+        for parameter in kinks.chain([scene.load.target()]) {
+            let motion = work.linear_release(Configuration { parameter, ..Configuration::of(start) }).ok()?.motion_mm();
+            largest = Some(motion.max(largest.unwrap_or(0.0)));
+        }
+        largest
+    }
+
+    /// How far the spans of the starting mesh may be halved; `None` where the scene refines nothing, or the mesh does not fit in
+    /// memory.
+    pub fn finest(&mut self, start: &State) -> Option<Finest> {
+        let Self { scene, own, current } = self;
+        let adapt = scene.adapt.as_ref()?;
+        let work = current.workspace(scene, own, &start.mesh).ok()?;
+        Some(Finest::of(scene, adapt, work.discretization()))
     }
 
     /// Runs a stage. `observer` sees every Newton iterate.

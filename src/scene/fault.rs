@@ -13,6 +13,8 @@ pub(super) struct Fault {
     pub place: TextSpan,
     /// A second place that is part of the problem.
     pub also: Option<TextSpan>,
+    /// Further places, in the same source, that are as much at fault.
+    pub others: Vec<TextSpan>,
     /// Replacements that mend it.
     pub edits: Vec<(TextSpan, String)>,
 }
@@ -20,7 +22,7 @@ pub(super) struct Fault {
 impl Fault {
     /// Creates a fault at a span of text.
     pub fn new(problem: Problem, place: &TextSpan) -> Box<Self> {
-        Box::new(Self { problem, item: None, place: place.clone(), also: None, edits: Vec::new() })
+        Box::new(Self { problem, item: None, place: place.clone(), also: None, others: Vec::new(), edits: Vec::new() })
     }
 
     /// Adds a second span that is part of the problem.

@@ -19,6 +19,7 @@
 //! | `check`, `structure`, `stage_order`, `nearness` | tables to a scene; what must hold between tables, between supports and actions, between stages, between places |
 //! | `problem`, `fault` | what can be wrong, and where |
 //! | `explain`, `render`, `error` | that in words, with the text underlined, as callers see it |
+//! | `refused` | a refusal of later steps, with the tables that it is about |
 //! | `identity`, `difference` | hash and differences of scenes; how a difference is shown |
 //! | `write` | a scene as TOML |
 //! | `help`, `schema` | the help text; a schema for editors |
@@ -53,6 +54,7 @@ mod nurbs;
 mod probes;
 mod problem;
 mod read;
+mod refused;
 mod regions;
 mod render;
 mod schema;
@@ -82,4 +84,5 @@ pub use key_table::{SECTIONS, all_keys};
 pub use keys::{Choice, Form, Key, Kind, Length, Limit, Limits, Presence, Reach, Section, Unit};
 pub use nurbs::SCENE_BYTES_LIMIT;
 pub use problem::{Direction, Problem, StageOrderProblem, SyntaxSlip, ValueType};
+pub use refused::tables_refused;
 pub use schema::json_schema;

@@ -1,6 +1,6 @@
 //! Places that are almost one: what holds or moves two of them differently tears at a gap that no element resolves.
 
-use super::data::{Action, ActionKind, ParametricDirection, Region, Support};
+use super::data::{Action, ActionKind, Region, Support};
 use super::fault::Checked;
 use super::regions::EDGES;
 use super::table::Table;
@@ -56,23 +56,9 @@ fn place_of(kind: &ActionKind) -> Option<Region> {
     }
 }
 
-/// Fractions of u and v that a place has; `None` for one that it runs along.
-fn fractions(on: Region) -> [Option<f64>; 2] {
-    match on {
-        Region::Edge(edge) => {
-            let (direction, at_end) = edge.side();
-            fractions(Region::Line(direction, if at_end { 1.0 } else { 0.0 }))
-        }
-        Region::Line(ParametricDirection::U, fraction) => [Some(fraction), None],
-        Region::Line(ParametricDirection::V, fraction) => [None, Some(fraction)],
-        Region::Point(at) => at.map(Some),
-        Region::Whole => [None; 2],
-    }
-}
-
 /// How far two places are apart that are almost one, as a fraction of a side.
 fn gap(one: Region, other: Region) -> Option<f64> {
-    let [one, other] = [one, other].map(fractions);
+    let [one, other] = [one, other].map(Region::fractions);
     let apart = (0..2).filter_map(|direction| Some((one[direction]? - other[direction]?).abs())).fold(0.0, f64::max);
     (0.0 < apart && apart < APART).then_some(apart)
 }
@@ -80,7 +66,7 @@ fn gap(one: Region, other: Region) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::data::Edge;
+    use crate::scene::data::{Edge, ParametricDirection};
 
     #[test]
     fn places_are_one_or_apart_or_almost_one() {

@@ -31,6 +31,9 @@ fn what_is_wrong<'a>(fault: &'a Fault, sources: &'a [Source], words: &'a Explana
     let source = &sources[fault.place.source];
     let primary = annotation(AnnotationKind::Primary, source, &fault.place, &words.label);
     let mut first = Snippet::source(shown(&source.text)).path(&source.name).annotation(primary);
+    for other in &fault.others {
+        first = first.annotation(annotation(AnnotationKind::Primary, source, other, ""));
+    }
     let mut second = None;
     if let Some(also) = &fault.also {
         let source = &sources[also.source];

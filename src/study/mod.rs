@@ -51,7 +51,7 @@ pub use engine::{EngineError, Workers, in_turn};
 pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;
-pub use forecast::{Forecast, StepCost};
+pub use forecast::{FinestCost, FinestMesh, Forecast, StepCost, hardly_moved_or_thrown_off};
 pub use path::{OnPath, Passed, PathPoint, Snap, equilibria, equilibrium_path, records_on_path, snaps};
 pub use room::{Held, Room};
 pub use speed_up::{Errors, MeshPoint, SpeedUp, error_of_finer, speed_up};

@@ -55,7 +55,7 @@ fn check_says_what_a_scene_is_and_takes() {
         let mut measured = false;
         let is_kept = |line: &&str| {
             if !line.starts_with("             ") {
-                measured = line.starts_with("  memory") || line.starts_with("  load step");
+                measured = ["  memory", "  load step", "  refined"].iter().any(|head| line.starts_with(head));
             }
             !measured
         };
@@ -93,6 +93,23 @@ fn what_looks_odd_is_said_at_the_start_of_a_run() {
     assert!(quiet.err.contains("warning: material.youngs_modulus_mpa") && !quiet.err.contains("smallest radius"));
     let well = place.foldline("run small.toml -o c.mcap --until 0.8").ends(0);
     assert!(!well.err.contains("warning"), "{}", well.err);
+}
+
+#[test]
+fn a_support_that_does_not_hold_is_shown_with_its_lines() {
+    let place = Sandbox::new();
+    place.foldline("new plate").ends(0);
+    let text = String::from_utf8(place.read("plate.toml")).unwrap();
+    place.write("free.toml", text.replace("kind = \"clamped\"", "kind = \"hinged\" "));
+    for command in ["run", "check"] {
+        let refused = place.foldline(&format!("{command} free.toml")).ends(2);
+        refused.says(&[
+            "do not hold the shell: it can turn about an axis along y",
+            "--> free.toml:23",
+            "name = \"root\"",
+        ]);
+    }
+    assert!(!place.file("checkpoints").exists());
 }
 
 #[test]

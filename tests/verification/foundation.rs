@@ -207,7 +207,7 @@ fn a_plate_may_lie_on_it_alone() {
     assert!(matches!(start(alone), ModelError::FreeMotion { .. }));
     let one = refused(0.06, r#"{ on = [0, 0], kind = "fixed", hold = ["x", "y"] }"#);
     assert!(
-        matches!(&one, ModelError::FreeMotion { motion } if motion.contains("turn about an axis along z")),
+        matches!(&one, ModelError::FreeMotion { motion, .. } if motion.contains("turn about an axis along z")),
         "{one}"
     );
     let both = format!(r#"{in_plane}, {{ kind = "rigid-motions", name = "mean" }}"#);

@@ -12,6 +12,7 @@ mod cured_plate;
 mod elastic_foundation;
 mod extreme;
 mod fields;
+mod forecasts;
 mod foundation;
 mod free_strain;
 mod house;

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use foldline::model::{ModelError, Size, oddities};
 use foldline::pipeline::Stages;
-use foldline::scene::{Scene, parse};
+use foldline::scene::{Scene, parse, tables_refused};
+use foldline::study::hardly_moved_or_thrown_off;
 
 const SPRING: &str = "baseline.toml";
 const ROOF: &str = "verification/hinged-roof-12.7.toml";
@@ -13,6 +14,13 @@ const CONE: &str = "verification/cone-pressure.toml";
 const ZONE: &str = "verification/sphere-zone-pressure.toml";
 const NET: &str = "../tests/verification/scenes/net-u-fastest.toml";
 const STRIP: &str = "verification/cantilever-end-shear.toml";
+
+const PLATE: &str = "../src/cli/templates/plate.toml";
+const PANEL: &str = "../src/cli/templates/panel.toml";
+const LIP: &str = "../src/cli/templates/annulus.toml";
+const DOME: &str = "../src/cli/templates/sphere.toml";
+const HALF_CONE: &str = "../src/cli/templates/nurbs.toml";
+const COOLED: &str = "../src/cli/templates/laminate.toml";
 
 /// What was meant, the scene that it is done to, the text that is replaced and what it becomes, and what must be said.
 type Mistake = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static [&'static str]);
@@ -123,7 +131,105 @@ const MISTAKES: &[Mistake] = &[
         &[("\"sqrt-radius-thickness\"", "1e-3"), ("length_limit", "length_limit_mm")],
         &["0.001"],
     ),
+    (
+        "a plate in m",
+        PLATE,
+        &[("= 100.0 ", "= 0.1 "), ("= 40.0 ", "= 0.04 "), ("thickness_mm = 0.5", "thickness_mm = 5e-4")],
+        &["0.1 mm at its longest", "in m"],
+    ),
+    ("the length of a plate in m", PLATE, &[("length_mm = 100.0 ", "length_mm = 0.1 ")], &["0.5 mm", "0.1 mm"]),
+    (
+        "the thickness of a plate in m",
+        PLATE,
+        &[("thickness_mm = 0.5", "thickness_mm = 5e-4")],
+        &["5e−4 mm thick", "in m"],
+    ),
+    (
+        "the thickness of a plate of 2 mm in m",
+        PLATE,
+        &[("thickness_mm = 0.5", "thickness_mm = 2e-3")],
+        &["times its largest extent", "thickness in mm"],
+    ),
+    ("E of a plate in psi", PLATE, &[("70000.0", "10.0e6")], &["youngs_modulus_mpa = 1e7", "kPa"]),
+    (
+        "the density of a plate in kg/mm³",
+        PLATE,
+        &[("poissons_ratio", "density_kg_m3 = 2.7e-6\npoissons_ratio")],
+        &["kg/mm³"],
+    ),
+    ("a force in kN/mm", PLATE, &[("[0.0, 0.0, 0.02]", "[0.0, 0.0, 2e-5]")], &["by linear theory", "of its thickness"]),
+    ("a force in kN", PANEL, &[("-3000.0", "-3.0")], &["by linear theory", "of its thickness"]),
+    ("a force in kN on a roof", ROOF, &[("-3000.0", "-3.0")], &["by linear theory", "of its thickness"]),
+    ("the arc of a panel in radians", PANEL, &[("arc_deg = 12.0 ", "arc_deg = 0.2094 ")], &["12 mm", "9.137 mm"]),
+    (
+        "radius and length of a panel exchanged",
+        PANEL,
+        &[("length_mm = 500.0 ", "length_mm = 2500.0 "), ("radius_mm = 2500.0", "radius_mm = 12.0")],
+        &["12"],
+    ),
+    (
+        "E of a panel in GPa",
+        PANEL,
+        &[("3000.0\npoissons", "3.0\npoissons")],
+        &["youngs_modulus_mpa = 3 ", "write 3000"],
+    ),
+    (
+        "the radii of a plate in m",
+        LIP,
+        &[("inner_radius_mm = 60.0 ", "inner_radius_mm = 0.06 "), ("outer_radius_mm = 100.0", "outer_radius_mm = 0.1")],
+        &["0.3 mm", "0.04"],
+    ),
+    (
+        "the turn of a plate in radians",
+        LIP,
+        &[("arc_deg = 360.0", "arc_deg = 6.2832")],
+        &["6.2832 degrees", "arc_deg = 360.0"],
+    ),
+    (
+        "the radius of a dome in m",
+        DOME,
+        &[("radius_mm = 100.0", "radius_mm = 0.1")],
+        &["1 mm is not thin for a radius of 0.1 mm"],
+    ),
+    ("latitudes of a dome in radians", DOME, &[("[30.0, 80.0]", "[0.52, 1.4]")], &["the range of latitudes is 0.88°"]),
+    ("a pressure on a dome in Pa", DOME, &[("pressure_mpa = -0.1 ", "pressure_mpa = -1e5 ")], &["100000 MPa"]),
+    ("a pressure on a dome in GPa", DOME, &[("pressure_mpa = -0.1 ", "pressure_mpa = -1e-4 ")], &["by linear theory"]),
+    ("half a cone in m", HALF_CONE, &[("__scale__", "1e-3"), ("thickness_mm = 1.0", "thickness_mm = 1e-3")], &["in m"]),
+    ("half a cone in m, its thickness in mm", HALF_CONE, &[("__scale__", "1e-3")], &["the thickness, 1 mm"]),
+    (
+        "a temperature for a change",
+        COOLED,
+        &[("change_k = -5.0", "change_k = 293.15")],
+        &["change_k = 293.15", "20 °C"],
+    ),
+    ("E of plies in Pa", COOLED, &[("181000.0", "181.0e9"), ("10300.0", "10.3e9")], &["1.81e11", "write 181000"]),
+    ("plies at an angle in radians", COOLED, &[("angle_deg = 90.0", "angle_deg = 1.5708")], &["1.5708", "90"]),
+    (
+        "the load on the clamped edge",
+        PLATE,
+        &[("on = \"u-end\"", "on = \"u-start\"")],
+        &["action \"lift\"", "\"v-start\" meant"],
+    ),
+    (
+        "u and v of a probe exchanged",
+        PLATE,
+        &[("on = [1.0, 0.5] ", "on = [0.0, 0.5] ")],
+        &["probe \"tip\"", "support \"root\" keeps at 0", "[0.5, 0.0]"],
+    ),
+    (
+        "a support that leaves a turn free",
+        PLATE,
+        &[("kind = \"clamped\" ", "kind = \"hinged\" ")],
+        &["can turn about an axis along y"],
+    ),
+    ("u and v of a support exchanged", HINGES, &[], &["support \"right\"", "on = [1.0, 0.0]", "are u and v exchanged"]),
+    ("the turn of a section in radians", TURNED, &[], &["is in degrees: in radians that would be 90"]),
 ];
+
+/// A plate hinged along an edge, and held at a corner of that instead of one beyond it.
+const HINGES: &str = "../tests/verification/scenes/hinges-exchanged.toml";
+/// A plate whose edge turns by π/2.
+const TURNED: &str = "../tests/verification/scenes/turned-in-radians.toml";
 
 /// A ply with strengths, the first in Pa.
 const STRONG: &str = "tensile_strength_1_mpa = 1500e6\ncompressive_strength_1_mpa = 1500.0\ntensile_strength_2_mpa = 40.0\n\
@@ -168,7 +274,13 @@ fn with_net(text: &str, change: impl Fn(&[[f64; 3]]) -> Vec<[f64; 3]>) -> String
 }
 
 fn odd(scene: &Scene) -> Result<Vec<String>, ModelError> {
-    Ok(oddities(scene, &Size::of(scene)?))
+    let size = Size::of(scene)?;
+    let mut odd = oddities(scene, &size);
+    let mut stages = Stages::new(scene.clone());
+    if let Ok(start) = stages.start() {
+        odd.extend(hardly_moved_or_thrown_off(&mut stages, &start, &size));
+    }
+    Ok(odd)
 }
 
 /// Everything that is said of a scene before its run, or the refusal.
@@ -253,4 +365,16 @@ fn units_of_its_own_are_said_by_the_scene() {
     let [scene, own] = [text, own].map(|text| parse(&text, "scene.toml").unwrap());
     assert_eq!(scene.hash(), own.hash());
     assert!(own.to_toml().contains("units = \"own\"") && !scene.to_toml().contains("units"));
+}
+
+/// Refusals that follow from the model show the tables that they are about.
+#[test]
+fn supports_that_do_not_hold_are_shown_in_the_scene() {
+    let text = text_of("../tests/verification/scenes/hinges-exchanged.toml");
+    let refusal = Stages::new(parse(&text, "scene.toml").unwrap()).start().unwrap_err();
+    let (kind, name) = refusal.concerns().unwrap();
+    let none: [&str; 0] = [];
+    let error = tables_refused(&text, "scene.toml", &none, kind, name, &refusal.to_string()).unwrap();
+    insta::assert_snapshot!(error.plain());
+    assert!(tables_refused(&text, "scene.toml", &none, "probe", Some("none"), "").is_none());
 }

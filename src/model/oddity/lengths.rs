@@ -13,8 +13,8 @@ const LARGEST_MM: [f64; 2] = [1.0, 1e5];
 const RADIUS_OVER_THICKNESS: [f64; 2] = [10.0, 1e4];
 /// Shorter side over thickness of a plane shell: a film of 1 µm on 100 mm.
 const SIDE_OVER_THICKNESS: f64 = 1e5;
-/// The thinnest films that are made are about this thick, mm.
-const THINNEST_MM: f64 = 5e-4;
+/// The thinnest films that structures are made of are about this thick, mm; a plate of 1 mm in m.
+const THINNEST_MM: f64 = 1e-3;
 /// Least arc, degrees.
 const LEAST_ARC_DEG: f64 = 5.0;
 
@@ -35,8 +35,8 @@ pub(super) fn odd(scene: &Scene, size: &Size) -> Vec<String> {
             shown(largest)
         ));
     }
-    if size.thickness_mm < THINNEST_MM {
-        found.push(format!("the shell is {} mm thick, thinner than any film: is that in m?", shown(size.thickness_mm)));
+    if size.thickness_mm <= THINNEST_MM {
+        found.push(format!("the shell is {} mm thick, which few films are: is that in m?", shown(size.thickness_mm)));
     }
     found.extend(thinness(size));
     found.extend(arcs(&scene.geometry));

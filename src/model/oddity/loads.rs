@@ -10,6 +10,8 @@ use crate::units::significant;
 const MOST_STRAIN: f64 = 0.05;
 /// Acceleration from which on weight is odd, m/s²: a hundred times that of the earth.
 const MOST_ACCELERATION: f64 = 1000.0;
+/// 0 °C, K.
+const ZERO_CELSIUS_K: f64 = 273.15;
 /// Load steps from which on an increment is odd.
 const MOST_STEPS: f64 = 5000.0;
 
@@ -29,6 +31,15 @@ fn of_action(scene: &Scene, size: &Size, Action { name, kind, history }: &Action
             )
         });
     }
+    if let ActionKind::Temperature { change_k } = kind
+        && is_absolute(*change_k)
+    {
+        return Some(format!(
+            "action \"{name}\" has {}, which is {} °C: a change of temperature is meant, not a temperature",
+            key("change_k", *change_k),
+            significant(change_k - ZERO_CELSIUS_K, 4)
+        ));
+    }
     let (load, unit, strain) = strain_of(scene, size, kind)?;
     let strain = strain * largest_factor(history, scene.load.target());
     (strain > MOST_STRAIN).then(|| {
@@ -38,6 +49,12 @@ fn of_action(scene: &Scene, size: &Size, Action { name, kind, history }: &Action
             significant(100.0 * strain, 2)
         )
     })
+}
+
+/// Whether a change of temperature is a whole number of degrees Celsius above absolute zero.
+fn is_absolute(change_k: f64) -> bool {
+    let celsius = change_k - ZERO_CELSIUS_K;
+    (celsius - celsius.round()).abs() < 1e-6 && celsius > -ZERO_CELSIUS_K
 }
 
 /// Size of a load with its unit, and the membrane strain that it causes if nothing but the membrane carries it: a force per length
@@ -65,6 +82,20 @@ fn strain_of(scene: &Scene, size: &Size, kind: &ActionKind) -> Option<(f64, &'st
             (change_k.abs(), "K", strain * change_k.abs())
         }
         _ => return None,
+    })
+}
+
+/// The largest strain that one of the actions causes on the way to the target; `None` where what one of them does is not
+/// estimated.
+pub(super) fn largest_strain(scene: &Scene, size: &Size) -> Option<f64> {
+    scene.actions.iter().try_fold(0.0, |largest, Action { kind, history, .. }| {
+        let strain = match kind {
+            ActionKind::EdgeMoment { moment_n, .. } => {
+                6.0 * moment_n.abs() / (size.moduli_mpa[1] * size.thickness_mm.powi(2))
+            }
+            _ => strain_of(scene, size, kind)?.2,
+        };
+        Some(f64::max(largest, strain * largest_factor(history, scene.load.target())))
     })
 }
 

@@ -5,8 +5,10 @@ use crate::model::size::laws;
 use crate::scene::{Material, OrthotropicLaw};
 use crate::units::significant;
 
-/// Young's moduli, MPa: from soft plastics to a tenfold diamond.
-const MODULUS_MPA: [f64; 2] = [1e3, 1e7];
+/// Young's moduli, MPa: from soft plastics to beyond diamond, 1.2e6.
+const MODULUS_MPA: [f64; 2] = [1e3, 2e6];
+/// From here on a modulus is one in Pa, below in kPa.
+const PASCAL: f64 = 1e9;
 /// Densities, kg/m³: from a light foam to osmium.
 const DENSITY_KG_M3: [f64; 2] = [10.0, 2.5e4];
 /// Shear modulus over the least and the largest Young's modulus.
@@ -40,7 +42,11 @@ fn odd_modulus(layer: &str, moduli: &[f64]) -> Option<String> {
         1 => "youngs_modulus_mpa",
         _ => ["youngs_modulus_1_mpa", "youngs_modulus_2_mpa"][index],
     };
-    let (unit, factor) = if *modulus < least { ("GPa", 1e3) } else { ("Pa", 1e-6) };
+    let (unit, factor) = match *modulus {
+        modulus if modulus < least => ("GPa", 1e3),
+        modulus if modulus < PASCAL => ("kPa", 1e-3),
+        _ => ("Pa", 1e-6),
+    };
     let meant = significant(factor * modulus, 6);
     Some(format!("{layer}{} is in MPa: if {unit} were meant, write {meant}", key(name, *modulus)))
 }
@@ -82,7 +88,8 @@ fn odd_density(material: &Material) -> Option<String> {
     let [least, most] = DENSITY_KG_M3;
     let density = densities.into_iter().find(|density| !(least..=most).contains(density))?;
     let hint = match density {
-        density if density < 1e-3 => "t/mm³ times 1e12 are kg/m³",
+        density if density < 1e-7 => "t/mm³ times 1e12 are kg/m³",
+        density if density < 1e-3 => "kg/mm³ times 1e9 are kg/m³",
         density if density < least => "g/cm³ times 1000 are kg/m³",
         _ => "nothing is so heavy",
     };

@@ -5,8 +5,15 @@
 //! | `lengths` | extents, thickness, radii, arcs |
 //! | `material` | moduli, strengths, density, angles of plies |
 //! | `loads` | loads over stiffness, acceleration, numbers of load steps |
+//! | `motion` | how far loads move the shell; turns of supports |
+//! | `places` | loads and probes where the shell is held |
 //! | `key` | a key with its value, in words |
 //! | `elements` | shape of elements, and how small refinement makes them |
+//!
+//! What cannot be told from a scene that is meant as it stands is not said: u and v exchanged in the place of a support that
+//! still holds the shell, or of a load that still moves it (a plate may be clamped along its long side); loads that are a
+//! thousandth of what was meant where they are one load step, which may be small on purpose, or where they still move the shell by
+//! more than a twentieth of its thickness; units that differ by a factor of ten, such as bar and MPa; angles from 5 to 6.28.
 //!
 //! A scene whose numbers are in units of its own says so (`units = "own"` in `[output]`), and none of them is odd.
 
@@ -15,6 +22,10 @@ mod key;
 mod lengths;
 mod loads;
 mod material;
+mod motion;
+mod places;
+
+pub use motion::{is_driven_by_loads, odd_motion};
 
 use crate::model::size::Size;
 use crate::scene::{NumbersIn, Scene};
@@ -30,6 +41,8 @@ pub fn oddities(scene: &Scene, size: &Size) -> Vec<String> {
         material::odd(&scene.material),
         loads::odd(scene, size),
         elements::odd(scene, size),
+        motion::odd_rotations(scene).into_iter().collect(),
+        places::odd(scene),
     ];
     found.into_iter().flatten().collect()
 }

@@ -1,5 +1,7 @@
 //! Where and how the shell is held, and what acts on it.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 /// A parametric direction of the surface.
@@ -61,6 +63,52 @@ pub enum Region {
     Line(ParametricDirection, f64),
     /// The whole surface.
     Whole,
+}
+
+impl Region {
+    /// Fractions of u and v that a place has; `None` for one that it runs along.
+    pub fn fractions(self) -> [Option<f64>; 2] {
+        match self {
+            Region::Edge(edge) => {
+                let (direction, at_end) = edge.side();
+                Region::Line(direction, if at_end { 1.0 } else { 0.0 }).fractions()
+            }
+            Region::Line(ParametricDirection::U, fraction) => [Some(fraction), None],
+            Region::Line(ParametricDirection::V, fraction) => [None, Some(fraction)],
+            Region::Point(at) => at.map(Some),
+            Region::Whole => [None; 2],
+        }
+    }
+
+    /// The place with u and v exchanged.
+    pub fn exchanged(self) -> Self {
+        match self {
+            Region::Edge(Edge::UStart) => Region::Edge(Edge::VStart),
+            Region::Edge(Edge::UEnd) => Region::Edge(Edge::VEnd),
+            Region::Edge(Edge::VStart) => Region::Edge(Edge::UStart),
+            Region::Edge(Edge::VEnd) => Region::Edge(Edge::UEnd),
+            Region::Line(ParametricDirection::U, fraction) => Region::Line(ParametricDirection::V, fraction),
+            Region::Line(ParametricDirection::V, fraction) => Region::Line(ParametricDirection::U, fraction),
+            Region::Point([u, v]) => Region::Point([v, u]),
+            Region::Whole => Region::Whole,
+        }
+    }
+}
+
+/// As a scene has it as the value of `on`.
+impl fmt::Display for Region {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Region::Edge(Edge::UStart) => write!(f, "\"u-start\""),
+            Region::Edge(Edge::UEnd) => write!(f, "\"u-end\""),
+            Region::Edge(Edge::VStart) => write!(f, "\"v-start\""),
+            Region::Edge(Edge::VEnd) => write!(f, "\"v-end\""),
+            Region::Line(ParametricDirection::U, fraction) => write!(f, "\"u={fraction}\""),
+            Region::Line(ParametricDirection::V, fraction) => write!(f, "\"v={fraction}\""),
+            Region::Point([u, v]) => write!(f, "[{u:?}, {v:?}]"),
+            Region::Whole => write!(f, "the whole surface"),
+        }
+    }
 }
 
 /// A support: a region of the shell that is held or moved.
