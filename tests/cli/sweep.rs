@@ -18,8 +18,10 @@ fn place(axes: &str) -> Sandbox {
 
 #[test]
 fn a_scene_that_is_wrong_and_a_run_that_stops_are_rows() {
-    // At an arc of 400° there is no section; 45 load steps of 0.01° are more than the solver may take iterations for.
-    let place = place("outputs = [\"last.moment_n_mm\", \"theory_peak_n_mm\"]\n[[axis]]\nkey = \"geometry.arc_deg\"\nvalues = [110, 400, 20]\n");
+    // At an arc of 400° there is no section.
+    let place = place(
+        "outputs = [\"last.moment_n_mm\", \"theory_peak_n_mm\"]\n[[axis]]\nkey = \"geometry.arc_deg\"\nvalues = [110, 400, 20]\n",
+    );
     let said = place.foldline("sweep run s.toml").ends(0);
     assert!(said.err.contains("arc_deg"), "{}", said.err);
     let rows = rows(&place.foldline("sweep status s.toml --json").ends(0).out);
@@ -33,7 +35,9 @@ fn a_scene_that_is_wrong_and_a_run_that_stops_are_rows() {
 
 #[test]
 fn a_run_that_stops_keeps_its_log_and_its_reason() {
-    let place = place("[[axis]]\nkey = \"solver.most_iterations\"\nvalues = [50, 1]\n");
+    let place = place(
+        "[[axis]]\nkeys = [\"solver.max_iterations\", \"solver.least_increment_deg\"]\nvalues = [[50, 0.1], [1, 1.9]]\n",
+    );
     place.foldline("sweep run s.toml").ends(0);
     let found = rows(&place.foldline("sweep status s.toml --json --where ending=failed").ends(0).out);
     let [failed] = &found[..] else { panic!("{found:?}") };
@@ -59,20 +63,28 @@ fn where_nothing_can_be_run_nothing_is_begun() {
 fn another_sweep_is_not_written_over() {
     let place = place("[[axis]]\nkey = \"geometry.radius_mm\"\nvalues = [9]\n");
     place.foldline("sweep run s.toml --folder f").ends(0);
-    place.write("other.toml", "title = \"other\"\nscene = \"small.toml\"\n[[axis]]\nkey = \"geometry.radius_mm\"\nvalues = [9]\n");
+    place.write(
+        "other.toml",
+        "title = \"other\"\nscene = \"small.toml\"\n[[axis]]\nkey = \"geometry.radius_mm\"\nvalues = [9]\n",
+    );
     place.foldline("sweep run other.toml --folder f").ends(2).says(&["holds the sweep `t` of s.toml", "--folder"]);
 }
 
 #[test]
 fn rows_are_chosen_and_written() {
-    let place = place("outputs = [\"last.moment_n_mm\"]\n[[axis]]\nkey = \"geometry.radius_mm\"\nfrom = 9\nto = 12\ncount = 4\n");
+    let place = place(
+        "outputs = [\"last.moment_n_mm\"]\n[[axis]]\nkey = \"geometry.radius_mm\"\nfrom = 9\nto = 12\ncount = 4\n",
+    );
     place.foldline("sweep run s.toml --json").ends(0);
     let all = rows(&place.foldline("sweep status s.toml --json").ends(0).out);
     let moments: Vec<f64> = all.iter().map(|row| row["last.moment_n_mm"].as_f64().unwrap()).collect();
     assert!(moments.is_sorted() && moments.len() == 4, "a larger section is stiffer: {moments:?}");
     let some = rows(&place.foldline("sweep status s.toml --json --where radius_mm>=11").ends(0).out);
     assert_eq!(some, all[2..]);
-    place.foldline("sweep status s.toml --where radius>3").ends(2).says(&["no column is called `radius`", "geometry.radius_mm"]);
+    place
+        .foldline("sweep status s.toml --where radius>3")
+        .ends(2)
+        .says(&["no column is called `radius`", "geometry.radius_mm"]);
     place.foldline("sweep status s.toml --where radius_mm").ends(2).says(&["a comparison"]);
     place.foldline("sweep status s.toml --csv t.csv").ends(0).says(&["4 rows: 4 done"]);
     let csv = String::from_utf8(place.read("t.csv")).unwrap();
@@ -100,9 +112,14 @@ fn three_kinds_go_through_one_engine() {
     for row in rows(&place.foldline("sweep status path --json").ends(0).out) {
         assert!(row["last.path_length_mm"].as_f64().unwrap() > 0.0, "{row}");
     }
+    let small = include_str!("../restart/small.toml");
+    let (before, behind) = small.split_once("[adapt]").unwrap();
+    assert!(behind.contains("[pipeline]"));
+    let uniform = format!("{before}[pipeline]\nstages = [\"solve\"]\n");
+    place.write("uniform.toml", uniform);
     place.write(
         "r.toml",
-        "title = \"error\"\nscene = \"small.toml\"\nsettings = [\"load.rotation_deg=4\", \"pipeline.stages=['solve']\"]\n\
+        "title = \"error\"\nscene = \"uniform.toml\"\nsettings = [\"load.rotation_deg=4\"]\n\
          outputs = [\"error_before\", \"error_after\"]\n[reference]\nsettings = [\"mesh.elements=[24, 8]\"]\n\
          [[axis]]\nkey = \"mesh.elements\"\nvalues = [[4, 4], [8, 4], [16, 8]]\n",
     );

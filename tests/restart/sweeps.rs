@@ -102,13 +102,14 @@ fn a_finished_sweep_runs_nothing_again_and_reads_what_is_newly_asked_for() {
     place.foldline(COMMAND).ends(0);
     let made = logs(&place);
     place.foldline(COMMAND).ends(0).says(&["6 of them on record"]);
-    place.write("sweep.toml", SWEEP.replace("\"snap_before\"", "\"snap_after\", \"theory_peak_n_mm\""));
+    let asked = SWEEP.replace("\"snap_before\"", "\"snap_after\", \"theory_peak_n_mm\"");
+    place.write("sweep.toml", &asked);
     place.foldline(COMMAND).ends(0);
     assert_eq!(logs(&place), made, "the logs tell");
     let rows = table(&place);
     assert!(rows.iter().all(|row| row["theory_peak_n_mm"].as_f64().is_some_and(|peak| peak > 100.0)), "{rows:?}");
     // More values: only those are run.
-    place.write("sweep.toml", SWEEP.replace("[9, 10, 11]", "[9, 10, 11, 12]"));
+    place.write("sweep.toml", asked.replace("[9, 10, 11]", "[9, 10, 11, 12]"));
     place.foldline(COMMAND).ends(0).says(&["8 tasks, 6 of them on record"]);
     let now = logs(&place);
     assert_eq!((now.len(), made.iter().all(|(name, bytes)| now[name] == *bytes)), (8, true));
@@ -118,7 +119,13 @@ fn a_finished_sweep_runs_nothing_again_and_reads_what_is_newly_asked_for() {
 #[test]
 fn a_farther_target_is_another_task() {
     let place = place();
-    place.write("sweep.toml", SWEEP.replace("load.rotation_deg=14", "load.increment_deg=2").replace("geometry.radius_mm", "load.rotation_deg").replace("[9, 10, 11]", "[4, 8]"));
+    place.write(
+        "sweep.toml",
+        SWEEP
+            .replace("load.rotation_deg=14", "load.increment_deg=2")
+            .replace("geometry.radius_mm", "load.rotation_deg")
+            .replace("[9, 10, 11]", "[4, 8]"),
+    );
     place.foldline(COMMAND).ends(0);
     let energies: Vec<f64> = table(&place).iter().map(|row| row["last.strain_energy_n_mm"].as_f64().unwrap()).collect();
     assert!(energies[2] > 2.0 * energies[0] && logs(&place).len() == 4, "{energies:?}");
@@ -129,8 +136,7 @@ fn an_interrupted_sweep_says_how_it_continues() {
     let place = place();
     let mut child = place.command(COMMAND).stderr(std::process::Stdio::piped()).spawn().unwrap();
     std::thread::sleep(Duration::from_millis(150));
-    let id = rustix::process::Pid::from_child(&child);
-    rustix::process::kill_process(id, rustix::process::Signal::TERM).unwrap();
+    std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     let code = child.wait().unwrap().code();
     assert!(matches!(code, Some(75 | 0)), "{code:?}");
     place.foldline("sweep resume f").ends(0);
