@@ -36,7 +36,7 @@ fn a_scene_that_is_wrong_and_a_run_that_stops_are_rows() {
 #[test]
 fn a_run_that_stops_keeps_its_log_and_its_reason() {
     let place = place(
-        "[[axis]]\nkeys = [\"solver.max_iterations\", \"solver.least_increment_deg\"]\nvalues = [[50, 0.1], [1, 1.9]]\n",
+        "[[axis]]\nkeys = [\"solver.max_iterations\", \"solver.least_increment_deg\", \"solver.snap_tolerance_deg\"]\nvalues = [[50, 0.1, 0.1], [1, 1.9, 2.0]]\n",
     );
     place.foldline("sweep run s.toml").ends(0);
     let found = rows(&place.foldline("sweep status s.toml --json --where ending=failed").ends(0).out);
