@@ -166,13 +166,18 @@ pub(super) enum Failure {
     SweepLeft { left: usize, folder: PathBuf },
     #[error("task {number} of the sweep is not done, for a reason that is none of its own")]
     SweepTask { number: usize, source: Box<TaskError> },
-    #[error("task {number} was interrupted after the stage in hand; it goes on in the next turn of its job, or with: {}", way_on(folder))]
+    #[error(
+        "task {number} was interrupted after the stage in hand; it goes on in the next turn of its job, or with: {}",
+        way_on(folder)
+    )]
     TaskInterrupted { number: usize, folder: PathBuf },
     #[error("task {number} is in the hands of another process, which has not ended it in a minute")]
     TaskHeld { number: usize, source: Box<TaskError> },
     #[error("{} left; submit what is left with: {}", count(*left, "task"), way_on(folder))]
     CollectedLess { left: usize, folder: PathBuf },
-    #[error("there is no `{program}` here: submit where Slurm's programs are, or write the scripts alone with --dry-run")]
+    #[error(
+        "there is no `{program}` here: submit where Slurm's programs are, or write the scripts alone with --dry-run"
+    )]
     NoSlurm { program: &'static str },
     #[error("`{program}` cannot be started")]
     SlurmNotAsked { program: &'static str, source: io::Error },

@@ -224,7 +224,10 @@ pub(super) fn queue_line(folder: &Folder) -> Result<Option<String>, Failure> {
     let Ok(queue) = queued(&jobs) else {
         let named: Vec<String> = jobs.iter().map(u64::to_string).collect();
         let (jobs, verb) = if named.len() == 1 { ("job", "was") } else { ("jobs", "were") };
-        return Ok(Some(format!("Slurm: {jobs} {} {verb} submitted; it cannot be asked from here\n", named.join(", "))));
+        return Ok(Some(format!(
+            "Slurm: {jobs} {} {verb} submitted; it cannot be asked from here\n",
+            named.join(", ")
+        )));
     };
     let elements = || queue.iter().filter(|one| one.element.is_some());
     let waiting = elements().filter(|one| one.waits()).count();

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use super::failure::{EXIT_CODES, Failure};
+use super::failure::Failure;
 use super::output::{eprint, path_in_line, print};
 use super::session::{use_threads, watch_signals_that_repeat};
 use super::slurm::OwnJob;
@@ -30,9 +30,18 @@ const LAST_S: u64 = 8;
 /// Turns of a job that may be spent on waiting for another process before that is a failure.
 const MOST_TURNS: u32 = 100;
 
+/// Below the options of `sweep task`.
+const TASK_EXIT_CODES: &str = "\
+Exit codes:
+   0  on record: done, failed or refused
+   1  not on record, for a reason that is none of its own, such as a full disk
+   2  wrong arguments, or no such sweep or task
+  75  interrupted after the stage in hand, or in the hands of another process for a minute; the
+      same command continues, as a job of Slurm does by itself at the end of its time";
+
 /// Do one task of a sweep, or some of a list, as a job of a cluster does; what is on record is not done again
 #[derive(Args, Debug)]
-#[command(after_help = EXIT_CODES)]
+#[command(after_help = TASK_EXIT_CODES)]
 pub(super) struct TaskArguments {
     /// Folder of the sweep
     folder: PathBuf,
@@ -79,8 +88,7 @@ impl TaskArguments {
     fn chosen<'t>(&self, folder: &Folder, tasks: &'t [Task]) -> Result<Vec<&'t Task>, Failure> {
         let Some(list) = &self.list else {
             let number = self.number.unwrap_or(0);
-            let no_such =
-                || SweepError::NoSuchTask { folder: folder.path().to_path_buf(), count: tasks.len(), number };
+            let no_such = || SweepError::NoSuchTask { folder: folder.path().to_path_buf(), count: tasks.len(), number };
             return Ok(vec![number.checked_sub(1).and_then(|index| tasks.get(index)).ok_or_else(no_such)?]);
         };
         let text = fs::read_to_string(list).map_err(|source| Failure::Read { path: list.clone(), source })?;
@@ -114,7 +122,8 @@ struct NextTurn {
 impl Turn {
     /// Begins to watch the time.
     fn begin(raised: Arc<AtomicBool>) -> Self {
-        let next = NextTurn { job: OwnJob::of_environment(), progress: AtomicUsize::new(0), is_asked_for: false.into() };
+        let next =
+            NextTurn { job: OwnJob::of_environment(), progress: AtomicUsize::new(0), is_asked_for: false.into() };
         let turn = Self { raised, next: Arc::new(next) };
         if turn.next.job.is_some() {
             let (raised, next) = (turn.raised.clone(), turn.next.clone());
@@ -230,7 +239,12 @@ impl CollectArguments {
         let table = Table { head: folder.head()?, rows: folder.gather()? };
         let csv = folder.keep_csv(&table.to_csv())?;
         let left = table.rows.iter().filter(|row| row.record.is_none()).count();
-        print(&format!("{} of {} → {}\n", table.rows.len() - left, count(table.rows.len(), "row"), path_in_line(&csv)))?;
+        print(&format!(
+            "{} of {} → {}\n",
+            table.rows.len() - left,
+            count(table.rows.len(), "row"),
+            path_in_line(&csv)
+        ))?;
         if left > 0 { Err(Failure::CollectedLess { left, folder: self.folder }) } else { Ok(()) }
     }
 }

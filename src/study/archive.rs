@@ -14,7 +14,9 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::history::{BasisError, basis};
-use crate::journal::{Completeness, JournalWriter, LockError, Log, Manifest, ReadError, Resume, ResumeError, WriteError};
+use crate::journal::{
+    Completeness, JournalWriter, LockError, Log, Manifest, ReadError, Resume, ResumeError, WriteError,
+};
 use crate::model::ModelError;
 use crate::pipeline::{Ending, Run, RunError, Stages};
 use crate::record::{NUMERICS_REVISION, Record, Sink, SinkError};

@@ -88,7 +88,10 @@ impl Script<'_> {
         Ok(format!(
             "{head}\n# The shell gives way to the program, so that Slurm's signals reach it.\n\
              exec {} sweep task {} --list {} \\\n    --from $(( (SLURM_ARRAY_TASK_ID - 1) * {per_element} + 1 )) --count {per_element} --threads {}\n",
-            program?, folder?, list?, self.options.threads.max(1)
+            program?,
+            folder?,
+            list?,
+            self.options.threads.max(1)
         ))
     }
 
@@ -205,7 +208,8 @@ pub fn time_left(printed: &str) -> Option<u64> {
         return None;
     }
     // [days-]hours:minutes:seconds, of which the first ones may be missing.
-    let (days, clock) = left.split_once('-').map_or((Some(0_u64), left), |(days, clock)| (days.parse::<u64>().ok(), clock));
+    let (days, clock) =
+        left.split_once('-').map_or((Some(0_u64), left), |(days, clock)| (days.parse::<u64>().ok(), clock));
     let parts = clock.split(':').map(|part| part.parse::<u64>().ok());
     let seconds = parts.reduce(|sum, part| sum?.checked_mul(60)?.checked_add(part?)).flatten()?;
     seconds.checked_add(days?.checked_mul(86_400)?)

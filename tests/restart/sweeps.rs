@@ -118,7 +118,13 @@ fn a_finished_sweep_runs_nothing_again_and_reads_what_is_newly_asked_for() {
 #[test]
 fn a_farther_target_is_another_task() {
     let place = place();
-    place.write("sweep.toml", SWEEP.replace("load.rotation_deg=14", "load.increment_deg=2").replace("geometry.radius_mm", "load.rotation_deg").replace("[9, 10, 11]", "[4, 8]"));
+    place.write(
+        "sweep.toml",
+        SWEEP
+            .replace("load.rotation_deg=14", "load.increment_deg=2")
+            .replace("geometry.radius_mm", "load.rotation_deg")
+            .replace("[9, 10, 11]", "[4, 8]"),
+    );
     place.foldline(COMMAND).ends(0);
     let energies: Vec<f64> = table(&place).iter().map(|row| row["last.strain_energy_n_mm"].as_f64().unwrap()).collect();
     assert!(energies[2] > 2.0 * energies[0] && logs(&place).len() == 4, "{energies:?}");
@@ -135,4 +141,36 @@ fn an_interrupted_sweep_says_how_it_continues() {
     assert!(matches!(code, Some(75 | 0)), "{code:?}");
     place.foldline("sweep resume f").ends(0);
     assert!(table(&place).iter().all(|row| row["ending"] == "done"));
+}
+
+/// Slurm may send a signal again and again: the stage in hand is done, and the log ends well. What is held by another process is waited for.
+#[cfg(unix)]
+#[test]
+fn a_task_outlives_repeated_signals_and_waits_for_a_log_that_is_held() {
+    let place = place();
+    place.foldline("sweep run sweep.toml --folder f --slurm --dry-run").ends(0);
+    let command = "sweep task f 1";
+    let mut child = place.command(command).spawn().unwrap();
+    let id = rustix::process::Pid::from_child(&child);
+    std::thread::sleep(Duration::from_millis(60));
+    let code = loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            break status.code();
+        }
+        rustix::process::kill_process(id, rustix::process::Signal::TERM).unwrap();
+        std::thread::sleep(Duration::from_millis(1));
+    };
+    assert!(matches!(code, Some(75 | 0)), "{code:?}");
+    let name = logs(&place).into_keys().next();
+    if let Some(name) = name {
+        place.foldline(&format!("verify f/logs/{name}")).ends(0);
+        let held = foldline::journal::LogLock::take(&place.file(&format!("f/logs/{name}"))).unwrap();
+        let mut child = place.command(command).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(500));
+        assert!(code == Some(0) || child.try_wait().unwrap().is_none(), "it waits");
+        drop(held);
+        assert!(child.wait().unwrap().success());
+    }
+    place.foldline(command).ends(0);
+    assert_eq!(table(&place).iter().filter(|row| row["ending"] == "done").count(), 1);
 }

@@ -69,6 +69,14 @@ def processes(folder):
     return found
 
 
+def environment(number):
+    try:
+        words = Path(f"/proc/{number}/environ").read_bytes().decode(errors="replace").split("\0")
+    except OSError:
+        return {}
+    return dict(word.split("=", 1) for word in words if "=" in word)
+
+
 class Watch:
     """Logs of tasks that are on record: they are not touched again."""
 
@@ -95,12 +103,11 @@ class Disturbance:
     def __init__(self, folder):
         self.folder = folder
         self.counts = {"kills": 0, "terms": 0, "requeues": 0, "preemptions": 0, "lost nodes": 0}
-        self.node_is_lost_until = None
+        self.node_is_lost_until, self.stopped, self.twice = None, [], 0
 
     def kill(self, _):
-        for number in RANDOM.sample(processes(self.folder), 1):
-            os.kill(number, signal.SIGKILL)
-            self.counts["kills"] += 1
+        os.kill(RANDOM.choice([number for number in processes(self.folder) if number not in self.stopped]), signal.SIGKILL)
+        self.counts["kills"] += 1
 
     def term(self, running):
         job, element, _, _ = RANDOM.choice(running)
@@ -119,15 +126,37 @@ class Disturbance:
         self.counts["preemptions"] += 1
 
     def lose_node(self):
-        """The daemon of a node dies, its tasks go on; Slurm gives them to the other node, too."""
+        """The daemon of a node dies and its tasks hang; Slurm gives them to the other node, too."""
         os.kill(int((LAB / "slurmd-n2.pid").read_text()), signal.SIGKILL)
-        self.node_is_lost_until = time.monotonic() + 25
+        for number in processes(self.folder):
+            if environment(number).get("SLURMD_NODENAME") == "n2":
+                os.kill(number, signal.SIGSTOP)
+                self.stopped.append(number)
+        self.node_is_lost_until = time.monotonic() + 60
         self.counts["lost nodes"] += 1
 
     def find_node(self, now=False):
-        if self.node_is_lost_until and (now or time.monotonic() > self.node_is_lost_until):
+        """Once their second processes are there, the first ones go on, beside those; then the node is back."""
+        if not self.node_is_lost_until:
+            return
+        names = ("SLURM_ARRAY_JOB_ID", "SLURM_ARRAY_TASK_ID")
+        elements = [tuple(environment(number).get(name) for name in names) for number in processes(self.folder)]
+        twice = len(elements) - len(set(elements))
+        self.twice = max(self.twice, twice)
+        if now or twice == len(self.stopped) or time.monotonic() > self.node_is_lost_until:
             self.node_is_lost_until = None
+            time.sleep(2)
+            self.go_on()
+            time.sleep(3)
             run("slurmd", "-f", LAB / "slurm.conf", "-N", "n2")
+
+    def go_on(self):
+        for number in self.stopped:
+            try:
+                os.kill(number, signal.SIGCONT)
+            except ProcessLookupError:
+                pass
+        self.stopped = []
 
     def once(self):
         running = [one for one in queue() if one[2] == "RUNNING" and one[3] == "low" and one[1].isdigit()]
@@ -135,7 +164,7 @@ class Disturbance:
             actions = [self.kill, self.kill, self.term, self.requeue, self.preempt]
             try:
                 RANDOM.choice(actions)(running)
-            except (ValueError, ProcessLookupError):
+            except (IndexError, ProcessLookupError):
                 pass  # It has ended meanwhile.
         self.find_node()
 
@@ -168,7 +197,7 @@ def disturbed(folder, tasks, limit_s):
         if not [one for one in queue() if one[3] == "low"] and not all_on_record(folder, tasks):
             foldline("sweep", "resume", folder, "--slurm", "--partition=low", "--time=00:10:00", "--memory=100")
             submissions += 1
-        time.sleep(RANDOM.uniform(0.1, 0.6))
+        time.sleep(RANDOM.uniform(0.05, 0.3))
     disturbance.find_node(now=True)
     while [one for one in queue() if one[3] == "low"]:
         watch.look()
@@ -176,6 +205,9 @@ def disturbed(folder, tasks, limit_s):
             sys.exit(f"the queue is not empty after {limit_s} s: {queue()}")
         time.sleep(0.3)
     assert not watch.touched(), f"run again after their end: {watch.touched()}"
+    if disturbance.counts["lost nodes"]:
+        assert disturbance.twice, "no task of the lost node was begun again beside its first process"
+        disturbance.counts["processes beside each other"] = disturbance.twice
     return disturbance.counts | {"submissions": submissions, "seconds": round(time.monotonic() - begin, 1)}
 
 
