@@ -172,6 +172,25 @@ pub(super) enum Failure {
     SweepInterrupted { folder: PathBuf },
     #[error("{} left, for reasons that are none of their own; continue with: foldline sweep resume {}", count(*left, "task"), folder.display())]
     SweepLeft { left: usize, folder: PathBuf },
+    #[error("task {number} of the sweep is not done, for a reason that is none of its own")]
+    SweepTask { number: usize, source: Box<TaskError> },
+    #[error(
+        "task {number} was interrupted after the stage in hand; it goes on in the next turn of its job, or with: {}",
+        way_on(folder)
+    )]
+    TaskInterrupted { number: usize, folder: PathBuf },
+    #[error("task {number} is in the hands of another process, which has not ended it in a minute")]
+    TaskHeld { number: usize, source: Box<TaskError> },
+    #[error("{} left; submit what is left with: {}", count(*left, "task"), way_on(folder))]
+    CollectedLess { left: usize, folder: PathBuf },
+    #[error(
+        "there is no `{program}` here: submit where Slurm's programs are, or write the scripts alone with --dry-run"
+    )]
+    NoSlurm { program: &'static str },
+    #[error("`{program}` cannot be started")]
+    SlurmNotAsked { program: &'static str, source: io::Error },
+    #[error("Slurm refused `{command}`: {}", if said.is_empty() { "it gave no reason" } else { said })]
+    SlurmRefused { command: String, said: String },
     #[error("the stability of stage {index} of {} cannot be found", log.display())]
     Stability { log: PathBuf, index: usize, source: Box<StabilityError> },
     #[error("{}; there is {}", none_chosen(filter.as_deref(), folder), if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
@@ -214,6 +233,7 @@ impl Failure {
             | Failure::FieldsForViewers { .. }
             | Failure::TimesOfNoViewer
             | Failure::NoSweep { .. }
+            | Failure::NoSlurm { .. }
             | Failure::NoSuchScene { .. } => 2,
             Failure::Sweep(error) if !matches!(error, SweepError::Write { .. }) => 2,
             #[cfg(not(feature = "parquet"))]
@@ -236,7 +256,11 @@ impl Failure {
             {
                 2
             }
-            Failure::Interrupted { .. } | Failure::StudyInterrupted | Failure::SweepInterrupted { .. } => INTERRUPTED,
+            Failure::Interrupted { .. }
+            | Failure::StudyInterrupted
+            | Failure::SweepInterrupted { .. }
+            | Failure::TaskInterrupted { .. }
+            | Failure::TaskHeld { .. } => INTERRUPTED,
             _ => 1,
         }
     }
@@ -270,6 +294,11 @@ fn none_chosen(filter: Option<&str>, folder: &std::path::Path) -> String {
         Some(filter) => format!("no scene in {} has `{filter}` in its name", folder.display()),
         None => format!("no scene in {}", folder.display()),
     }
+}
+
+/// How a sweep goes on that was submitted to Slurm.
+fn way_on(folder: &std::path::Path) -> String {
+    format!("foldline sweep resume {} --slurm", folder.display())
 }
 
 fn known_steps(known: Option<(u64, u64)>) -> String {

@@ -16,6 +16,7 @@
 //! | `recover`, `thin` | a log written again |
 //! | `bench`, `converge`, `study`, `speed_ups`, `extremes` | suites, and how fast and exact runs are |
 //! | `sweep`, `sweep_progress`, `sweep_table` | tables over designs: what is done, as it is shown; their rows |
+//! | `sweep_slurm`, `sweep_task`, `slurm` | a sweep as jobs of Slurm; what a job does; Slurm's programs, called |
 //! | `calibrate` | the threshold at which a scene's mesh keeps an error |
 //! | `help`, `man`, `completions` | help on subcommands and topics, as manual pages, and for a shell |
 //! | `scenes`, `shipped` | the scenes that come with the program |
@@ -66,6 +67,7 @@ mod scenes;
 mod session;
 mod settings;
 mod shipped;
+mod slurm;
 mod speed_ups;
 mod stability;
 mod stage_csv;
@@ -73,7 +75,9 @@ mod stage_table;
 mod study;
 mod sweep;
 mod sweep_progress;
+mod sweep_slurm;
 mod sweep_table;
+mod sweep_task;
 mod terminal;
 mod thin;
 mod trace;

@@ -62,7 +62,9 @@ pub(super) fn say(failure: &Failure) {
         // Its lines have their head, and what they quote was made printable as they were rendered.
         Failure::WrongScene { rendered } | Failure::WrongStudy { rendered } => eprint_rendered(rendered.trim_end()),
         // Nothing went wrong.
-        Failure::Interrupted { .. } | Failure::StudyInterrupted => eprint(&failure.in_full()),
+        Failure::Interrupted { .. } | Failure::StudyInterrupted | Failure::TaskInterrupted { .. } => {
+            eprint(&failure.in_full());
+        }
         _ => {
             let text = fitted(&format!("error: {}", failure.in_full()), error_columns());
             let (head, style) = ("error:", AnsiColor::Red.on_default().bold());

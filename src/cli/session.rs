@@ -120,9 +120,19 @@ pub(super) fn outlive_file_limits() -> Result<(), Failure> {
 
 /// Raised by each signal that asks for an end; a second SIGINT or SIGTERM ends the process at once.
 pub(super) fn watch_signals() -> Result<Arc<AtomicBool>, Failure> {
+    watch(signals::STOP)
+}
+
+/// The same for a job of a cluster, which may be sent SIGTERM many times for one cause: a second SIGINT alone ends the process at once.
+pub(super) fn watch_signals_that_repeat() -> Result<Arc<AtomicBool>, Failure> {
+    watch(signals::STOP_BY_HAND)
+}
+
+/// Raised by each signal that asks for an end; a second one of `at_once` ends the process at once.
+fn watch(at_once: &[i32]) -> Result<Arc<AtomicBool>, Failure> {
     let failed = |source| Failure::Signals { source };
     let raised = Arc::new(AtomicBool::new(false));
-    for signal in signals::STOP {
+    for signal in at_once {
         flag::register_conditional_shutdown(*signal, i32::from(INTERRUPTED), raised.clone()).map_err(failed)?;
     }
     // The others may come again for the same cause: from the shell after the terminal, or with each second of time.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
 
@@ -12,12 +12,17 @@ use super::scene_file::{NamedText, read_named};
 use super::session::watch_signals;
 use super::settings::Settings;
 use super::shipped::Shipped;
-use super::sweep_progress::SweepProgress;
+use super::sweep_progress::{SweepProgress, Told, say_head};
+use super::sweep_slurm::{SlurmArguments, queue_line};
 use super::sweep_table::{Chosen, table_of};
+use super::sweep_task::{CollectArguments, TaskArguments};
 use crate::study::{Archive, EngineError, Workers};
-use crate::sweep::{Condition, Folder, Plan, SweepError, SweepFile, Table, Task, Work, do_tasks, planned_from, to_do};
+use crate::sweep::{Condition, Folder, Outcome, Plan, SweepFile, Table, Task, Work, do_tasks, planned_from, to_do};
 use crate::units::{count, duration};
 use crate::view::{PlotError, sweep_page};
+
+/// Between two looks whether another process is through with a task.
+const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 
 /// Run a scene over many designs and collect what each run shows, in a table
 #[derive(Args, Debug)]
@@ -33,9 +38,10 @@ enum Command {
     Status(StatusArguments),
     Report(ReportArguments),
     Task(TaskArguments),
+    Collect(CollectArguments),
 }
 
-/// Do all tasks of a sweep that are not done yet, on this machine
+/// Do all tasks of a sweep that are not done yet, on this machine or as jobs of Slurm
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 struct RunArguments {
@@ -46,6 +52,8 @@ struct RunArguments {
     folder: Option<PathBuf>,
     #[command(flatten)]
     pool: PoolArguments,
+    #[command(flatten)]
+    slurm: SlurmArguments,
 }
 
 /// Continue a sweep from its folder alone, as it was planned
@@ -56,6 +64,8 @@ struct ResumeArguments {
     folder: PathBuf,
     #[command(flatten)]
     pool: PoolArguments,
+    #[command(flatten)]
+    slurm: SlurmArguments,
 }
 
 #[derive(Args, Debug)]
@@ -69,12 +79,12 @@ struct PoolArguments {
     /// Do tasks again that failed
     #[arg(long)]
     retry: bool,
-    /// Print a JSON object for each task
+    /// Print a JSON object for each task; with --slurm, the numbers of the jobs
     #[arg(long)]
     json: bool,
 }
 
-/// Show the table of a sweep as far as it is done
+/// Show the table of a sweep as far as it is done, and how far its jobs are where it was submitted
 #[derive(Args, Debug)]
 struct StatusArguments {
     /// Folder of the sweep, or its file
@@ -97,27 +107,31 @@ struct ReportArguments {
     output: Option<PathBuf>,
 }
 
-/// Do one task of a sweep, as a job of a cluster does
-#[derive(Args, Debug)]
-struct TaskArguments {
-    /// Folder of the sweep
-    folder: PathBuf,
-    /// Number of the task
-    number: usize,
-}
-
 impl Arguments {
     /// Does what is asked for.
     pub(super) fn run(self) -> Result<(), Failure> {
         match self.command {
             Command::Run(arguments) => {
                 let folder = planned(&arguments.sweep, arguments.folder.as_deref())?;
-                arguments.pool.run(&folder)
+                arguments.pool.run(&folder, &arguments.slurm)
             }
-            Command::Resume(arguments) => arguments.pool.run(&Folder::at(&arguments.folder)),
-            Command::Status(StatusArguments { sweep, chosen }) => print_table(&folder_of(&sweep)?, &chosen),
+            Command::Resume(arguments) => arguments.pool.run(&Folder::at(&arguments.folder), &arguments.slurm),
+            Command::Status(arguments) => arguments.run(),
             Command::Report(arguments) => report(arguments),
-            Command::Task(TaskArguments { folder, number }) => one_task(&Folder::at(&folder), number),
+            Command::Task(arguments) => arguments.run(),
+            Command::Collect(arguments) => arguments.run(),
+        }
+    }
+}
+
+impl StatusArguments {
+    /// Prints the table, and how far the jobs are.
+    fn run(self) -> Result<(), Failure> {
+        let folder = folder_of(&self.sweep)?;
+        print_table(&folder, &self.chosen)?;
+        match queue_line(&folder)?.filter(|_| !self.chosen.is_json()) {
+            Some(line) => print(&line),
+            None => Ok(()),
         }
     }
 }
@@ -186,7 +200,7 @@ fn links(logs: &Path, page: &Path) -> String {
 }
 
 impl PoolArguments {
-    fn run(self, folder: &Folder) -> Result<(), Failure> {
+    fn run(self, folder: &Folder, slurm: &SlurmArguments) -> Result<(), Failure> {
         let raised = watch_signals()?;
         let (head, scene_text) = (folder.head()?, folder.scene_text()?);
         if self.retry {
@@ -194,7 +208,9 @@ impl PoolArguments {
             let keys: Vec<String> = failed.map(|row| row.task.key).collect();
             folder.forget(keys.iter().map(String::as_str))?;
         }
-        let tasks = to_do(folder)?;
+        if slurm.are_wanted() {
+            return slurm.submit(folder, usize::from(self.threads), self.json);
+        }
         let begin = Instant::now();
         let threads = usize::from(self.threads);
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -202,37 +218,40 @@ impl PoolArguments {
         let archive =
             Archive::open(&folder.logs(), threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
         let work = Work { head: &head, scene_text: &scene_text, archive: &archive };
-        let mut progress = SweepProgress::new(&head, tasks.len(), folder, self.json)?;
         let interrupted = || raised.load(Ordering::Relaxed);
-        let done = do_tasks(folder, &work, &tasks, workers, &interrupted, |task, outcome| progress.take(task, outcome));
-        let left = progress.finish();
-        done.map_err(|error| match error {
-            EngineError::Take(error) => Failure::Sweep(error),
-            error => Failure::Threads { source: Box::new(error) },
-        })?;
-        if interrupted() {
-            return Err(Failure::SweepInterrupted { folder: folder.path().to_path_buf() });
+        let mut tasks = to_do(folder)?;
+        if !self.json {
+            say_head(&head, tasks.len(), folder);
+        }
+        let mut told = Told::default();
+        let mut waits = false;
+        while !tasks.is_empty() {
+            let mut progress = SweepProgress::new(&head, tasks.len(), self.json, waits);
+            let take = |task: &Task, outcome: &Outcome| progress.take(task, outcome);
+            let done = do_tasks(folder, &work, &tasks, workers, &interrupted, take);
+            told += progress.finish();
+            done.map_err(|error| match error {
+                EngineError::Take(error) => Failure::Sweep(error),
+                error => Failure::Threads { source: Box::new(error) },
+            })?;
+            if interrupted() {
+                return Err(Failure::SweepInterrupted { folder: folder.path().to_path_buf() });
+            }
+            if told.left > 0 || told.elsewhere == 0 {
+                break;
+            }
+            // What another process has in hand it puts on record, or leaves.
+            std::thread::sleep(BETWEEN_LOOKS);
+            tasks = to_do(folder)?;
+            (told.elsewhere, waits) = (0, true);
         }
         if !self.json {
             print_table(folder, &Chosen::default())?;
-            eprint(&format!("{} in {}", count(tasks.len() - left, "task"), duration(begin.elapsed().as_secs_f64())));
+            eprint(&format!("{} in {}", count(told.ended, "task"), duration(begin.elapsed().as_secs_f64())));
         }
-        if left > 0 { Err(Failure::SweepLeft { left, folder: folder.path().to_path_buf() }) } else { Ok(()) }
+        match told.left {
+            0 => Ok(()),
+            left => Err(Failure::SweepLeft { left, folder: folder.path().to_path_buf() }),
+        }
     }
-}
-
-/// Does a task unless it is on record.
-fn one_task(folder: &Folder, number: usize) -> Result<(), Failure> {
-    let raised = watch_signals()?;
-    let (head, scene_text, tasks) = (folder.head()?, folder.scene_text()?, folder.tasks()?);
-    let no_such = || SweepError::NoSuchTask { folder: folder.path().to_path_buf(), count: tasks.len(), number };
-    let task: &Task = number.checked_sub(1).and_then(|index| tasks.get(index)).ok_or_else(no_such)?;
-    if folder.record(&task.key).is_some_and(|record| record.answers(&head.outputs)) {
-        return Ok(());
-    }
-    let archive = Archive::open(&folder.logs(), 1).map_err(|source| Failure::Archive { source: Box::new(source) })?;
-    let work = Work { head: &head, scene_text: &scene_text, archive: &archive };
-    let ended = work.of(task, &|| raised.load(Ordering::Relaxed));
-    let record = work.record(task, ended).map_err(|source| Failure::Archive { source: Box::new(source) })?;
-    Ok(folder.keep_record(&record)?)
 }

@@ -39,6 +39,13 @@ pub(super) struct Chosen {
     json: bool,
 }
 
+impl Chosen {
+    /// Whether a program reads the rows.
+    pub(super) fn is_json(&self) -> bool {
+        self.json
+    }
+}
+
 /// The rows that are wanted, as text; files are written on the way.
 pub(super) fn table_of(folder: &Folder, chosen: &Chosen) -> Result<String, Failure> {
     refuse_what_is_there(chosen.csv.iter().chain(&chosen.parquet))?;

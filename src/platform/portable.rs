@@ -64,6 +64,7 @@ pub(crate) mod signals {
     use signal_hook::consts::{SIGINT, SIGTERM};
 
     pub(crate) const STOP: &[i32] = &[SIGINT, SIGTERM];
+    pub(crate) const STOP_BY_HAND: &[i32] = &[SIGINT];
     pub(crate) const ALSO_STOP: &[i32] = &[];
     pub(crate) const HANG_UP: Option<i32> = None;
     pub(crate) const FILE_TOO_LARGE: Option<i32> = None;

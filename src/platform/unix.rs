@@ -87,6 +87,8 @@ pub(crate) mod signals {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXCPU, SIGXFSZ};
 
     pub(crate) const STOP: &[i32] = &[SIGINT, SIGTERM];
+    /// The one of them that a hand at a keyboard sends.
+    pub(crate) const STOP_BY_HAND: &[i32] = &[SIGINT];
     pub(crate) const ALSO_STOP: &[i32] = &[SIGHUP, SIGUSR1, SIGXCPU];
     /// The signal of a terminal that is closed, which `nohup` has a process ignore.
     pub(crate) const HANG_UP: Option<i32> = Some(SIGHUP);

@@ -14,7 +14,9 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::history::{BasisError, basis};
-use crate::journal::{Completeness, JournalWriter, Log, Manifest, ReadError, Resume, ResumeError, WriteError};
+use crate::journal::{
+    Completeness, JournalWriter, LockError, Log, Manifest, ReadError, Resume, ResumeError, WriteError,
+};
 use crate::model::ModelError;
 use crate::pipeline::{Ending, Run, RunError, Stages};
 use crate::record::{NUMERICS_REVISION, Record, Sink, SinkError};
@@ -126,6 +128,21 @@ pub enum TaskError {
 }
 
 impl TaskError {
+    /// Whether another process writes the log: it may be done, or gone, a little later.
+    pub fn is_of_other_writer(&self) -> bool {
+        let is_held = |lock: &LockError| matches!(lock, LockError::Busy { .. } | LockError::Leased { .. });
+        match self {
+            TaskError::Resume { source, .. } => matches!(&**source, ResumeError::Lock(lock) if is_held(lock)),
+            TaskError::Write(source) => match &**source {
+                WriteError::Lock(lock) => is_held(lock),
+                // It came to be since it was looked for.
+                WriteError::Exists { .. } => true,
+                _ => false,
+            },
+            _ => false,
+        }
+    }
+
     /// Whether the scene is the cause, so that the task ends the same wherever it is done again; else the machine or the caller is.
     pub fn is_of_scene(&self) -> bool {
         match self {
@@ -175,6 +192,10 @@ impl Archive {
         if !log.exists() {
             return self.run(scene, purpose, interrupted, JournalWriter::create);
         }
+        // Without the lock, since many read one reference at a time; what is finished changes no more.
+        if let Some(done) = Log::read(&log).ok().and_then(|log| self.finished(&log, scene, purpose)) {
+            return Ok(done);
+        }
         let unusable = |source| TaskError::Resume { log: log.clone(), source: Box::new(source) };
         let claim = match Resume::open(&log) {
             // As a power cut may leave it.
@@ -187,18 +208,10 @@ impl Archive {
         if claim.log().entries().iter().any(|entry| entry.record.commit.scene_hash != hash) {
             return Err(TaskError::OtherScene { log });
         }
-        let is_current = claim.log().manifests().iter().all(|manifest| manifest.numerics == NUMERICS_REVISION);
-        let is_finished = is_current && claim.log().completeness() == Completeness::Finished;
-        if is_finished {
-            let records = records(claim.log());
-            let known = match purpose {
-                Purpose::Results => Some(of_stages(&records)),
-                Purpose::Time => self.time_of(scene),
-            };
-            if let Some(wall_s) = known {
-                return Ok(Done { records, wall_s });
-            }
+        if let Some(done) = self.finished(claim.log(), scene, purpose) {
+            return Ok(done);
         }
+        let is_current = is_of_these_numerics(claim.log());
         match purpose {
             Purpose::Results if is_current => self.resume(claim, scene, interrupted),
             _ => {
@@ -208,6 +221,21 @@ impl Archive {
                 self.run(scene, purpose, interrupted, JournalWriter::create)
             }
         }
+    }
+
+    /// What a log of this scene shows, where it is finished.
+    fn finished(&self, log: &Log, scene: &Scene, purpose: Purpose) -> Option<Done> {
+        let hash = scene.hash();
+        let is_of_scene = log.entries().iter().all(|entry| entry.record.commit.scene_hash == hash);
+        if !is_of_scene || !is_of_these_numerics(log) || log.completeness() != Completeness::Finished {
+            return None;
+        }
+        let records = records(log);
+        let wall_s = match purpose {
+            Purpose::Results => Some(of_stages(&records)),
+            Purpose::Time => self.time_of(scene),
+        };
+        wall_s.map(|wall_s| Done { records, wall_s })
     }
 
     fn manifest(&self, scene: &Scene) -> Manifest {
@@ -300,6 +328,10 @@ impl Archive {
 /// Wall time of all stages, seconds.
 fn of_stages(records: &[Record]) -> f64 {
     records.iter().map(|record| record.wall_s).sum()
+}
+
+fn is_of_these_numerics(log: &Log) -> bool {
+    log.manifests().iter().all(|manifest| manifest.numerics == NUMERICS_REVISION)
 }
 
 fn records(log: &Log) -> Vec<Record> {

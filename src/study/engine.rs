@@ -133,7 +133,10 @@ pub fn in_turn<E>(
 }
 
 /// Does a task whose panic is its own affair.
-fn guarded<R>(task: impl FnOnce() -> Result<R, TaskError>) -> Result<R, TaskError> {
+///
+/// # Errors
+/// Those of the task, and its panic.
+pub fn guarded<R>(task: impl FnOnce() -> Result<R, TaskError>) -> Result<R, TaskError> {
     catch_unwind(AssertUnwindSafe(task)).unwrap_or_else(|payload| {
         let said = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
         let message = said.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();

@@ -47,7 +47,7 @@ pub use calibration::{
 };
 pub use comparison::{Curve, CurveError, Deviation, Finding};
 pub use convergence::{ConvergenceRow, NotASpring, converged, path_scene};
-pub use engine::{EngineError, Workers, in_turn};
+pub use engine::{EngineError, Workers, guarded, in_turn};
 pub use extremes::{ExtremeRow, ExtremesSuite};
 pub use extremes_fault::ExtremeFault;
 pub use extremes_run::ExtremeEnd;

@@ -6,6 +6,8 @@
 //! | `logs/KEY.mcap` | the log of a task |
 //! | `rows/KEY.json` | what is on record of a task that ended; whole or not there |
 //! | `table.jsonl` | the same of many tasks, gathered for speed; may be removed |
+//! | `table.csv` | the table, where it was collected |
+//! | `slurm.json`, `slurm/` | see [`super::submission`] |
 //!
 //! Whoever does a task writes its record, on whatever machine; records of tasks that the plan does not have are left alone, so
 //! that a sweep can be changed and changed back.
@@ -27,6 +29,7 @@ const HEAD: &str = "sweep.json";
 const TASKS: &str = "tasks.jsonl";
 const SCENE: &str = "scene.toml";
 const TABLE: &str = "table.jsonl";
+const CSV: &str = "table.csv";
 
 /// The folder of a sweep.
 #[derive(Clone, Debug)]
@@ -151,6 +154,27 @@ impl Folder {
     /// # Errors
     /// Where tasks cannot be read. The table is written where it can be.
     pub fn rows(&self) -> Result<Vec<Row>, SweepError> {
+        self.rows_gathered_from(MOST_UNGATHERED)
+    }
+
+    /// The same, and gathers whatever the table does not have.
+    ///
+    /// # Errors
+    /// Where tasks cannot be read.
+    pub fn gather(&self) -> Result<Vec<Row>, SweepError> {
+        self.rows_gathered_from(0)
+    }
+
+    /// Writes the table as CSV; gives back where it lies.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn keep_csv(&self, csv: &str) -> Result<PathBuf, SweepError> {
+        self.write(CSV, csv.as_bytes())?;
+        Ok(self.path.join(CSV))
+    }
+
+    fn rows_gathered_from(&self, most_ungathered: usize) -> Result<Vec<Row>, SweepError> {
         let (tasks, outputs) = (self.tasks()?, self.head()?.outputs);
         let mut known = self.table();
         // What was done again since has a record of its own.
@@ -168,7 +192,7 @@ impl Folder {
                 Row { task, record }
             })
             .collect();
-        if gathered > MOST_UNGATHERED {
+        if gathered > most_ungathered {
             let records: Vec<&TaskRecord> = known.values().collect();
             // Where nothing can be written, the next one gathers them again.
             let _ = self.write(TABLE, &lines(&records));
@@ -188,7 +212,7 @@ impl Folder {
         self.path.join("rows")
     }
 
-    fn write(&self, name: &str, content: &[u8]) -> Result<(), SweepError> {
+    pub(super) fn write(&self, name: &str, content: &[u8]) -> Result<(), SweepError> {
         let path = self.path.join(name);
         let written = WholeFile::beside(&path).and_then(|whole| {
             whole.file().write_all(content)?;

@@ -12,6 +12,7 @@
 //! | `record`, `folder` | what is on record of a task; the folder of a sweep |
 //! | `table`, `parquet` | rows, filtered and written; as Parquet where that is compiled in |
 //! | `work`, `pool` | one task, done; all of them on this machine |
+//! | `slurm`, `submission` | batch scripts and what Slurm prints; what was given to it |
 //! | `error` | what can be wrong |
 
 mod axis;
@@ -24,6 +25,8 @@ mod pool;
 mod quantity;
 mod record;
 mod sampling;
+mod slurm;
+mod submission;
 mod sweep_file;
 mod table;
 mod work;
@@ -35,6 +38,11 @@ pub use plan::{Head, Plan, Task, planned_from};
 pub use pool::{Outcome, do_tasks, to_do};
 pub use quantity::{FIELDS, FIGURES, Field, Figure, Finished, Quantity, Which};
 pub use record::{Ending, Row, TaskRecord};
+pub use slurm::{
+    Array, END_FORMAT, JobOptions, QUEUE_FORMAT, Queued, Script, USUAL_MAX_ARRAY_SIZE, job_number, max_array_size,
+    shell_word, time_left,
+};
+pub use submission::{Role, Submission, Submissions, Submitted, keep_list, keep_script};
 pub use sweep_file::{Combine, Method, Reference, Sample, SweepFile};
 pub use table::{Condition, Table};
 pub use work::{Work, in_full};

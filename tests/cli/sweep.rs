@@ -138,3 +138,111 @@ fn shipped_sweeps_are_planned() {
         assert!(told.contains(name), "{told}");
     }
 }
+
+/// Scripts for Slurm are written where there is none, and hold what is not on record: wrong scenes never need a job.
+#[test]
+fn a_dry_run_writes_the_batch_scripts() {
+    let place = place("[[axis]]\nkey = \"geometry.arc_deg\"\nvalues = [110, 400, 120]\n");
+    let command = "sweep run s.toml --folder f --slurm --dry-run";
+    let said = place.foldline(&format!(
+        "{command} --partition low --time 01:00:00 --memory 500 --per-job 2 --threads 2 --at-most 4 --sbatch=--qos=long"
+    ));
+    let said = said.ends(0).out;
+    let lines: Vec<&str> = said.lines().collect();
+    assert!(
+        lines.len() == 2
+            && lines[0].starts_with("tasks=$(sbatch --parsable /")
+            && lines[0].ends_with("f/slurm/1-tasks.sh)"),
+        "{said}"
+    );
+    assert!(lines[1].contains(" --dependency=afterany:$tasks "), "{said}");
+    let script = String::from_utf8(place.read("f/slurm/1-tasks.sh")).unwrap();
+    for line in [
+        "--partition=low",
+        "--time=01:00:00",
+        "--mem=500M",
+        "--array=1-1%4",
+        "--cpus-per-task=2",
+        "--qos=long",
+        "--requeue",
+    ] {
+        assert!(script.lines().any(|found| found.starts_with("#SBATCH") && found.contains(line)), "{line}: {script}");
+    }
+    let keys = String::from_utf8(place.read("f/slurm/1-tasks.txt")).unwrap();
+    assert_eq!(keys.lines().count(), 2, "the third is refused, and on record");
+    // As an element does.
+    place.foldline("sweep task f --list f/slurm/1-tasks.txt --from 2 --count 1").ends(0);
+    let endings = || -> Vec<Value> {
+        rows(&place.foldline("sweep status f --json").ends(0).out).iter().map(|row| row["ending"].clone()).collect()
+    };
+    assert_eq!(endings(), ["to do", "refused", "done"]);
+    place.foldline("sweep collect f").ends(1).says(&["1 task left", "sweep resume f --slurm"]);
+    place.foldline("sweep task f --list f/slurm/1-tasks.txt").ends(0);
+    place.foldline("sweep collect f").ends(0).says(&["3 of 3 rows", "table.csv"]);
+    place.foldline("sweep status f --csv t.csv").ends(0);
+    assert_eq!(place.read("t.csv"), place.read("f/table.csv"));
+    place.foldline(command).ends(0).says(&["nothing to submit: all tasks are on record"]);
+    for wrong in ["--per-job 0", "--partition=a\tb", "--tasks 2"] {
+        place.foldline(&format!("{command} {wrong}")).ends(2);
+    }
+    place.foldline("sweep run s.toml --folder f --partition low").ends(2).says(&["--slurm"]);
+}
+
+/// Programs of Slurm's names stand in for it: what is submitted in which order, and what is not submitted again.
+#[cfg(unix)]
+#[test]
+fn what_is_submitted_is_known_and_not_submitted_again() {
+    let place = place(
+        "[reference]\nsettings = [\"mesh.elements=[6, 4]\"]\n[[axis]]\nkey = \"geometry.radius_mm\"\nvalues = [9, 10]\n",
+    );
+    let path = format!("{}:{}", place.file("bin").display(), std::env::var("PATH").unwrap_or_default());
+    let slurm = |command: &str, code: i32, words: &[&str]| {
+        let output = place.command(command).env("PATH", &path).output().unwrap();
+        let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        assert!(
+            output.status.code() == Some(code) && words.iter().all(|word| said.contains(word)),
+            "{command}: {said}"
+        );
+    };
+    std::fs::create_dir_all(place.file("bin")).unwrap();
+    let program = |name: &str, text: &str| {
+        use std::os::unix::fs::PermissionsExt;
+        place.write(&format!("bin/{name}"), format!("#!/bin/sh\n{text}\n"));
+        std::fs::set_permissions(place.file(&format!("bin/{name}")), std::fs::Permissions::from_mode(0o755)).unwrap();
+    };
+    program("sbatch", "echo \"$@\" >> calls\nwc -l < calls");
+    program("scontrol", "echo 'MaxArraySize            = 2'");
+    program("squeue", "echo 'slurm_load_jobs error: Invalid job id specified' >&2; exit 1");
+    slurm(
+        "sweep run s.toml --folder f --slurm",
+        0,
+        &["job 1: 2 references in 1 element, 2 each", "job 2: 2 tasks in 1 element", "job 3: collects"],
+    );
+    let calls = String::from_utf8(place.read("calls")).unwrap();
+    let calls: Vec<&str> = calls.lines().collect();
+    assert!(calls.len() == 3 && calls[0].contains("1-references.sh") && !calls[0].contains("afterany"), "{calls:?}");
+    assert!(
+        calls[1].contains("--dependency=afterany:1 ") && calls[2].contains("--dependency=afterany:2 "),
+        "{calls:?}"
+    );
+    slurm("sweep status f", 0, &["Slurm: none of the jobs is left"]);
+    program("squeue", "echo '1|1|RUNNING'; echo '2|1|PENDING'; echo '3|N/A|PENDING'");
+    slurm(
+        "sweep status f",
+        0,
+        &["4 rows: 4 to do", "Slurm: 1 element waiting, 1 running, then the table is collected"],
+    );
+    slurm("sweep resume f --slurm", 0, &["nothing to submit: 4 tasks in the queue"]);
+    program("squeue", "echo '1|1|RUNNING'");
+    slurm("sweep resume f --slurm --json", 0, &["\"number\":2", "\"role\":\"tasks\",\"job\":4"]);
+    program("sbatch", "echo 'sbatch: error: invalid partition specified: low' >&2; exit 1");
+    program("squeue", "exit 0");
+    slurm(
+        "sweep resume f --slurm --partition low",
+        1,
+        &["Slurm refused `sbatch --parsable", "invalid partition specified: low"],
+    );
+    program("squeue", "echo 'Unable to contact slurm controller' >&2; exit 1");
+    slurm("sweep status f", 0, &["cannot be asked from here"]);
+    slurm("sweep resume f --slurm", 1, &["Unable to contact slurm controller"]);
+}
