@@ -8,6 +8,20 @@ pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     shown(text, is_obeyed)
 }
 
+/// An error with what is below it, in one line; what an error repeats of its cause is said once.
+pub(crate) fn in_full(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let below = error.to_string();
+        if !text.ends_with(&below) {
+            text = format!("{text}: {below}");
+        }
+        cause = error.source();
+    }
+    text
+}
+
 /// Replaces characters that control a terminal, and line breaks, in text that is part of a line, such as a name.
 pub(crate) fn one_line(text: &str) -> Cow<'_, str> {
     shown(text, breaks_a_line)

@@ -33,9 +33,10 @@ pub(super) struct Arguments {
     /// Threads; the results are the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Folder for the logs of the runs, each named after the hash of its scene: those that are finished are read, not run again
-    #[arg(long, value_name = "DIR", default_value = "checkpoints/extremes")]
-    logs: PathBuf,
+    /// Folder to keep the logs of the runs in, each named after the hash of its scene: those that are finished are read and not run
+    /// again, whatever build made them [default: none is kept]
+    #[arg(long, value_name = "DIR")]
+    logs: Option<PathBuf>,
     /// Print a JSON object for each scene
     #[arg(long)]
     json: bool,
@@ -75,8 +76,9 @@ impl Arguments {
         let names = self.chosen(files.keys())?;
         let scenes = read_scenes(&files, &names)?;
         let threads = use_threads(self.threads.map(usize::from))?;
-        let archive =
-            Archive::open(&self.logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let fresh = tempfile::tempdir().map_err(|source| Failure::Write { path: std::env::temp_dir(), source })?;
+        let archive = Archive::open(self.logs.as_deref().unwrap_or(fresh.path()), threads)
+            .map_err(|source| Failure::Archive { source: Box::new(source) })?;
         let table = ExtremesTable::new(names.iter().map(|name| stem(name)));
         if !self.json {
             print(&table.head())?;

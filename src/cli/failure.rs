@@ -168,11 +168,15 @@ pub(super) enum Failure {
         "this program was built without Parquet: `cargo install --path . --features parquet` builds one with it, and --csv is always there"
     )]
     NoParquet,
+    #[error(
+        "{rows} rows are more than the {most} that a page holds: choose some with --where, or write all with `sweep status --csv`"
+    )]
+    TooManyRows { rows: usize, most: usize },
     #[error("interrupted; continue with: foldline sweep resume {}", folder.display())]
     SweepInterrupted { folder: PathBuf },
-    #[error("{} left, for reasons that are none of their own; continue with: foldline sweep resume {}", count(*left, "task"), folder.display())]
+    #[error("{} left, for reasons of the machine and not of their scenes; continue with: foldline sweep resume {}", count(*left, "task"), folder.display())]
     SweepLeft { left: usize, folder: PathBuf },
-    #[error("task {number} of the sweep is not done, for a reason that is none of its own")]
+    #[error("task {number} of the sweep is not done, for a reason of the machine and not of its scene")]
     SweepTask { number: usize, source: Box<TaskError> },
     #[error(
         "task {number} was interrupted after the stage in hand; it goes on in the next turn of its job, or with: {}",
@@ -238,7 +242,7 @@ impl Failure {
             Failure::Sweep(error) if !matches!(error, SweepError::Write { .. }) => 2,
             #[cfg(not(feature = "parquet"))]
             Failure::NoParquet => 2,
-            Failure::NotASpring(_) => 2,
+            Failure::NotASpring(_) | Failure::TooManyRows { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, TaskError::Model(_)) => 2,
             Failure::Calibration { source, .. }

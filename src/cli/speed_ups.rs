@@ -12,12 +12,12 @@ use super::output::{eprint, path_in_line, print, print_json, refuse_what_is_ther
 use super::scene_file::{NamedText, read_named, rendered};
 use super::session::watch_signals;
 use super::shipped::Shipped;
+use crate::printable::in_full;
 use crate::scene::Scene;
 use crate::study::{
     AccuracyRow, Archive, Done, Errors, Measured, MeshPoint, Planned, Purpose, Role, SpeedUp, Structure, StudyError,
     StudyFile, TaskError, error_of_finer, in_turn, is_comparable, speed_up,
 };
-use crate::sweep::in_full;
 use crate::view::study_page;
 
 /// Width of names of runs in tables.

@@ -17,9 +17,17 @@ use super::sweep_slurm::{SlurmArguments, queue_line};
 use super::sweep_table::{Chosen, table_of};
 use super::sweep_task::{CollectArguments, TaskArguments};
 use crate::study::{Archive, EngineError, Workers};
-use crate::sweep::{Condition, Folder, Outcome, Plan, SweepFile, Table, Task, Work, do_tasks, planned_from, to_do};
+use crate::sweep::{
+    Condition, Folder, Outcome, Plan, SweepFile, Table, Task, TaskRecord, Work, do_tasks, planned_from, to_do,
+};
 use crate::units::{count, duration};
 use crate::view::{PlotError, sweep_page};
+
+/// Rows that a browser can be asked to hold.
+const MOST_ON_A_PAGE: usize = 200_000;
+
+/// As long as no task ends, another process is waited for.
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Between two looks whether another process is through with a task.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
@@ -76,7 +84,7 @@ struct PoolArguments {
     /// Threads of each task
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
-    /// Do tasks again that failed
+    /// Do tasks again that failed, or have no error against their reference
     #[arg(long)]
     retry: bool,
     /// Print a JSON object for each task; with --slurm, the numbers of the jobs
@@ -164,9 +172,11 @@ fn planned(sweep: &Path, folder: Option<&Path>) -> Result<Folder, Failure> {
         _ => read_named(Path::new(&parsed.scene)).map(|found| (found.text, found.file))?,
     };
     let folder = Folder::at(&folder.map_or_else(|| default_folder(&file), |folder| Ok(folder.to_path_buf()))?);
-    let is_planned = folder.holds_sweep() && folder.head()?.planned_from == planned_from(&text, &scene_text);
+    let scene_name = scene_file.display().to_string();
+    let is_planned =
+        folder.holds_sweep() && folder.head()?.planned_from == planned_from(&text, &scene_text, &scene_name);
     if !is_planned {
-        folder.keep(&Plan::of(&parsed, [&text, &scene_text], [&name, &scene_file.display().to_string()])?)?;
+        folder.keep(&Plan::of(&parsed, [&text, &scene_text], [&name, &scene_name])?)?;
     }
     Ok(folder)
 }
@@ -181,7 +191,10 @@ fn report(arguments: ReportArguments) -> Result<(), Failure> {
     refuse_what_is_there([&output])?;
     let mut table = Table::read(&folder)?;
     table.retain(&arguments.conditions)?;
-    let command = format!("foldline report {}/KEY.mcap -o page.html", path_in_line(&folder.logs()));
+    if table.rows.len() > MOST_ON_A_PAGE {
+        return Err(Failure::TooManyRows { rows: table.rows.len(), most: MOST_ON_A_PAGE });
+    }
+    let command = format!("foldline report {}/LOG -o page.html", path_in_line(&folder.logs()));
     let page = sweep_page(&table, &links(&folder.logs(), &output), &command);
     let page = page.map_err(|cause| PlotError::Drawing(cause.to_string()))?;
     write_files(&[(output.clone(), page.into_bytes())])?;
@@ -194,9 +207,16 @@ fn links(logs: &Path, page: &Path) -> String {
     let beside = page.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let (logs, beside) = (whole(logs), whole(beside));
     match logs.strip_prefix(&beside) {
-        Ok(below) => format!("{}/", below.display()),
-        Err(_) => format!("file://{}/", logs.display()),
+        Ok(below) => format!("{}/", in_address(below)),
+        Err(_) => format!("file://{}/", in_address(&logs)),
     }
+}
+
+/// A path as a part of an address (RFC 3986).
+fn in_address(path: &Path) -> String {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte);
+    let text = path.to_string_lossy();
+    text.bytes().map(|byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
 }
 
 impl PoolArguments {
@@ -204,8 +224,9 @@ impl PoolArguments {
         let raised = watch_signals()?;
         let (head, scene_text) = (folder.head()?, folder.scene_text()?);
         if self.retry {
-            let failed = folder.rows()?.into_iter().filter(|row| row.ending() == "failed");
-            let keys: Vec<String> = failed.map(|row| row.task.key).collect();
+            let rows = folder.rows()?.into_iter();
+            let short = rows.filter(|row| row.record.as_ref().is_some_and(TaskRecord::is_short));
+            let keys: Vec<String> = short.map(|row| row.task.key).collect();
             folder.forget(keys.iter().map(String::as_str))?;
         }
         if slurm.are_wanted() {
@@ -217,14 +238,14 @@ impl PoolArguments {
         let workers = Workers { tasks: self.tasks.map_or(cores.div_ceil(threads), usize::from), threads };
         let archive =
             Archive::open(&folder.logs(), threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
-        let work = Work { head: &head, scene_text: &scene_text, archive: &archive };
+        let work = Work::new(&head, &scene_text, &archive);
         let interrupted = || raised.load(Ordering::Relaxed);
         let mut tasks = to_do(folder)?;
         if !self.json {
             say_head(&head, tasks.len(), folder);
         }
         let mut told = Told::default();
-        let mut waits = false;
+        let (mut waits, mut ended) = (false, (0, Instant::now()));
         while !tasks.is_empty() {
             let mut progress = SweepProgress::new(&head, tasks.len(), self.json, waits);
             let take = |task: &Task, outcome: &Outcome| progress.take(task, outcome);
@@ -237,7 +258,8 @@ impl PoolArguments {
             if interrupted() {
                 return Err(Failure::SweepInterrupted { folder: folder.path().to_path_buf() });
             }
-            if told.left > 0 || told.elsewhere == 0 {
+            ended = if told.ended > ended.0 { (told.ended, Instant::now()) } else { ended };
+            if told.left > 0 || told.elsewhere == 0 || ended.1.elapsed() > PATIENCE {
                 break;
             }
             // What another process has in hand it puts on record, or leaves.
@@ -249,7 +271,7 @@ impl PoolArguments {
             print_table(folder, &Chosen::default())?;
             eprint(&format!("{} in {}", count(told.ended, "task"), duration(begin.elapsed().as_secs_f64())));
         }
-        match told.left {
+        match told.left + told.elsewhere {
             0 => Ok(()),
             left => Err(Failure::SweepLeft { left, folder: folder.path().to_path_buf() }),
         }

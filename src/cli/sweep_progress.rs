@@ -8,8 +8,9 @@ use serde_json::json;
 use super::output::{eprint, path_in_line, print_json};
 use super::terminal::{can_overwrite, error_columns};
 use super::wrapped::{fitted, wrapped};
+use crate::printable::in_full;
 use crate::study::TaskError;
-use crate::sweep::{Ending, Folder, Head, Outcome, Task, in_full};
+use crate::sweep::{Ending, Folder, Head, Outcome, Task};
 use crate::units::{count, duration};
 
 /// The progress of a sweep.
