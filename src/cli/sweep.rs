@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use clap::{Args, Subcommand};
 
 use super::failure::{EXIT_CODES, Failure};
-use super::output::{eprint, file_name, path_in_line, print, print_as_it_is, refuse_what_is_there, write_files};
+use super::output::{
+    eprint, file_name, path_in_command, path_in_line, print, print_as_it_is, refuse_what_is_there, write_files,
+};
 use super::scene_file::{NamedText, read_named};
 use super::session::watch_signals;
 use super::settings::Settings;
@@ -194,7 +196,7 @@ fn report(arguments: ReportArguments) -> Result<(), Failure> {
     if table.rows.len() > MOST_ON_A_PAGE {
         return Err(Failure::TooManyRows { rows: table.rows.len(), most: MOST_ON_A_PAGE });
     }
-    let command = format!("foldline report {}/LOG -o page.html", path_in_line(&folder.logs()));
+    let command = format!("foldline report {} -o page.html", path_in_command(&folder.logs().join("LOG")));
     let page = sweep_page(&table, &links(&folder.logs(), &output), &command);
     let page = page.map_err(|cause| PlotError::Drawing(cause.to_string()))?;
     write_files(&[(output.clone(), page.into_bytes())])?;

@@ -12,6 +12,9 @@ use crate::record::NUMERICS_REVISION;
 use crate::scene::{Geometry, Scene, parse, parse_with_settings};
 use crate::study::{is_comparable, run_name};
 
+/// Columns of what is wrong with a scene: it goes on record, and is read on whatever terminal.
+const COLUMNS: usize = 60;
+
 /// What all tasks of a sweep share.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -83,7 +86,7 @@ impl Head {
 }
 
 fn scene_with(text: &str, name: &str, settings: &[String]) -> Result<Scene, String> {
-    parse_with_settings(text, name, settings).map_err(|error| error.plain())
+    parse_with_settings(text, name, settings).map_err(|error| error.fitted(false, Some(COLUMNS)))
 }
 
 impl Plan {
