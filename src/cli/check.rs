@@ -73,7 +73,7 @@ impl Arguments {
         let name = path_in_line(&self.scene);
         let forecast = Forecast::of(scene).map_err(|refusal| file.written.refused(refusal))?;
         // What the mesh at the start takes: the finest is tried out after it.
-        let memory = peak_memory();
+        let memory = forecast.step.as_ref().and_then(|_| peak_memory());
         let finest = finest(scene, &forecast);
         match self.json {
             true => print_json(&line(&name, scene, &forecast, memory, finest)),
@@ -86,7 +86,8 @@ impl Arguments {
 fn finest(scene: &Scene, forecast: &Forecast) -> Option<FinestLine> {
     let mesh = forecast.finest.as_ref()?;
     let cost = mesh.cost(scene);
-    let step = |cost: FinestCost| Some((1.0 + forecast.step.as_ref().ok()?.iterations as f64) * cost.iteration_s);
+    let step =
+        |cost: FinestCost| Some((1.0 + forecast.step.as_ref()?.as_ref().ok()?.iterations as f64) * cost.iteration_s);
     Some(FinestLine {
         elements: mesh.elements,
         unknowns: cost.map(|cost| cost.unknowns),
@@ -103,6 +104,7 @@ fn line<'l>(
     finest: Option<FinestLine>,
 ) -> Line<'l> {
     let Forecast { size, elements, unknowns, step, load_steps, symmetric, odd, remarks, .. } = forecast;
+    let done = step.as_ref().and_then(|step| step.as_ref().ok());
     Line {
         scene: name,
         box_mm: size.box_mm,
@@ -116,9 +118,9 @@ fn line<'l>(
         finest,
         memory_bytes,
         load_steps: *load_steps,
-        step_s: step.as_ref().ok().map(|step| step.wall_s),
-        step_iterations: step.as_ref().ok().map(|step| step.iterations),
-        step_fails: step.as_ref().err().map(RunError::to_string),
+        step_s: done.map(|step| step.wall_s),
+        step_iterations: done.map(|step| step.iterations),
+        step_fails: step.as_ref().and_then(|step| step.as_ref().err()).map(RunError::to_string),
         symmetric_in_u: symmetric[0],
         symmetric_in_v: symmetric[1],
         odd,
@@ -144,7 +146,8 @@ fn shown(
         if finest.is_some() { ", at the start" } else { "" }
     );
     let at_start = if finest.is_some() { ", at the start" } else { "" };
-    let memory = memory.map_or("not known on this system".to_owned(), |bytes| megabytes(bytes) + at_start);
+    let unknown = if forecast.step.is_none() { "not tried out" } else { "not known on this system" };
+    let memory = memory.map_or(unknown.to_owned(), |bytes| megabytes(bytes) + at_start);
     let mut rows = vec![
         ("size", size.to_string()),
         ("mesh", mesh),
@@ -193,8 +196,9 @@ fn refined(finest: &FinestLine) -> String {
 /// What a load step takes, and how many there are.
 fn load_steps(forecast: &Forecast, threads: usize) -> String {
     let StepCost { iterations, wall_s, first_is_cut } = match &forecast.step {
-        Ok(step) => *step,
-        Err(error) => return format!("none can be done: {error}"),
+        None => return "not tried out: the mesh is large, and one may take minutes and gigabytes".to_owned(),
+        Some(Ok(step)) => *step,
+        Some(Err(error)) => return format!("none can be done: {error}"),
     };
     let (iterations, threads) = (count(iterations, "iteration"), count(threads, "thread"));
     let cut = if first_is_cut { "; the first is too long and is cut" } else { "" };

@@ -18,9 +18,11 @@ use super::sweep_progress::{SweepProgress, Told, say_head};
 use super::sweep_slurm::{SlurmArguments, queue_line};
 use super::sweep_table::{Chosen, table_of};
 use super::sweep_task::{CollectArguments, TaskArguments};
+use super::wrapped::wrapped;
 use crate::study::{Archive, EngineError, Workers};
 use crate::sweep::{
-    Condition, Folder, Outcome, Plan, SweepFile, Table, Task, TaskRecord, Work, do_tasks, planned_from, to_do,
+    Condition, Folder, Head, Outcome, Plan, SweepError, SweepFile, Table, Task, TaskRecord, Work, do_tasks,
+    planned_from, to_do,
 };
 use crate::units::{count, duration};
 use crate::view::{PlotError, sweep_page};
@@ -112,7 +114,7 @@ struct ReportArguments {
     /// Rows that meet a condition, such as 'peak_moment_n_mm>800' or ending=done; may be repeated
     #[arg(long = "where", value_name = "CONDITION", value_parser = Condition::parse)]
     conditions: Vec<Condition>,
-    /// Page to write [default: report.html in the sweep's folder]
+    /// Page to write [default: report.html in the sweep's folder, or report.1.html and so on where that is there]
     #[arg(short, long, value_name = "FILE", value_parser = file_name())]
     output: Option<PathBuf>,
 }
@@ -158,27 +160,64 @@ fn folder_of(sweep: &Path) -> Result<Folder, Failure> {
     if folder.holds_sweep() {
         return Ok(folder);
     }
-    let folder = Folder::at(&default_folder(&read_named(sweep)?.file)?);
-    if folder.holds_sweep() { Ok(folder) } else { Err(Failure::NoSweep { sweep: sweep.to_path_buf() }) }
+    let source = Source::read(sweep)?;
+    let folder = Folder::at(&default_folder(&source.file)?);
+    if !folder.holds_sweep() {
+        return Err(Failure::NoSweep { sweep: sweep.to_path_buf() });
+    }
+    if !source.is_planned(&folder.head()?) {
+        let again = format!(
+            "the plan is of an earlier {}: `foldline sweep run {}` plans again",
+            path_in_line(sweep),
+            path_in_command(sweep)
+        );
+        eprint(&wrapped("warning: ", &again));
+    }
+    Ok(folder)
+}
+
+/// A sweep as it is written, with the scene that it varies.
+struct Source {
+    parsed: SweepFile,
+    text: String,
+    scene_text: String,
+    scene_name: String,
+    /// Where it is, or would be if it did not come with the program.
+    file: PathBuf,
+}
+
+impl Source {
+    fn read(sweep: &Path) -> Result<Self, Failure> {
+        let NamedText { text, file, is_shipped } = read_named(sweep)?;
+        let parsed = SweepFile::parse(&text, &path_in_line(sweep))?;
+        let beside = file.parent().unwrap_or(Path::new("")).join(&parsed.scene);
+        let (scene_text, scene_file) = match Shipped::at(&beside) {
+            Some(scene) if is_shipped => (scene.text.to_owned(), scene.file()),
+            _ if beside.is_file() => (read_named(&beside)?.text, beside),
+            _ => read_named(Path::new(&parsed.scene)).map(|found| (found.text, found.file))?,
+        };
+        Ok(Self { parsed, text, scene_text, scene_name: scene_file.display().to_string(), file })
+    }
+
+    /// Whether a plan is of this very sweep.
+    fn is_planned(&self, head: &Head) -> bool {
+        head.planned_from == planned_from(&self.text, &self.scene_text, &self.scene_name)
+    }
+
+    fn plan(&self) -> Result<Plan, SweepError> {
+        let file = self.file.canonicalize().unwrap_or_else(|_| self.file.clone());
+        let names = [&file.display().to_string()[..], &self.scene_name];
+        Plan::of(&self.parsed, [&self.text, &self.scene_text], names)
+    }
 }
 
 /// Plans a sweep and keeps the plan in its folder.
 fn planned(sweep: &Path, folder: Option<&Path>) -> Result<Folder, Failure> {
-    let NamedText { text, file, is_shipped } = read_named(sweep)?;
-    let name = path_in_line(sweep);
-    let parsed = SweepFile::parse(&text, &name)?;
-    let beside = file.parent().unwrap_or(Path::new("")).join(&parsed.scene);
-    let (scene_text, scene_file) = match Shipped::at(&beside) {
-        Some(scene) if is_shipped => (scene.text.to_owned(), scene.file()),
-        _ if beside.is_file() => (read_named(&beside)?.text, beside),
-        _ => read_named(Path::new(&parsed.scene)).map(|found| (found.text, found.file))?,
-    };
-    let folder = Folder::at(&folder.map_or_else(|| default_folder(&file), |folder| Ok(folder.to_path_buf()))?);
-    let scene_name = scene_file.display().to_string();
-    let is_planned =
-        folder.holds_sweep() && folder.head()?.planned_from == planned_from(&text, &scene_text, &scene_name);
-    if !is_planned {
-        folder.keep(&Plan::of(&parsed, [&text, &scene_text], [&name, &scene_name])?)?;
+    let source = Source::read(sweep)?;
+    let folder = Folder::at(&folder.map_or_else(|| default_folder(&source.file), |folder| Ok(folder.to_path_buf()))?);
+    // A plan that was left half written, or changed by hand, is made again.
+    if !folder.head().is_ok_and(|head| source.is_planned(&head)) {
+        folder.keep(&source.plan()?)?;
     }
     Ok(folder)
 }
@@ -189,7 +228,7 @@ fn print_table(folder: &Folder, chosen: &Chosen) -> Result<(), Failure> {
 
 fn report(arguments: ReportArguments) -> Result<(), Failure> {
     let folder = folder_of(&arguments.sweep)?;
-    let output = arguments.output.unwrap_or_else(|| folder.path().join("report.html"));
+    let output = arguments.output.unwrap_or_else(|| free_name(folder.path()));
     refuse_what_is_there([&output])?;
     let mut table = Table::read(&folder)?;
     table.retain(&arguments.conditions)?;
@@ -201,6 +240,13 @@ fn report(arguments: ReportArguments) -> Result<(), Failure> {
     let page = page.map_err(|cause| PlotError::Drawing(cause.to_string()))?;
     write_files(&[(output.clone(), page.into_bytes())])?;
     print_as_it_is(&format!("{}\n", path_in_line(&output)))
+}
+
+/// report.html, or the first report.N.html that is free.
+fn free_name(folder: &Path) -> PathBuf {
+    let names = (1..).map(|number| format!("report.{number}.html"));
+    let mut names = std::iter::once("report.html".to_owned()).chain(names).map(|name| folder.join(name));
+    names.find(|name| !name.exists()).unwrap_or_else(|| folder.join("report.html"))
 }
 
 /// What the links of a page to logs begin with: a path from the page where the logs lie below its folder, else a whole one.

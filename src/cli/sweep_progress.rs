@@ -11,7 +11,7 @@ use super::wrapped::{fitted, wrapped};
 use crate::printable::in_full;
 use crate::study::TaskError;
 use crate::sweep::{Ending, Folder, Head, Outcome, Task};
-use crate::units::{count, duration};
+use crate::units::{count, duration, significant};
 
 /// The progress of a sweep.
 pub(super) struct SweepProgress<'h> {

@@ -16,6 +16,8 @@ use crate::units::{count, significant};
 const SHOWN: usize = 200;
 /// Columns of a number with its sign and exponent.
 const LEAST_WIDTH: usize = 9;
+/// Reasons that are shown.
+const REASONS: usize = 5;
 /// Significant digits.
 const DIGITS: usize = 6;
 
@@ -86,11 +88,32 @@ fn shown(table: &Table, all: usize, most: usize) -> String {
     }
     let of = |ending: &str| table.rows.iter().filter(|row| row.ending() == ending).count();
     let endings = ["done", "failed", "refused", "to do"].map(|ending| (of(ending), ending));
-    let endings: Vec<String> =
+    let mut endings: Vec<String> =
         endings.iter().filter(|(number, _)| *number > 0).map(|(number, ending)| format!("{number} {ending}")).collect();
+    if endings.is_empty() {
+        endings.push("none meets the conditions".to_owned());
+    }
     let of_all = if table.rows.len() < all { format!(" of {all}") } else { String::new() };
     text += &wrapped("", &format!("{}{of_all}: {}", count(table.rows.len(), "row"), endings.join(", ")));
     text.push('\n');
+    text += &remarks(&table.rows);
+    text
+}
+
+/// Why tasks came to nothing, and what runs warned of, the first of each.
+fn remarks(rows: &[Row]) -> String {
+    let mut text = String::new();
+    let without = rows.iter().filter_map(|row| Some((row.task.number, row.record.as_ref()?.reason.as_deref()?)));
+    for (number, reason) in without.take(REASONS) {
+        text += &wrapped(&format!("task {number}: "), reason.lines().next().unwrap_or_default());
+        text.push('\n');
+    }
+    let warned = rows.iter().filter_map(|row| Some((row.task.number, row.record.as_ref()?.warnings.first()?)));
+    let warned: Vec<(usize, &String)> = warned.collect();
+    if let Some((number, first)) = warned.first() {
+        text += &wrapped("", &format!("{} with warnings, such as task {number}: {first}", count(warned.len(), "row")));
+        text.push('\n');
+    }
     text
 }
 

@@ -34,8 +34,8 @@ pub struct Forecast {
     pub elements: [usize; 2],
     /// Free unknowns of the model.
     pub unknowns: usize,
-    /// A load step; an error where none can be done.
-    pub step: Result<StepCost, RunError>,
+    /// A load step; an error where none can be done, `None` where the mesh is too large to try one.
+    pub step: Option<Result<StepCost, RunError>>,
     /// Load steps to the target if every increment is the longest that is allowed; `None` by arc length.
     pub load_steps: Option<f64>,
     /// The finest mesh, where the mesh changes on the way; all else is of the mesh at the start alone.
@@ -90,7 +90,11 @@ impl Forecast {
         let size = Size::of(scene)?;
         let (unknowns, remarks) = (stages.unknowns(&start)?, stages.remarks(&start)?);
         let mut odd = oddities(scene, &size);
-        odd.extend(hardly_moved_or_thrown_off(&mut stages, &start, &size));
+        let [along, across] = start.mesh.element_counts();
+        let is_tried = along.saturating_mul(across) <= MOST_TRIED;
+        if is_tried {
+            odd.extend(hardly_moved_or_thrown_off(&mut stages, &start, &size));
+        }
         let finest = stages.finest(&start).map(|finest| {
             let [along, across] = finest.elements();
             let is_small = along.saturating_mul(across) <= MOST_TRIED;
@@ -107,7 +111,7 @@ impl Forecast {
             load_steps: scene.continuation.is_none().then(|| scene.load.target() / scene.load.longest_increment()),
             finest,
             symmetric: symmetric_lines(scene, &start.mesh),
-            step: step_cost(scene, start),
+            step: is_tried.then(|| step_cost(scene, start)),
         })
     }
 }

@@ -42,7 +42,7 @@ pub enum SweepError {
         source: io::Error,
     },
     /// A file of the sweep's folder is not what it should be.
-    #[error("{} is no {what} of a sweep: {problem}; where it may go, remove it and run the sweep again", path.display())]
+    #[error("{} is no {what} of a sweep: {problem}; `foldline sweep run SWEEP.toml` plans again, and keeps what is done", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -58,6 +58,14 @@ pub enum SweepError {
         path: PathBuf,
         /// Why.
         source: io::Error,
+    },
+    /// The folder holds something else.
+    #[error("{} has a `{name}` and holds no sweep: nothing there is written over; choose another folder with --folder", folder.display())]
+    InTheWay {
+        /// The folder.
+        folder: PathBuf,
+        /// What is there.
+        name: &'static str,
     },
     /// The folder holds another sweep.
     #[error("{} holds the sweep `{title}` of {file}: choose another folder with --folder", folder.display())]

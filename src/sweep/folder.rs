@@ -65,7 +65,28 @@ impl Folder {
     pub fn head(&self) -> Result<Head, SweepError> {
         let path = self.path.join(HEAD);
         let text = fs::read_to_string(&path).map_err(|source| SweepError::Read { path: path.clone(), source })?;
-        serde_json::from_str(&text).map_err(|why| SweepError::Damaged { path, what: "head", problem: why.to_string() })
+        let damaged = |problem: String| SweepError::Damaged { path: path.clone(), what: "plan", problem };
+        let head: Head = serde_json::from_str(&text).map_err(|why| damaged(why.to_string()))?;
+        match self.plan_hash(&head) {
+            Ok(hash) if hash == head.plan_hash => Ok(head),
+            Ok(_) => {
+                Err(damaged("it is not as it was written, or the tasks or the scene beside it are not".to_owned()))
+            }
+            Err(error) => Err(damaged(error.to_string())),
+        }
+    }
+
+    /// Hash of a plan as it lies in the folder.
+    fn plan_hash(&self, head: &Head) -> Result<String, SweepError> {
+        let mut hasher = blake3::Hasher::new();
+        let head = Head { plan_hash: String::new(), ..head.clone() };
+        hasher.update(&serde_json::to_vec(&head).unwrap_or_default());
+        for name in [TASKS, SCENE] {
+            let path = self.path.join(name);
+            let bytes = fs::read(&path).map_err(|source| SweepError::Read { path, source })?;
+            hasher.update(&(bytes.len() as u64).to_le_bytes()).update(&bytes);
+        }
+        Ok(hasher.finalize().to_hex().to_string())
     }
 
     /// The text of the scene that is varied.
@@ -97,29 +118,38 @@ impl Folder {
         Ok(tasks)
     }
 
-    /// Writes a plan, where none is there or one of the same title or file. The head goes first and comes last: a kill in between leaves
-    /// a folder that is to be planned again.
+    /// Writes a plan in a folder of its own, or over an earlier plan of the same file. Its hash comes last: a kill before leaves a
+    /// folder that is to be planned again.
     ///
     /// # Errors
     /// Where the folder holds another sweep, or cannot be written.
     pub fn keep(&self, plan: &Plan) -> Result<(), SweepError> {
-        if self.holds_sweep() {
-            let there = self.head()?;
-            if there.title != plan.head.title && there.file != plan.head.file {
+        match read_json::<Head>(&self.path.join(HEAD)) {
+            // A sweep whose file was moved is known by its title.
+            Some(there)
+                if there.file != plan.head.file
+                    && (there.title != plan.head.title || Path::new(&there.file).exists()) =>
+            {
                 let (title, file) = (there.title, there.file);
                 return Err(SweepError::OtherSweep { folder: self.path.clone(), title, file });
             }
-            if there == plan.head {
-                return Ok(());
+            Some(_) => {}
+            None if self.holds_sweep() => {}
+            None => {
+                if let Some(name) = [TASKS, SCENE, "logs", "rows"].iter().find(|name| self.path.join(name).exists()) {
+                    return Err(SweepError::InTheWay { folder: self.path.clone(), name });
+                }
             }
         }
         for folder in [self.logs(), self.rows_folder()] {
             fs::create_dir_all(&folder).map_err(|source| SweepError::Write { path: folder, source })?;
         }
-        self.remove(HEAD)?;
+        let mut head = Head { plan_hash: String::new(), ..plan.head.clone() };
+        self.write_json(HEAD, &head)?;
         self.write(TASKS, &lines(&plan.tasks))?;
         self.write(SCENE, plan.scene_text.as_bytes())?;
-        self.write_json(HEAD, &plan.head)
+        head.plan_hash = self.plan_hash(&head)?;
+        self.write_json(HEAD, &head)
     }
 
     /// Writes what is on record of a task.
@@ -127,13 +157,13 @@ impl Folder {
     /// # Errors
     /// Where it cannot be written.
     pub fn keep_record(&self, record: &TaskRecord) -> Result<(), SweepError> {
-        self.write_json(&record_file(&record.key), record)
+        self.write_json(&record_file(&record.key), &record.clone().sealed())
     }
 
     /// What is on record of a task. A record that cannot be read is none: the log gives it again.
     pub fn record(&self, key: &str) -> Option<TaskRecord> {
         let record: TaskRecord = read_json(&self.path.join(record_file(key)))?;
-        (record.key == key).then_some(record)
+        (record.key == key && record.is_whole()).then_some(record)
     }
 
     /// Takes tasks off the record, so that they are done again.
@@ -178,7 +208,8 @@ impl Folder {
             .into_iter()
             .map(|task| {
                 // What was done again since has a newer record of its own.
-                let in_table = known.get(&task.key).filter(|record| record.answers(&task, &outputs)).cloned();
+                let in_table =
+                    known.get(&task.key).filter(|record| record.answers(&task, &outputs) && record.is_whole()).cloned();
                 let record = in_table.or_else(|| {
                     let found = self.record(&task.key).filter(|record| record.answers(&task, &outputs))?;
                     // What failed may be done again, and is not looked for in two places.

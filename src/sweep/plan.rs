@@ -21,7 +21,7 @@ const COLUMNS: usize = 60;
 pub struct Head {
     /// What the sweep shows.
     pub title: String,
-    /// Its file, as it was called.
+    /// Its file, as a whole path, or the name that it comes with the program under.
     pub file: String,
     /// File of the scene that is varied.
     pub scene: String,
@@ -39,6 +39,9 @@ pub struct Head {
     pub references: usize,
     /// Hash of the texts that it was planned from.
     pub planned_from: String,
+    /// Hash of the plan as it was written; none before that.
+    #[serde(default)]
+    pub plan_hash: String,
 }
 
 /// A task of a sweep.
@@ -118,6 +121,7 @@ impl Plan {
             tasks: 0,
             references: 0,
             planned_from: planned_from(sweep_text, scene_text, scene_file),
+            plan_hash: String::new(),
         };
         let scene_text = whole(scene_text, scene_file);
         let values = all_values(sweep);

@@ -54,9 +54,31 @@ pub struct TaskRecord {
     pub numerics: u32,
     /// Where it ended.
     pub host: String,
+    /// Warnings of the run, a sentence for each kind.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+    /// Hash of all the rest: what was changed by hand does not count.
+    #[serde(default)]
+    pub hash: String,
 }
 
 impl TaskRecord {
+    /// The record with the hash of what it holds.
+    pub(super) fn sealed(mut self) -> Self {
+        self.hash = self.own_hash();
+        self
+    }
+
+    /// Whether it holds what was put on record.
+    pub(super) fn is_whole(&self) -> bool {
+        self.hash == self.own_hash()
+    }
+
+    fn own_hash(&self) -> String {
+        let text = serde_json::to_vec(&Self { hash: String::new(), ..self.clone() }).unwrap_or_default();
+        blake3::hash(&text).to_hex().to_string()
+    }
+
     /// Whether a sweep with these outputs need not do the task again. Numbers of other numerics do not count, nor what another version of
     /// the program refused, nor errors against another reference; what is newly asked for is read from the log.
     pub fn answers(&self, task: &Task, outputs: &[Quantity]) -> bool {

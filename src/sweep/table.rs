@@ -117,10 +117,16 @@ impl Table {
     /// Keeps the rows that meet all conditions.
     ///
     /// # Errors
-    /// Where a condition is on no column.
+    /// Where a condition is on no column, or compares numbers with a word.
     pub fn retain(&mut self, conditions: &[Condition]) -> Result<(), SweepError> {
         for condition in conditions {
             let column = self.column(&condition.column)?;
+            let is_word = condition.value.is_string();
+            let holds_numbers = self.rows.iter().any(|row| self.values(row)[column].is_number());
+            if is_word && holds_numbers {
+                let problem = format!("{} holds numbers, and is compared with {}", condition.column, condition.value);
+                return Err(SweepError::Wrong { file: self.head.file.clone(), problem });
+            }
             let rows = std::mem::take(&mut self.rows);
             self.rows = rows
                 .into_iter()

@@ -103,6 +103,7 @@ impl<'w> Work<'w> {
             unknowns: last.map(|report| report.unknowns),
             wall_s: Some(summary.wall_s()),
             log: self.log_of(scene),
+            warnings: summary.warnings.iter().map(|warning| warning.first.in_words()).collect(),
             ..self.ended(task, Ending::Done, None)
         })
     }
@@ -146,6 +147,8 @@ impl<'w> Work<'w> {
             program_version,
             numerics: NUMERICS_REVISION,
             host,
+            warnings: Vec::new(),
+            hash: String::new(),
         }
     }
 }
