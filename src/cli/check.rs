@@ -186,7 +186,7 @@ fn refined(finest: &FinestLine) -> String {
         if parts.is_empty() { ", more than is tried out here".to_owned() } else { format!(": {}", parts.join(", ")) };
     format!(
         "the mesh grows where the shell bends, to {n1} × {n2} elements at most, which is the length limit everywhere{cost}; a run \
-         takes between what is needed at the start and about that"
+         takes from what is needed at the start to twice that"
     )
 }
 

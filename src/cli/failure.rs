@@ -160,6 +160,14 @@ pub(super) enum Failure {
         "{} has not been begun: `foldline sweep run {}` does, and a folder is named by itself", sweep.display(), sweep.display()
     )]
     NoSweep { sweep: PathBuf },
+    #[cfg(feature = "parquet")]
+    #[error("the table cannot be written as Parquet")]
+    Parquet { source: Box<dyn std::error::Error + Send + Sync> },
+    #[cfg(not(feature = "parquet"))]
+    #[error(
+        "this program was built without Parquet: `cargo install --path . --features parquet` builds one with it, and --csv is always there"
+    )]
+    NoParquet,
     #[error("interrupted; continue with: foldline sweep resume {}", folder.display())]
     SweepInterrupted { folder: PathBuf },
     #[error("{} left, for reasons that are none of their own; continue with: foldline sweep resume {}", count(*left, "task"), folder.display())]
@@ -228,6 +236,8 @@ impl Failure {
             | Failure::NoSlurm { .. }
             | Failure::NoSuchScene { .. } => 2,
             Failure::Sweep(error) if !matches!(error, SweepError::Write { .. }) => 2,
+            #[cfg(not(feature = "parquet"))]
+            Failure::NoParquet => 2,
             Failure::NotASpring(_) => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, TaskError::Model(_)) => 2,
@@ -258,8 +268,8 @@ impl Failure {
     /// The failure and what is below it, a line each.
     pub(super) fn in_full(&self) -> String {
         let mut text = match self {
-            // A line for each change.
-            Failure::NothingKept(_) | Failure::LogIsThere { .. } => self.to_string(),
+            // A line for each change, or lines of a file.
+            Failure::NothingKept(_) | Failure::LogIsThere { .. } | Failure::Sweep(_) => self.to_string(),
             _ => one_line(&self.to_string()).into_owned(),
         };
         let mut cause = std::error::Error::source(self);

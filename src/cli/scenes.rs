@@ -24,7 +24,8 @@ const USES: &str = "\
   foldline run baseline              run one; a file of that name is taken first
   foldline new baseline -o own.toml  write its text, to be changed
   foldline extremes                  run all of extreme/, and see that each ends as it states
-  foldline study studies/length      run a study, of which there are three";
+  foldline study studies/length      run a study, of which there are three
+  foldline sweep run sweeps/roof-snap  run a sweep over designs, of which there are four";
 
 /// What a program reads of one.
 #[derive(Serialize)]

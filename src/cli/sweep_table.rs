@@ -31,6 +31,9 @@ pub(super) struct Chosen {
     /// Write the table as CSV, with keys, costs and reasons
     #[arg(long, value_name = "FILE", value_parser = file_name())]
     csv: Option<PathBuf>,
+    /// Write the table as Apache Parquet (where the program was built with `--features parquet`)
+    #[arg(long, value_name = "FILE", value_parser = file_name())]
+    parquet: Option<PathBuf>,
     /// Print a JSON object for each row
     #[arg(long)]
     json: bool,
@@ -45,17 +48,30 @@ impl Chosen {
 
 /// The rows that are wanted, as text; files are written on the way.
 pub(super) fn table_of(folder: &Folder, chosen: &Chosen) -> Result<String, Failure> {
-    refuse_what_is_there(chosen.csv.as_ref())?;
+    refuse_what_is_there(chosen.csv.iter().chain(&chosen.parquet))?;
     let mut table = Table::read(folder)?;
     let all = table.rows.len();
     table.retain(&chosen.conditions)?;
     if let Some(csv) = &chosen.csv {
         write_files(&[(csv.clone(), table.to_csv().into_bytes())])?;
     }
+    if let Some(parquet) = &chosen.parquet {
+        write_files(&[(parquet.clone(), as_parquet(&table)?)])?;
+    }
     if chosen.json {
         return Ok(table.to_json_lines());
     }
     Ok(shown(&table, all, chosen.rows.unwrap_or(SHOWN)))
+}
+
+#[cfg(feature = "parquet")]
+fn as_parquet(table: &Table) -> Result<Vec<u8>, Failure> {
+    table.to_parquet().map_err(|source| Failure::Parquet { source: Box::new(source) })
+}
+
+#[cfg(not(feature = "parquet"))]
+fn as_parquet(_: &Table) -> Result<Vec<u8>, Failure> {
+    Err(Failure::NoParquet)
 }
 
 fn shown(table: &Table, all: usize, most: usize) -> String {

@@ -5,6 +5,7 @@
 //! | [`tutorial`] | a tape spring of one's own, from nothing to a report |
 //! | [`theory`] | what is computed, with equations and sources |
 //! | [`log`] | the format of a log, for a reader in another language |
+//! | [`sweeps`] | tables over many designs |
 //! | [`citing`] | how to cite the program and the papers behind it |
 //! | [`changes`] | what each version brought |
 
@@ -16,6 +17,9 @@ pub mod citing {}
 
 #[doc = include_str!("log.md")]
 pub mod log {}
+
+#[doc = include_str!("sweeps.md")]
+pub mod sweeps {}
 
 #[doc = include_str!("theory.md")]
 pub mod theory {}

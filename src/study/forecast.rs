@@ -166,8 +166,7 @@ fn step_cost(scene: &Scene, start: State) -> Result<StepCost, RunError> {
         Some(iterations) => (*iterations, evaluations(*iterations) * quickest(&records)),
         None => repeated(&mut Stages::new(scene.clone()), &start)?,
     };
-    // A run whose mesh is refined ends on another mesh.
-    if scene.adapt.is_none() && !is_ended {
+    if !is_ended {
         drop(run);
         let warnings = Stages::new(scene.clone()).warnings_at_end(&state);
         warnings.map_err(RunError::Stage)?;

@@ -10,7 +10,7 @@
 //! | `quantity` | what is collected of a run |
 //! | `plan` | the tasks |
 //! | `record`, `folder` | what is on record of a task; the folder of a sweep |
-//! | `table` | rows, filtered and written |
+//! | `table`, `parquet` | rows, filtered and written; as Parquet where that is compiled in |
 //! | `work`, `pool` | one task, done; all of them on this machine |
 //! | `slurm`, `submission` | batch scripts and what Slurm prints; what was given to it |
 //! | `error` | what can be wrong |
@@ -18,6 +18,8 @@
 mod axis;
 mod error;
 mod folder;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod plan;
 mod pool;
 mod quantity;

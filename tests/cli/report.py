@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The page of `foldline report` in headless Chromium: no console error, the figures hold the data of the log, the slider moves the
-shell, and it fits a phone. Usage: report.py FOLDLINE CHROMIUM (needs the package `playwright`, but none of its browsers)."""
+"""The pages of `foldline report` and `foldline sweep report` in headless Chromium: no console error, the figures hold the data of the log,
+the slider moves the shell, tasks are chosen, and they fit a phone. Usage: report.py FOLDLINE CHROMIUM (needs the package `playwright`, but none of its browsers)."""
 
 import json
 import subprocess
@@ -28,6 +28,53 @@ def settled(log):
         if stage["outcome"] == "done" and stage["stage"] in ("solve", "re-equilibrate"):
             found[stage["step"]] = stage
     return found
+
+
+SWEEP = """
+title = "small"
+scene = "baseline-quarter"
+settings = ["load.rotation_deg=2"]
+outputs = ["last.moment_n_mm", "theory_stiffness_n_mm"]
+[[axis]]
+key = "geometry.radius_mm"
+values = [9, 10, 11, 12]
+[[axis]]
+key = "material.thickness_mm"
+values = [0.1, 0.12]
+"""
+
+
+def sweep(folder, browser):
+    """The page of a sweep: every task drawn and listed, links that lead to logs, and a choice along an axis."""
+    (folder / "s.toml").write_text(SWEEP)
+    run("sweep", "run", folder / "s.toml", "--folder", folder / "s")
+    run("sweep", "report", folder / "s")
+    for width, scheme in [(1200, "light"), (360, "dark")]:
+        page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme=scheme)
+        said = []
+        page.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("request", lambda request: said.append(request.url) if request.url.startswith("http") else None)
+        page.goto((folder / "s" / "report.html").as_uri())
+        page.wait_for_function("find('listed').textContent !== ''")
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        curves = page.evaluate("charts[0].data.datasets.map((set) => set.data.length)")
+        assert curves == [4, 4], curves
+        assert page.evaluate("charts[1].data.datasets[0].data.length") == 8
+        for link in page.evaluate("[...document.querySelectorAll('#tasks a')].map((a) => a.getAttribute('href'))"):
+            assert (folder / "s" / link).is_file(), link
+        box = page.locator("#parallel").bounding_box()
+        page.locator("#parallel").scroll_into_view_if_needed()
+        box = page.locator("#parallel").bounding_box()
+        first, bottom = box["x"] + box["width"] / 8, box["y"] + box["height"] - 22
+        page.mouse.move(first, bottom + 5)
+        page.mouse.down()
+        page.mouse.move(first, bottom - 0.5 * (box["height"] - 68))
+        page.mouse.up()
+        assert page.evaluate("find('listed').textContent").startswith("4 of 4 chosen of 8"), page.evaluate("find('listed').textContent")
+        assert not said, said
+        print(f"{width} pixels, {scheme}: the page of a sweep draws, lists and chooses its tasks")
+        page.close()
 
 
 def shown(page, canvas):
@@ -72,4 +119,5 @@ with tempfile.TemporaryDirectory() as folder, sync_playwright() as driver:
         assert not said, said
         print(f"{width} pixels, {scheme}: {size / 1e6:.1f} MB, open after {opened:.2f} s, {len(drawn)} load steps as in the log")
         page.close()
+    sweep(folder, browser)
     browser.close()

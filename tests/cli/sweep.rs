@@ -18,7 +18,7 @@ fn place(axes: &str) -> Sandbox {
 
 #[test]
 fn a_scene_that_is_wrong_and_a_run_that_stops_are_rows() {
-    // At an arc of 400° there is no section; 45 load steps of 0.01° are more than the solver may take iterations for.
+    // At an arc of 400° there is no section.
     let place = place(
         "outputs = [\"last.moment_n_mm\", \"theory_peak_n_mm\"]\n[[axis]]\nkey = \"geometry.arc_deg\"\nvalues = [110, 400, 20]\n",
     );
@@ -35,7 +35,9 @@ fn a_scene_that_is_wrong_and_a_run_that_stops_are_rows() {
 
 #[test]
 fn a_run_that_stops_keeps_its_log_and_its_reason() {
-    let place = place("[[axis]]\nkey = \"solver.most_iterations\"\nvalues = [50, 1]\n");
+    let place = place(
+        "[[axis]]\nkeys = [\"solver.max_iterations\", \"solver.least_increment_deg\", \"solver.snap_tolerance_deg\"]\nvalues = [[50, 0.1, 0.1], [1, 1.9, 2.0]]\n",
+    );
     place.foldline("sweep run s.toml").ends(0);
     let found = rows(&place.foldline("sweep status s.toml --json --where ending=failed").ends(0).out);
     let [failed] = &found[..] else { panic!("{found:?}") };
@@ -110,9 +112,14 @@ fn three_kinds_go_through_one_engine() {
     for row in rows(&place.foldline("sweep status path --json").ends(0).out) {
         assert!(row["last.path_length_mm"].as_f64().unwrap() > 0.0, "{row}");
     }
+    let small = include_str!("../restart/small.toml");
+    let (before, behind) = small.split_once("[adapt]").unwrap();
+    assert!(behind.contains("[pipeline]"));
+    let uniform = format!("{before}[pipeline]\nstages = [\"solve\"]\n");
+    place.write("uniform.toml", uniform);
     place.write(
         "r.toml",
-        "title = \"error\"\nscene = \"small.toml\"\nsettings = [\"load.rotation_deg=4\", \"pipeline.stages=['solve']\"]\n\
+        "title = \"error\"\nscene = \"uniform.toml\"\nsettings = [\"load.rotation_deg=4\"]\n\
          outputs = [\"error_before\", \"error_after\"]\n[reference]\nsettings = [\"mesh.elements=[24, 8]\"]\n\
          [[axis]]\nkey = \"mesh.elements\"\nvalues = [[4, 4], [8, 4], [16, 8]]\n",
     );

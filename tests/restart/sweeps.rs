@@ -102,13 +102,14 @@ fn a_finished_sweep_runs_nothing_again_and_reads_what_is_newly_asked_for() {
     place.foldline(COMMAND).ends(0);
     let made = logs(&place);
     place.foldline(COMMAND).ends(0).says(&["6 of them on record"]);
-    place.write("sweep.toml", SWEEP.replace("\"snap_before\"", "\"snap_after\", \"theory_peak_n_mm\""));
+    let asked = SWEEP.replace("\"snap_before\"", "\"snap_after\", \"theory_peak_n_mm\"");
+    place.write("sweep.toml", &asked);
     place.foldline(COMMAND).ends(0);
     assert_eq!(logs(&place), made, "the logs tell");
     let rows = table(&place);
     assert!(rows.iter().all(|row| row["theory_peak_n_mm"].as_f64().is_some_and(|peak| peak > 100.0)), "{rows:?}");
     // More values: only those are run.
-    place.write("sweep.toml", SWEEP.replace("[9, 10, 11]", "[9, 10, 11, 12]"));
+    place.write("sweep.toml", asked.replace("[9, 10, 11]", "[9, 10, 11, 12]"));
     place.foldline(COMMAND).ends(0).says(&["8 tasks, 6 of them on record"]);
     let now = logs(&place);
     assert_eq!((now.len(), made.iter().all(|(name, bytes)| now[name] == *bytes)), (8, true));
@@ -135,8 +136,7 @@ fn an_interrupted_sweep_says_how_it_continues() {
     let place = place();
     let mut child = place.command(COMMAND).stderr(std::process::Stdio::piped()).spawn().unwrap();
     std::thread::sleep(Duration::from_millis(150));
-    let id = rustix::process::Pid::from_child(&child);
-    rustix::process::kill_process(id, rustix::process::Signal::TERM).unwrap();
+    std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     let code = child.wait().unwrap().code();
     assert!(matches!(code, Some(75 | 0)), "{code:?}");
     place.foldline("sweep resume f").ends(0);
@@ -151,26 +151,24 @@ fn a_task_outlives_repeated_signals_and_waits_for_a_log_that_is_held() {
     place.foldline("sweep run sweep.toml --folder f --slurm --dry-run").ends(0);
     let command = "sweep task f 1";
     let mut child = place.command(command).spawn().unwrap();
-    let id = rustix::process::Pid::from_child(&child);
-    std::thread::sleep(Duration::from_millis(60));
+    while logs(&place).is_empty() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
     let code = loop {
         if let Some(status) = child.try_wait().unwrap() {
             break status.code();
         }
-        rustix::process::kill_process(id, rustix::process::Signal::TERM).unwrap();
-        std::thread::sleep(Duration::from_millis(1));
+        std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     };
     assert!(matches!(code, Some(75 | 0)), "{code:?}");
-    let name = logs(&place).into_keys().next();
-    if let Some(name) = name {
-        place.foldline(&format!("verify f/logs/{name}")).ends(0);
-        let held = foldline::journal::LogLock::take(&place.file(&format!("f/logs/{name}"))).unwrap();
-        let mut child = place.command(command).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(500));
-        assert!(code == Some(0) || child.try_wait().unwrap().is_none(), "it waits");
-        drop(held);
-        assert!(child.wait().unwrap().success());
-    }
+    let name = logs(&place).into_keys().next().unwrap();
+    place.foldline(&format!("verify f/logs/{name}")).ends(0);
+    let held = foldline::journal::LogLock::take(&place.file(&format!("f/logs/{name}"))).unwrap();
+    let mut child = place.command(command).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(code == Some(0) || child.try_wait().unwrap().is_none(), "it waits");
+    drop(held);
+    assert!(child.wait().unwrap().success());
     place.foldline(command).ends(0);
     assert_eq!(table(&place).iter().filter(|row| row["ending"] == "done").count(), 1);
 }

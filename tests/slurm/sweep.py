@@ -160,10 +160,10 @@ class Disturbance:
 
     def once(self):
         running = [one for one in queue() if one[2] == "RUNNING" and one[3] == "low" and one[1].isdigit()]
-        if running:
-            actions = [self.kill, self.kill, self.term, self.requeue, self.preempt]
+        actions = [self.kill, self.kill, self.term, self.requeue, self.requeue, self.preempt]
+        for action in RANDOM.choices(actions, k=RANDOM.randint(1, 3) if running else 0):
             try:
-                RANDOM.choice(actions)(running)
+                action(running)
             except (IndexError, ProcessLookupError):
                 pass  # It has ended meanwhile.
         self.find_node()
