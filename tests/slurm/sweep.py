@@ -127,11 +127,16 @@ class Disturbance:
 
     def lose_node(self):
         """The daemon of a node dies and its tasks hang; Slurm gives them to the other node, too."""
-        os.kill(int((LAB / "slurmd-n2.pid").read_text()), signal.SIGKILL)
         for number in processes(self.folder):
             if environment(number).get("SLURMD_NODENAME") == "n2":
-                os.kill(number, signal.SIGSTOP)
-                self.stopped.append(number)
+                try:
+                    os.kill(number, signal.SIGSTOP)
+                    self.stopped.append(number)
+                except ProcessLookupError:
+                    pass
+        if not self.stopped:
+            return
+        os.kill(int((LAB / "slurmd-n2.pid").read_text()), signal.SIGKILL)
         self.node_is_lost_until = time.monotonic() + 60
         self.counts["lost nodes"] += 1
 
@@ -141,6 +146,7 @@ class Disturbance:
             return
         names = ("SLURM_ARRAY_JOB_ID", "SLURM_ARRAY_TASK_ID")
         elements = [tuple(environment(number).get(name) for name in names) for number in processes(self.folder)]
+        elements = [element for element in elements if None not in element]
         twice = len(elements) - len(set(elements))
         self.twice = max(self.twice, twice)
         if now or twice == len(self.stopped) or time.monotonic() > self.node_is_lost_until:
@@ -190,7 +196,7 @@ def disturbed(folder, tasks, limit_s):
         if sum(disturbance.counts.values()) < tasks:
             disturbance.once()
         else:
-            disturbance.find_node(now=True)
+            disturbance.find_node()
         done = watch.look()
         if TASKS >= 200 and done > tasks // 4 and not disturbance.counts["lost nodes"]:
             disturbance.lose_node()
