@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::columns::{Column, Columns};
 use super::failure::Failure;
 use super::output::{path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
+use super::terminal::output_columns;
 use crate::scene::Scene;
 use crate::study::{BenchError, Figure, kernel_figures, run_figure};
 
@@ -25,7 +27,7 @@ an iteration the time that its pieces would take at their limits. Elements are t
 #[derive(Args, Debug)]
 #[command(after_help = LIMITS)]
 pub(super) struct Arguments {
-    /// Scenes to run whole (TOML); the kernels are timed on the first [default: the baseline's kernels alone]
+    /// Scenes to run whole (TOML), or names of `foldline scenes`; the kernels are timed on the first [default: the baseline's kernels alone]
     scenes: Vec<PathBuf>,
     /// Elements each way over the whole shell, for the kernels
     #[arg(long, value_name = "N1,N2", default_value = "128,16")]
@@ -65,41 +67,54 @@ impl Arguments {
         };
         let failed = |source: BenchError| Failure::Bench { source: Box::new(source) };
         let figures = kernel_figures(&kernels, &name, usize::from(self.repeats)).map_err(failed)?;
-        self.show(&figures, true)?;
+        let names = scenes.iter().map(|(name, _)| name).chain([&name]);
+        let table = columns(names.map(|name| name.chars().count()).max().unwrap_or(0));
+        if !self.json {
+            print(&table.head())?;
+        }
+        self.show(&table, &figures)?;
         for (name, scene) in &scenes {
-            self.show(&[run_figure(scene, name).map_err(failed)?], false)?;
+            self.show(&table, &[run_figure(scene, name).map_err(failed)?])?;
         }
         Ok(())
     }
 
-    fn show(&self, figures: &[Figure], head: bool) -> Result<(), Failure> {
+    fn show(&self, table: &Columns, figures: &[Figure]) -> Result<(), Failure> {
         if self.json {
             return figures.iter().try_for_each(print_json);
         }
-        let mut text = String::new();
-        if head {
-            text.push_str(&format!(
-                "{:<17} {:>12} {:>6} {:>9} {:>7} {:>8} {:>11} {:>9}  {}\n",
-                "figure", "median ms", "limit", "elements", "degree", "threads", "quadrature", "unknowns", "scene"
-            ));
-        }
-        for figure in figures {
-            let fraction = figure.fraction_of_peak.map_or_else(String::new, |share| format!("{:.0} %", 100.0 * share));
-            let [n1, n2] = figure.elements;
-            let [p1, p2] = figure.degree;
-            text.push_str(&format!(
-                "{:<17} {:>12.3} {:>6} {:>9} {:>7} {:>8} {:>11} {:>9}  {}\n",
-                figure.name,
-                figure.median_ms,
-                fraction,
-                format!("{n1}×{n2}"),
-                format!("{p1}×{p2}"),
-                figure.threads,
-                figure.quadrature,
-                figure.unknowns,
-                figure.scene
-            ));
-        }
-        print(&text)
+        print(&figures.iter().map(|figure| row(table, figure)).collect::<String>())
     }
+}
+
+/// The columns; the last has names of so many characters.
+fn columns(widest: usize) -> Columns {
+    let all = vec![
+        Column::of_words("figure", 17),
+        Column::of_numbers("median ms", 12),
+        Column::of_numbers("limit", 6),
+        Column::of_numbers("elements", 9).rank(1),
+        Column::of_numbers("degree", 7).rank(3),
+        Column::of_numbers("threads", 8).rank(6),
+        Column::of_numbers("quadrature", 11).rank(5),
+        Column::of_numbers("unknowns", 9).rank(4),
+        Column::of_words("scene", widest).behind(2).rank(2),
+    ];
+    Columns::fitting(all, output_columns())
+}
+
+fn row(table: &Columns, figure: &Figure) -> String {
+    let [n1, n2] = figure.elements;
+    let [p1, p2] = figure.degree;
+    table.row(&[
+        figure.name.to_string(),
+        format!("{:.3}", figure.median_ms),
+        figure.fraction_of_peak.map_or_else(String::new, |share| format!("{:.0} %", 100.0 * share)),
+        format!("{n1}×{n2}"),
+        format!("{p1}×{p2}"),
+        figure.threads.to_string(),
+        figure.quadrature.to_string(),
+        figure.unknowns.to_string(),
+        figure.scene.to_string(),
+    ])
 }

@@ -8,6 +8,8 @@ use super::failure::Failure;
 use super::output::{path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
 use super::session::use_threads;
+use super::terminal::output_columns;
+use super::wrapped::wrapped;
 use crate::record::Parameter;
 use crate::scene::Scene;
 use crate::study::{Calibrated, Calibration, CoarseIn, EndedBy, Verdict, calibrate, check_calibratable, fine_elements};
@@ -16,7 +18,7 @@ use crate::study::{Calibrated, Calibration, CoarseIn, EndedBy, Verdict, calibrat
 /// probe) passes 1 %, and take the largest indicator max|κ|h seen by then, for each direction
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// Scene (TOML) that refines its mesh; its start mesh is the coarse one
+    /// Scene (TOML) that refines its mesh, or the name of one of `foldline scenes`; its start mesh is the coarse one
     scene: PathBuf,
     /// The relative error at which to stop
     #[arg(long, value_name = "SHARE", default_value_t = 0.01)]
@@ -66,45 +68,67 @@ impl Arguments {
     }
 }
 
-/// The three curves side by side.
+/// The three curves side by side, or below one another where a terminal is too narrow.
 fn table(found: &Calibration, scene: &Scene) -> String {
     let (parameter, quantity) = match Parameter::of(scene) {
         Parameter::Rotation => ("rotation", "moment"),
         Parameter::LoadFactor => ("factor", "first probe"),
     };
     let [n1, n2] = found.fine;
-    let mut text = format!(
-        "error of the {quantity} against {n1}×{n2} elements, and the largest max|κ|h so far:\n\
-         of a mesh that is coarse along u alone, along v alone, and both ways\n\
-         {:>9}  {:>18}  {:>18}  {:>26}\n{parameter:>9}  {:>9} {:>8}  {:>9} {:>8}  {:>8} {:>8} {:>8}\n",
-        "",
-        title("u", &found.coarse[0]),
-        title("v", &found.coarse[1]),
-        title("both", &found.coarse[2]),
-        "error %",
-        "r_u",
-        "error %",
-        "r_v",
-        "error %",
-        "r_u",
-        "r_v"
+    let what = format!(
+        "error of the {quantity} against {n1}×{n2} elements, and the largest max|κ|h so far: of a mesh that is coarse along u \
+         alone, along v alone, and both ways"
     );
-    // Each ends where it passed the error, so that a parameter may be missing from some of the three.
-    let mut parameters: Vec<f64> = found.coarse.iter().flat_map(|one| &one.curve).map(|p| p.parameter).collect();
+    let mut text = wrapped("", &what) + "\n";
+    let widths = [0, 1, 2].map(|curve| heads(curve).iter().map(|(_, width)| width + 1).sum::<usize>() + 1);
+    let is_wide = output_columns().is_none_or(|columns| PARAMETER + widths.iter().sum::<usize>() <= columns);
+    let blocks: &[&[usize]] = if is_wide { &[&[0, 1, 2]] } else { &[&[0, 1], &[2]] };
+    let blocks = blocks.iter().map(|curves| block(found, parameter, curves));
+    text.push_str(&blocks.collect::<Vec<_>>().join("\n"));
+    text
+}
+
+/// Width of the parameters.
+const PARAMETER: usize = 9;
+
+/// The columns of a curve: the error, and the indicators of the directions in which its mesh is coarse.
+fn heads(curve: usize) -> &'static [(&'static str, usize)] {
+    match curve {
+        0 => &[("error %", 9), ("r_u", 8)],
+        1 => &[("error %", 9), ("r_v", 8)],
+        _ => &[("error %", 8), ("r_u", 8), ("r_v", 8)],
+    }
+}
+
+/// Some of the curves side by side.
+fn block(found: &Calibration, parameter: &str, curves: &[usize]) -> String {
+    let [mut titles, mut head] = [format!("{:>PARAMETER$}", ""), format!("{parameter:>PARAMETER$}")];
+    for &curve in curves {
+        let cells: String = heads(curve).iter().map(|&(head, width)| format!(" {head:>width$}")).collect();
+        let title = title(["u", "v", "both"][curve], &found.coarse[curve]);
+        titles += &format!(" {title:>0$}", cells.chars().count());
+        head += &format!(" {cells}");
+    }
+    let mut text = format!("{titles}\n{head}\n");
+    // Each ends where it passed the error, so that a parameter may be missing from some of them.
+    let all = curves.iter().flat_map(|&curve| &found.coarse[curve].curve);
+    let mut parameters: Vec<f64> = all.map(|point| point.parameter).collect();
     parameters.sort_by(f64::total_cmp);
     parameters.dedup();
     for parameter in parameters {
-        let [u, v, both] = found.coarse.each_ref().map(|one| one.curve.iter().find(|p| p.parameter == parameter));
-        let error = |share: f64| format!("{:.3}", 100.0 * share);
-        let u = u.map_or_else(Default::default, |p| [error(p.error), format!("{:.5}", p.indicator[0])]);
-        let v = v.map_or_else(Default::default, |p| [error(p.error), format!("{:.5}", p.indicator[1])]);
-        let both = both.map_or_else(Default::default, |p| {
-            [error(p.error), format!("{:.5}", p.indicator[0]), format!("{:.5}", p.indicator[1])]
-        });
-        let row = format!(
-            "{parameter:>9.3}  {:>9} {:>8}  {:>9} {:>8}  {:>8} {:>8} {:>8}",
-            u[0], u[1], v[0], v[1], both[0], both[1], both[2]
-        );
+        let mut row = format!("{parameter:>PARAMETER$.3}");
+        for &curve in curves {
+            let point = found.coarse[curve].curve.iter().find(|point| point.parameter == parameter);
+            row += " ";
+            for &(head, width) in heads(curve) {
+                let cell = point.map_or_else(String::new, |point| match head {
+                    "r_u" => format!("{:.5}", point.indicator[0]),
+                    "r_v" => format!("{:.5}", point.indicator[1]),
+                    _ => format!("{:.3}", 100.0 * point.error),
+                });
+                row += &format!(" {cell:>width$}");
+            }
+        }
         text.push_str(&(row.trim_end().to_owned() + "\n"));
     }
     text
@@ -123,9 +147,12 @@ fn conclusion(found: &Calibration) -> String {
     });
     match u.zip(v) {
         Some((u, v)) => format!(
-            "{told}threshold = [{u:.5}, {v:.5}]\n\
-             This is of the start mesh and of what comes before a snap; behind one the length limit\n\
-             decides. To see what a run makes of it: foldline study SCENE --against REFERENCE\n"
+            "{told}threshold = [{u:.5}, {v:.5}]\n{}\n",
+            wrapped(
+                "",
+                "This is of the start mesh and of what comes before a snap; behind one the length limit decides. To see what a \
+                 run makes of it: foldline study SCENE --against REFERENCE"
+            )
         ),
         None => format!("{told}no threshold for both directions: fewer start elements show more\n"),
     }

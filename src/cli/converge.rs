@@ -5,10 +5,12 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 
+use super::columns::{Column, Columns};
 use super::failure::Failure;
 use super::output::{path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
 use super::session::{use_threads, watch_signals};
+use super::terminal::output_columns;
 use crate::scene::Scene;
 use crate::study::{Archive, ConvergenceRow, Purpose, TaskError, converged, in_turn, path_scene};
 
@@ -16,7 +18,7 @@ use crate::study::{Archive, ConvergenceRow, Purpose, TaskError, converged, in_tu
 /// size asked for: peak, limit rotation and moments of each, with its run time
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// Scene of a tape spring whose ends turn (TOML); its rotation gives how far up the fold the path is followed
+    /// Scene of a tape spring whose ends turn (TOML), or the name of one of `foldline scenes`; its rotation gives how far up the fold the path is followed
     scene: PathBuf,
     /// Degree both ways; may be repeated
     #[arg(long, value_name = "P", default_values_t = [3, 4], value_parser = clap::value_parser!(u16).range(2..=5))]
@@ -56,8 +58,9 @@ impl Arguments {
         let scenes = scenes.iter().map(path_scene).collect::<Result<Vec<_>, _>>()?;
         let archive =
             Archive::open(&self.logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let table = columns(self.unstable_at, scenes.first().map_or(0.0, |scene| scene.load.target()));
         if !self.json {
-            print(&head(self.unstable_at, scenes.first().map_or(0.0, |scene| scene.load.target())))?;
+            print(&table.head())?;
         }
         let runs: Vec<(&Scene, Purpose)> = scenes.iter().map(|scene| (scene, Purpose::Time)).collect();
         let interrupted = || raised.load(Ordering::Relaxed);
@@ -70,41 +73,54 @@ impl Arguments {
             let found = converged(runs[index].0, &done, self.unstable_at);
             match self.json {
                 true => print_json(&found),
-                false => print(&row(&found)),
+                false => print(&table.row(&row(&found))),
             }
         })
     }
 }
 
-fn head(unstable_at: f64, target: f64) -> String {
-    let columns = [
-        format!("{:>6} {:>9} {:>8}", "degree", "elements", "unknowns"),
-        format!("{:>9} {:>8}", "peak N·mm", "at °"),
-        format!("{:>8} {:>8}", "limit °", "M N·mm"),
-        format!("{:>12}", format!("back at {unstable_at}°")),
-        format!("{:>8} {:>8}", "fold °", "M N·mm"),
-        format!("{:>12}", format!("fold at {target}°")),
-        format!("{:>5} {:>10} {:>7}", "steps", "iterations", "wall s"),
+fn columns(unstable_at: f64, target: f64) -> Columns {
+    let all = vec![
+        Column::of_numbers("degree", 6),
+        Column::of_numbers("elements", 9),
+        Column::of_numbers("unknowns", 8).rank(7),
+        Column::of_numbers("peak N·mm", 9).behind(2),
+        Column::of_numbers("at °", 8).rank(4),
+        Column::of_numbers("limit °", 8).behind(2),
+        Column::of_numbers("M N·mm", 8).rank(3),
+        Column::of_numbers(format!("back at {unstable_at}°"), 12).behind(2).rank(2),
+        Column::of_numbers("fold °", 8).behind(2).rank(5),
+        Column::of_numbers("M N·mm", 8).rank(5),
+        Column::of_numbers(format!("fold at {target}°"), 12).behind(2),
+        Column::of_numbers("steps", 5).behind(2).rank(9),
+        Column::of_numbers("iterations", 10).rank(8),
+        Column::of_numbers("wall s", 7),
     ];
-    columns.join("  ") + "\n"
+    Columns::fitting(all, output_columns())
 }
 
-fn row(row: &ConvergenceRow) -> String {
-    let number = |value: Option<f64>, width: usize, digits: usize| {
-        value.map_or_else(|| format!("{:>width$}", "none"), |value| format!("{value:>width$.digits$}"))
+fn row(row: &ConvergenceRow) -> [String; 14] {
+    let number = |value: Option<f64>, digits: usize| {
+        value.map_or_else(|| "none".to_owned(), |value| format!("{value:.digits$}"))
     };
-    let pair = |pair: Option<[f64; 2]>, widths: [usize; 2], digits: [usize; 2]| {
-        [0, 1].map(|k| number(pair.map(|pair| pair[k]), widths[k], digits[k])).join(" ")
-    };
+    let [peak, peak_at] = [0, 1].map(|k| number(row.peak.map(|pair| pair[k]), 3));
+    let [limit, limit_moment] = [(0, 4), (1, 3)].map(|(k, digits)| number(row.limit.map(|pair| pair[k]), digits));
+    let [fold, fold_moment] = [(0, 4), (1, 3)].map(|(k, digits)| number(row.fold_begins.map(|pair| pair[k]), digits));
     let [n1, n2] = row.elements;
-    let columns = [
-        format!("{:>6} {:>9} {:>8}", row.degree[0], format!("{n1}×{n2}"), row.unknowns),
-        pair(row.peak, [9, 8], [3, 3]),
-        pair(row.limit, [8, 8], [4, 3]),
-        number(row.unstable_n_mm, 12, 3),
-        pair(row.fold_begins, [8, 8], [4, 3]),
-        number(row.fold_n_mm, 12, 3),
-        format!("{:>5} {:>10} {:>7.1}", row.steps, row.iterations, row.wall_s),
-    ];
-    columns.join("  ") + "\n"
+    [
+        row.degree[0].to_string(),
+        format!("{n1}×{n2}"),
+        row.unknowns.to_string(),
+        peak,
+        peak_at,
+        limit,
+        limit_moment,
+        number(row.unstable_n_mm, 3),
+        fold,
+        fold_moment,
+        number(row.fold_n_mm, 3),
+        row.steps.to_string(),
+        row.iterations.to_string(),
+        format!("{:.1}", row.wall_s),
+    ]
 }

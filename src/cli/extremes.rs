@@ -6,11 +6,14 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
+use super::columns::{Column, Columns};
 use super::failure::Failure;
 use super::output::{eprint, print, print_json};
 use super::scene_file::read_scene;
 use super::session::use_threads;
 use super::shipped::SHIPPED;
+use super::terminal::output_columns;
+use super::wrapped::hanging;
 use crate::scene::Scene;
 use crate::study::{Archive, ExtremeRow, ExtremesSuite};
 use crate::units::{count, duration};
@@ -33,9 +36,10 @@ pub(super) struct Arguments {
     /// Threads; the results are the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Folder for the logs of the runs, each named after the hash of its scene: those that are finished are read, not run again
-    #[arg(long, value_name = "DIR", default_value = "checkpoints/extremes")]
-    logs: PathBuf,
+    /// Folder to keep the logs of the runs in, each named after the hash of its scene: those that are finished are read and not run
+    /// again, whatever build made them [default: none is kept]
+    #[arg(long, value_name = "DIR")]
+    logs: Option<PathBuf>,
     /// Print a JSON object for each scene
     #[arg(long)]
     json: bool,
@@ -75,9 +79,10 @@ impl Arguments {
         let names = self.chosen(files.keys())?;
         let scenes = read_scenes(&files, &names)?;
         let threads = use_threads(self.threads.map(usize::from))?;
-        let archive =
-            Archive::open(&self.logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
-        let table = ExtremesTable::new(names.iter().map(|name| stem(name)));
+        let fresh = tempfile::tempdir().map_err(|source| Failure::Write { path: std::env::temp_dir(), source })?;
+        let archive = Archive::open(self.logs.as_deref().unwrap_or(fresh.path()), threads)
+            .map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let table = ExtremesTable::new(names.iter().map(|name| stem(name)), output_columns());
         if !self.json {
             print(&table.head())?;
         }
@@ -155,55 +160,59 @@ fn stem(name: &str) -> &str {
 
 /// The table that `foldline extremes` prints, a line for each scene as it ends.
 pub struct ExtremesTable {
-    name_width: usize,
+    table: Columns,
+    columns: Option<usize>,
 }
 
 impl ExtremesTable {
-    /// Creates a table whose columns are wide enough for these names.
-    pub fn new<'n>(names: impl Iterator<Item = &'n str>) -> Self {
-        Self { name_width: names.map(|name| name.chars().count()).chain([5]).max().unwrap_or(5) }
+    /// Creates a table whose columns are wide enough for these names; some are left out where a terminal has fewer `columns`.
+    pub fn new<'n>(names: impl Iterator<Item = &'n str>, columns: Option<usize>) -> Self {
+        let widest = names.map(|name| name.chars().count()).chain([5]).max().unwrap_or(5);
+        let all = vec![
+            Column::of_words("scene", widest),
+            Column::of_words("outcome", 19).behind(2),
+            Column::of_words("as stated", 9),
+            Column::of_numbers("error", 7),
+            Column::of_numbers("steps", 5).rank(2),
+            Column::of_numbers("iter", 6).rank(3),
+            Column::of_numbers("residual", 8).rank(5),
+            Column::of_numbers("W - E", 7).rank(4),
+            Column::of_numbers("cond", 6).rank(7),
+            Column::of_numbers("asym", 6).rank(8),
+            Column::of_numbers("bits", 4).rank(6),
+            Column::of_numbers("wall", 8).rank(1),
+        ];
+        Self { table: Columns::fitting(all, columns), columns }
     }
 
     /// Returns the line with the heads of the columns.
     pub fn head(&self) -> String {
-        let cells =
-            ["outcome", "as stated", "error", "steps", "iter", "residual", "W - E", "cond", "asym", "bits", "wall"];
-        self.line("scene", cells.map(str::to_owned))
+        self.table.head()
     }
 
     /// Returns the line of a scene and, below it, the error that ended the scene and the faults found.
     pub fn row(&self, row: &ExtremeRow) -> String {
         let small = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0e}"));
         let balance = row.energy_balance.map_or_else(|| "-".to_owned(), |value| format!("{value:+.0e}"));
-        let mut text = self.line(
-            stem(&row.scene),
-            [
-                row.outcome.name().to_owned(),
-                if row.as_stated { "yes" } else { "NO" }.to_owned(),
-                row.error.map_or_else(|| "-".to_owned(), |error| format!("{:.2} %", 100.0 * error)),
-                row.load_steps.to_string(),
-                row.iterations.to_string(),
-                small(row.worst_residual),
-                balance,
-                small(row.condition),
-                small(row.symmetry_error),
-                row.significant_bits.map_or_else(|| "-".to_owned(), |bits| format!("{bits:.0}")),
-                format!("{:.1} s", row.wall_s),
-            ],
-        );
-        let message = row.message.iter().map(|message| format!("    {message}\n"));
-        let reason = row.inexact.iter().map(|reason| format!("    inexact: {reason}\n"));
-        let faults = row.faults.iter().map(|fault| format!("    NO: {fault}\n"));
+        let mut text = self.table.row(&[
+            stem(&row.scene).to_owned(),
+            row.outcome.name().to_owned(),
+            if row.as_stated { "yes" } else { "NO" }.to_owned(),
+            row.error.map_or_else(|| "-".to_owned(), |error| format!("{:.2} %", 100.0 * error)),
+            row.load_steps.to_string(),
+            row.iterations.to_string(),
+            small(row.worst_residual),
+            balance,
+            small(row.condition),
+            small(row.symmetry_error),
+            row.significant_bits.map_or_else(|| "-".to_owned(), |bits| format!("{bits:.0}")),
+            format!("{:.1} s", row.wall_s),
+        ]);
+        let below = |head: &str, said: String| hanging(&format!("    {head}"), &said, self.columns) + "\n";
+        let message = row.message.iter().map(|message| below("", message.clone()));
+        let reason = row.inexact.iter().map(|reason| below("inexact: ", reason.clone()));
+        let faults = row.faults.iter().map(|fault| below("NO: ", fault.to_string()));
         text.extend(message.chain(reason).chain(faults));
         text
-    }
-
-    fn line(&self, name: &str, cells: [String; 11]) -> String {
-        let width = self.name_width;
-        let [outcome, stated, error, steps, iterations, residual, balance, condition, asymmetry, bits, wall] = cells;
-        format!(
-            "{name:<width$}  {outcome:<19} {stated:<9} {error:>7} {steps:>5} {iterations:>6} {residual:>8} {balance:>7} \
-             {condition:>6} {asymmetry:>6} {bits:>4} {wall:>8}\n"
-        )
     }
 }

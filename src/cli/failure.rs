@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::history::{ConditionError, NothingKept, ReplayError, SnapError, StabilityError};
 use crate::model::ModelError;
-use crate::printable::one_line;
+use crate::printable::{one_line, word};
 use crate::record::Parameter;
 use crate::scene::{Scene, Stage};
 use crate::study::{AccuracyError, BenchError, CalibrationError, NotASpring, TaskError};
@@ -66,7 +66,7 @@ pub(super) enum Failure {
     NoSuchStep { log: PathBuf, step: u64, known: Option<(u64, u64)> },
     #[error("the run stopped{}", if *keeps { format!("; {} keeps every stage before", log.display()) } else { String::new() })]
     Stopped { log: PathBuf, keeps: bool, source: Box<dyn std::error::Error + Send + Sync> },
-    #[error("interrupted; continue with: foldline resume {}", log.display())]
+    #[error("interrupted; continue with: foldline resume {}", word(&log.to_string_lossy()))]
     Interrupted { log: PathBuf },
     #[error(transparent)]
     Plot(#[from] PlotError),
@@ -110,7 +110,7 @@ pub(super) enum Failure {
     NoScene { log: PathBuf },
     #[error(
         "the scene that stage {ordinal} of {} was run with is lost; `foldline run SCENE -o {} --resume` with that scene's file brings it back",
-        log.display(), log.display()
+        log.display(), word(&log.to_string_lossy())
     )]
     SceneLost { log: PathBuf, ordinal: usize },
     #[error(transparent)]
@@ -157,7 +157,7 @@ pub(super) enum Failure {
     #[error(transparent)]
     Sweep(#[from] SweepError),
     #[error(
-        "{} has not been begun: `foldline sweep run {}` does, and a folder is named by itself", sweep.display(), sweep.display()
+        "{} has not been begun: `foldline sweep run {}` does, and a folder is named by itself", sweep.display(), word(&sweep.to_string_lossy())
     )]
     NoSweep { sweep: PathBuf },
     #[cfg(feature = "parquet")]
@@ -168,11 +168,15 @@ pub(super) enum Failure {
         "this program was built without Parquet: `cargo install --path . --features parquet` builds one with it, and --csv is always there"
     )]
     NoParquet,
-    #[error("interrupted; continue with: foldline sweep resume {}", folder.display())]
+    #[error(
+        "{rows} rows are more than the {most} that a page holds: choose some with --where, or write all with `sweep status --csv`"
+    )]
+    TooManyRows { rows: usize, most: usize },
+    #[error("interrupted; continue with: foldline sweep resume {}", word(&folder.to_string_lossy()))]
     SweepInterrupted { folder: PathBuf },
-    #[error("{} left, for reasons that are none of their own; continue with: foldline sweep resume {}", count(*left, "task"), folder.display())]
+    #[error("{} left, for reasons of the machine and not of their scenes; continue with: foldline sweep resume {}", count(*left, "task"), word(&folder.to_string_lossy()))]
     SweepLeft { left: usize, folder: PathBuf },
-    #[error("task {number} of the sweep is not done, for a reason that is none of its own")]
+    #[error("task {number} of the sweep is not done, for a reason of the machine and not of its scene")]
     SweepTask { number: usize, source: Box<TaskError> },
     #[error(
         "task {number} was interrupted after the stage in hand; it goes on in the next turn of its job, or with: {}",
@@ -238,7 +242,7 @@ impl Failure {
             Failure::Sweep(error) if !matches!(error, SweepError::Write { .. }) => 2,
             #[cfg(not(feature = "parquet"))]
             Failure::NoParquet => 2,
-            Failure::NotASpring(_) => 2,
+            Failure::NotASpring(_) | Failure::TooManyRows { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, TaskError::Model(_)) => 2,
             Failure::Calibration { source, .. }

@@ -10,7 +10,7 @@ use super::failure::{EXIT_CODES, Failure};
 use super::json_line::json_line;
 use super::log_file::{Gathered, ReadLog, ask_long, first_and_last, read_log, read_through};
 use super::mesh_table::mesh_table;
-use super::output::{path_in_line, print, print_as_it_is};
+use super::output::{path_in_command, print, print_as_it_is};
 use super::probe_table::probe_table;
 use super::stage_csv::stage_csv;
 use super::stage_table::{stage_table, step_in_full};
@@ -145,15 +145,19 @@ fn overview(path: &Path, probes: bool) -> Result<String, Failure> {
     let mut text = format!("{}\n{}{older}{summary}", stage_table(&records, output_columns()), read.mixed());
     let names: Vec<String> = read.scene.probes.iter().map(|probe| probe.name.clone()).collect();
     if probes && !names.is_empty() {
-        text += &format!("\nprobes of the last scene on every equilibrium\n{}", probe_table(&names, &records));
+        text += &format!(
+            "\nprobes of the last scene on every equilibrium\n{}",
+            probe_table(&names, &records, output_columns())
+        );
     } else if !probes && !redefined_probes(&read.log).is_empty() {
-        text += &format!("\nthe last probes on every equilibrium: foldline inspect {} --probes\n", path_in_line(path));
+        text +=
+            &format!("\nthe last probes on every equilibrium: foldline inspect {} --probes\n", path_in_command(path));
     }
     if let Some(kept) = read.log.thinned() {
         text += &format!("\nthinned ({kept}); stages with their state: {}\n", ranges(&states));
     }
     if !read.is_finished() {
-        text += &format!("\nunfinished; continue with: foldline resume {}\n", path_in_line(path));
+        text += &format!("\nunfinished; continue with: foldline resume {}\n", path_in_command(path));
     }
     Ok(text)
 }

@@ -26,7 +26,7 @@
 //! | `progress`, `load_step`, `stage_table`, `stage_csv`, `json_line` | stages, as they are shown |
 //! | `mesh_table` | the meshes of a run |
 //! | `trace` | iterates of replayed stages |
-//! | `wrapped` | sentences in lines that fit |
+//! | `wrapped`, `columns` | sentences in lines that fit; tables that do |
 //! | `terminal`, `output`, `failure` | what is printed to; streams and files; what can stop a command |
 
 mod animated;
@@ -35,6 +35,7 @@ mod bench;
 mod bisect;
 mod calibrate;
 mod check;
+mod columns;
 mod compare;
 mod completions;
 mod converge;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{eprint, file_name, path_in_line, write_files};
+use super::output::{eprint, file_name, path_in_command, path_in_line, write_files};
 use super::shipped::Shipped;
 
 /// Write a scene with comments, which runs as it is and is there to be changed
@@ -43,7 +43,8 @@ impl Arguments {
         let file = self.output.unwrap_or_else(|| format!("{}.toml", self.kind.last_name()).into());
         write_files(&[(file.clone(), self.kind.text.as_bytes().to_vec())])?;
         let shown = path_in_line(&file);
-        eprint(&format!("{shown} written; next: foldline check {shown}, foldline run {shown}"));
+        let word = path_in_command(&file);
+        eprint(&format!("{shown} written; next: foldline check {word}, foldline run {word}"));
         Ok(())
     }
 }

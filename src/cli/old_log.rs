@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use super::asked::Asked;
 use super::failure::Failure;
-use super::output::path_in_line;
+use super::output::path_in_command;
 use crate::journal::{Completeness, LogLock};
+use crate::printable::word;
 use crate::scene::Scene;
 use crate::units::count;
 use crate::whole_file::beside as with_suffix;
@@ -23,8 +24,8 @@ pub(super) fn beside(log: &Path, scene: &Scene, file: &Path, settings: &[String]
     let (end, stages) = (asked.log.end(), count(asked.log.commits(), "stage"));
     let differences = asked.scene.differences(scene);
     let finished = end.completeness() == Completeness::Finished;
-    let set: String = settings.iter().map(|setting| format!(" --set '{setting}'")).collect();
-    let (log, file) = (path_in_line(log), format!("{}{set}", path_in_line(file)));
+    let set: String = settings.iter().map(|setting| format!(" --set {}", word(setting))).collect();
+    let (log, file) = (path_in_command(log), format!("{}{set}", path_in_command(file)));
     let mut text = match (&differences[..], finished) {
         ([], true) => format!("it holds all {stages} of a finished run of this very scene"),
         ([], false) => format!("it holds {stages} of this very scene, not finished"),

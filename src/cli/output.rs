@@ -11,7 +11,7 @@ use super::failure::Failure;
 use super::terminal::{error_columns, output_columns};
 use super::wrapped::fitted;
 pub(super) use crate::printable::printable;
-use crate::printable::{is_obeyed, one_line};
+use crate::printable::{is_obeyed, one_line, word};
 use crate::whole_file::write_new;
 
 /// Writes what a person reads to standard output, in lines that fit.
@@ -44,6 +44,11 @@ pub(super) fn file_name() -> impl TypedValueParser<Value = PathBuf> {
 /// A path as it is printed in a line of text.
 pub(super) fn path_in_line(path: &Path) -> String {
     one_line(&path.to_string_lossy()).into_owned()
+}
+
+/// A path as it is printed in a command to type, in quotes where a shell needs them.
+pub(super) fn path_in_command(path: &Path) -> String {
+    word(&path.to_string_lossy()).into_owned()
 }
 
 /// Writes a line of JSON to standard output.

@@ -11,6 +11,7 @@ use super::probe_table::{json_lines, new_probes, probe_table};
 use super::progress::ProgressStyle;
 use super::session::{RunOptions, drive, watch_signals};
 use super::settings::Settings;
+use super::terminal::output_columns;
 use crate::history::{basis, plan, read_probes, restored_scene};
 use crate::journal::{Completeness, Entry, Log, Manifest, ReadError, Resume, ResumeError, Resumed, stages_in_words};
 use crate::pipeline::{Run, Stages};
@@ -177,7 +178,7 @@ fn show_probes(names: &[String], before: &[Record], options: &RunOptions) -> Res
     let head = "new probes on the equilibria of the log, which itself keeps the ones that it has";
     match options.style {
         ProgressStyle::Json => print(&json_lines(before)),
-        _ => print(&format!("{head}\n{}", probe_table(names, before))),
+        _ => print(&format!("{head}\n{}", probe_table(names, before, output_columns()))),
     }
 }
 

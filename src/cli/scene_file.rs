@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::failure::Failure;
 use super::output::path_in_line;
 use super::shipped::{Shipped, nearest_names};
-use super::terminal::is_coloured;
+use super::terminal::{error_columns, is_coloured};
 use crate::model::ModelError;
 use crate::scene::{Geometry, SCENE_BYTES_LIMIT, Scene, SceneError, Stage, parse_with_settings, tables_refused};
 
@@ -117,7 +117,7 @@ pub(super) fn checked(text: &str, name: &str, settings: &[String]) -> Result<Sce
 
 /// An error of a scene as the terminal shows it.
 pub(super) fn rendered(error: &SceneError) -> String {
-    if is_coloured(&io::stderr()) { error.coloured() } else { error.plain() }
+    error.fitted(is_coloured(&io::stderr()), error_columns())
 }
 
 /// A stage by its name.

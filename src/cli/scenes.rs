@@ -7,6 +7,7 @@ use super::failure::Failure;
 use super::output::{print, print_json};
 use super::shipped::{SHIPPED, Shipped};
 use super::terminal::prose_columns;
+use super::wrapped::wrapped;
 
 /// List the scenes that come with the program; each can be named wherever a scene file can
 #[derive(Args, Debug)]
@@ -58,26 +59,13 @@ fn folder(name: &str) -> Option<&str> {
     name.rsplit_once('/').map(|(folder, _)| folder)
 }
 
-/// A line for each of one folder.
+/// Each of one folder with what it shows: beside its name, or below it where the names leave less than half the columns.
 fn block(group: &[&Shipped]) -> String {
     let widest = group.iter().map(|shipped| shipped.name.chars().count()).max().unwrap_or(0);
-    let line = |shipped: &&Shipped| {
-        format!(
-            "{:<widest$}  {}\n",
-            shipped.name,
-            shortened(&shipped.summary(), prose_columns().saturating_sub(widest + 2))
-        )
+    let is_beside = 2 * (widest + 2) <= prose_columns();
+    let line = |shipped: &&Shipped| match is_beside {
+        true => wrapped(&format!("{:<widest$}  ", shipped.name), &shipped.summary()) + "\n",
+        false => format!("{}\n{}\n", shipped.name, wrapped("    ", &shipped.summary())),
     };
     group.iter().map(line).collect()
-}
-
-/// A text where it is short enough; or else the longest beginning of it that ends with a clause, or at least with a word.
-fn shortened(text: &str, most: usize) -> String {
-    let fits = |part: &&str| part.chars().count() <= most;
-    let before = |mark: &'static str| text.match_indices(mark).map(|(at, _)| &text[..at]).filter(fits).last();
-    if fits(&text) {
-        return text.to_owned();
-    }
-    let clause = [": ", "; ", " (", ", "].into_iter().filter_map(before).max_by_key(|part| part.len());
-    clause.map(str::to_owned).or_else(|| Some(format!("{}…", before(" ")?))).unwrap_or_default()
 }

@@ -10,7 +10,7 @@ use rayon::{ThreadBuilder, ThreadPoolBuilder};
 use signal_hook::flag;
 
 use super::failure::{Failure, INTERRUPTED};
-use super::output::{eprint, path_in_line, print};
+use super::output::{eprint, path_in_command, print};
 use super::progress::{ProgressSink, ProgressStyle};
 use super::settings::Settings;
 use crate::journal::JournalWriter;
@@ -47,7 +47,7 @@ impl RunOptions {
     /// The last words of a run of whose log only the stages from `first` on were read: numbers of a part would be taken for those
     /// of the run.
     pub(super) fn end_of_long(&self, first: usize, stages: usize) -> Result<(), Failure> {
-        let log = path_in_line(&self.log);
+        let log = path_in_command(&self.log);
         self.show(&format!(
             "{stages} stages in the log, of which those before stage {first} were not read again: no summary. Summary and every stage: \
              foldline inspect {log}; that all of them are as they were written: foldline verify {log}\n"
@@ -58,7 +58,7 @@ impl RunOptions {
     pub(super) fn sum_up(&self, summary: &Summary) -> Result<(), Failure> {
         self.show(&summary.to_string())?;
         if self.is_shown() {
-            eprint(&format!("every stage: foldline inspect {}", path_in_line(&self.log)));
+            eprint(&format!("every stage: foldline inspect {}", path_in_command(&self.log)));
         }
         Ok(())
     }

@@ -7,23 +7,24 @@ use std::sync::atomic::Ordering;
 
 use serde_json::{Value, json};
 
+use super::columns::{Column, Columns};
 use super::failure::Failure;
 use super::output::{eprint, path_in_line, print, print_json, refuse_what_is_there, write_files};
 use super::scene_file::{NamedText, read_named, rendered};
 use super::session::watch_signals;
 use super::shipped::Shipped;
+use super::terminal::output_columns;
+use crate::printable::in_full;
 use crate::scene::Scene;
 use crate::study::{
     AccuracyRow, Archive, Done, Errors, Measured, MeshPoint, Planned, Purpose, Role, SpeedUp, Structure, StudyError,
     StudyFile, TaskError, error_of_finer, in_turn, is_comparable, speed_up,
 };
-use crate::sweep::in_full;
+use crate::units::significant;
 use crate::view::study_page;
 
 /// Width of names of runs in tables.
 const NAME: usize = 22;
-/// Width of what stands before the errors.
-const WIDTH_TO_ERRORS: usize = NAME + 17;
 
 /// Studies that are being run.
 struct Running<'r> {
@@ -175,20 +176,9 @@ impl Running<'_> {
             return Ok(());
         }
         print(&format!(
-            "\n{}: errors of {quantity} before the first snap and behind it, of its largest value there\n\
-             {:<NAME$} {:>7} {:>8} {:>8} {:>7} {:>8} {:>5} {:>5} {:>7} {:>6} {:>6}\n",
+            "\n{}: errors of {quantity} before the first snap and behind it, of its largest value there\n{}",
             structure.name,
-            "run",
-            "mesh",
-            "unknowns",
-            "before",
-            "snap",
-            "behind",
-            "steps",
-            "iters",
-            "factors",
-            "mesh s",
-            "wall s"
+            columns().head()
         ))
     }
 
@@ -222,20 +212,19 @@ impl Running<'_> {
         };
         let seconds = |time: f64| if timed { format!("{time:.2}") } else { String::new() };
         let [n1, n2] = row.elements;
-        print(&format!(
-            "{:<NAME$} {:>7} {:>8} {:>8} {:>7} {:>8} {:>5} {:>5} {:>7} {:>6} {:>6}\n",
-            planned.label,
+        print(&columns().row(&[
+            planned.label.clone(),
             format!("{n1}×{n2}"),
-            row.unknowns,
+            row.unknowns.to_string(),
             percent(row.error_before, own[0]),
             row.jump_at.map_or_else(String::new, |at| format!("{at:.3}")),
             percent(row.error_after, own[1]),
-            row.steps,
-            row.iterations,
-            row.factorizations,
+            row.steps.to_string(),
+            row.iterations.to_string(),
+            row.factorizations.to_string(),
             seconds(row.mesh_s),
-            seconds(row.wall_s)
-        ))
+            seconds(row.wall_s),
+        ]))
     }
 
     /// What the reference itself is off by.
@@ -243,9 +232,11 @@ impl Running<'_> {
         if self.told(json!({ "structure": structure.name, "error_of_reference": own }))? {
             return Ok(());
         }
-        let percent = |own: Option<f64>| own.map_or_else(String::new, |own| format!("{:.3} %", 100.0 * own));
-        let (name, [before, behind]) = ("so that the reference is off by", own.map(percent));
-        print(&format!("{name:<WIDTH_TO_ERRORS$} {before:>8} {:>7} {behind:>8}\n", ""))
+        let percent = |own: Option<f64>, place: &str| {
+            own.map(|own| format!("{} % {place} the snap", significant(100.0 * own, 2)))
+        };
+        let off: Vec<String> = [percent(own[0], "before"), percent(own[1], "behind")].into_iter().flatten().collect();
+        print(&format!("  so that the reference is off by {}\n", off.join(", ")))
     }
 
     fn show_failure(&mut self, structure: &Structure, planned: &Planned, why: &str) -> Result<(), Failure> {
@@ -265,6 +256,10 @@ impl Running<'_> {
         own: Errors,
     ) -> Result<(), Failure> {
         let columns = study.columns();
+        let numbers = columns.iter().map(|column| Column::of_numbers(*column, 13).rank(2));
+        let all = std::iter::once(Column::of_words("speed-up over uniform", NAME)).chain(numbers);
+        let table =
+            Columns::fitting(all.chain([Column::of_numbers("published", 10).rank(1)]).collect(), output_columns());
         let families_of = |column: &str| -> Vec<Vec<MeshPoint>> {
             let of_column = study.uniform.iter().enumerate();
             let of_column = of_column.filter(|(_, family)| family.columns.iter().any(|name| name == column));
@@ -272,8 +267,7 @@ impl Running<'_> {
             of_column.map(|(number, _)| meshes(number).map(|found| found.point).collect()).collect()
         };
         if !self.json {
-            let names = columns.iter().map(|column| format!(" {column:>13}")).collect::<String>();
-            print(&format!("{:<NAME$}{names} {:>10}\n", "speed-up over uniform", "published"))?;
+            print(&table.head())?;
         }
         for adaptive in found.iter().filter(|found| matches!(found.role, Role::Adaptive(_))) {
             let of_columns: Vec<Option<SpeedUp>> =
@@ -285,12 +279,31 @@ impl Running<'_> {
             }))? {
                 continue;
             }
-            let shown = of_columns.iter().map(|found| format!(" {:>13}", in_words(found))).collect::<String>();
             let published = structure.published.map_or_else(String::new, |ratio| format!("{ratio:.1}"));
-            print(&format!("{:<NAME$}{shown} {published:>10}\n", adaptive.label))?;
+            let name = std::iter::once(adaptive.label.clone());
+            let cells: Vec<String> = name.chain(of_columns.iter().map(in_words)).chain([published]).collect();
+            print(&table.row(&cells))?;
         }
         Ok(())
     }
+}
+
+/// The columns of the runs of a structure.
+fn columns() -> Columns {
+    let all = vec![
+        Column::of_words("run", NAME),
+        Column::of_numbers("mesh", 7).rank(1),
+        Column::of_numbers("unknowns", 8).rank(4),
+        Column::of_numbers("before", 8),
+        Column::of_numbers("snap", 7).rank(3),
+        Column::of_numbers("behind", 8),
+        Column::of_numbers("steps", 5).rank(5),
+        Column::of_numbers("iters", 5).rank(6),
+        Column::of_numbers("factors", 7).rank(8),
+        Column::of_numbers("mesh s", 6).rank(7),
+        Column::of_numbers("wall s", 6),
+    ];
+    Columns::fitting(all, output_columns())
 }
 
 /// A wrong study as a wrong scene is shown: with the place in its text, which may hold anything.

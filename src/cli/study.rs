@@ -5,11 +5,13 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 
+use super::columns::{Column, Columns};
 use super::failure::Failure;
 use super::output::{eprint, file_name, path_in_line, print, print_json, say};
 use super::scene_file::{checked, read_scene};
 use super::session::{use_threads, watch_signals};
 use super::speed_ups;
+use super::terminal::output_columns;
 use crate::scene::Scene;
 use crate::study::{
     AccuracyError, AccuracyRow, Archive, Measured, Purpose, TaskError, in_turn, is_comparable, is_one_structure,
@@ -19,10 +21,10 @@ use crate::study::{
 /// before and after the first snap, with its run time; or run study files, which say all that themselves
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// Scenes (TOML), or study files where there is no --against
+    /// Scenes (TOML), or names of `foldline scenes`; where there is no --against, study files or names of studies there
     #[arg(required = true, value_name = "SCENES")]
     scenes: Vec<PathBuf>,
-    /// Scene of the reference: the same structure and increments on a mesh that leaves no doubt. Compared are the load steps
+    /// Scene of the reference, or its name: the same structure and increments on a mesh that leaves no doubt. Compared are the load steps
     /// that end where one of its does
     #[arg(long, value_name = "SCENE")]
     against: Option<PathBuf>,
@@ -100,7 +102,7 @@ impl Arguments {
         let scenes = std::iter::once(&reference).chain(cases.iter().map(|case| &case.scene));
         let runs: Vec<(&Scene, Purpose)> = scenes.map(|scene| (scene, Purpose::Time)).collect();
         let labels = cases.iter().map(Case::label).chain([name.clone()]);
-        let width = labels.map(|label| label.chars().count()).max().unwrap_or(0);
+        let table = columns(labels.map(|label| label.chars().count()).max().unwrap_or(0));
         let mut expected: Option<Measured> = None;
         let mut failures = 0;
         in_turn(&archive, &runs, &|| raised.load(Ordering::Relaxed), |index, done| {
@@ -114,20 +116,20 @@ impl Arguments {
             };
             match (index.checked_sub(1).and_then(|case| cases.get(case)), &expected) {
                 (Some(case), Some(expected)) => match measured.and_then(|found| found.against(expected)) {
-                    Ok(found) => self.show(&case.scene_name, &case.settings, &found, width),
+                    Ok(found) => self.show(&case.scene_name, &case.settings, &found, &table),
                     Err(cause) => {
                         failures += 1;
-                        self.show_failure(case, cause, width)
+                        self.show_failure(case, cause)
                     }
                 },
                 _ => {
                     let found = measured.map_err(failed(name.clone()))?;
                     if !self.json {
-                        print(&head(width, found.quantity()))?;
+                        print(&head(&table, found.quantity()))?;
                     }
                     let own = found.against(&found).map_err(failed(name.clone()))?;
                     expected = Some(found);
-                    self.show(&name, &[], &own, width)
+                    self.show(&name, &[], &own, &table)
                 }
             }
         })?;
@@ -166,19 +168,19 @@ impl Arguments {
     }
 
     /// A row for a run that gave none.
-    fn show_failure(&self, case: &Case, cause: AccuracyError, width: usize) -> Result<(), Failure> {
+    fn show_failure(&self, case: &Case, cause: AccuracyError) -> Result<(), Failure> {
         let failure = Failure::Study { case: case.label(), source: Box::new(cause) };
         if self.json {
             return print_json(&serde_json::json!({
                 "scene": case.scene_name, "settings": case.settings, "error": failure.in_full(),
             }));
         }
-        print(&format!("{:<width$}  failed\n", case.label()))?;
+        print(&format!("{}  failed\n", case.label()))?;
         say(&failure);
         Ok(())
     }
 
-    fn show(&self, scene: &str, settings: &[String], row: &AccuracyRow, width: usize) -> Result<(), Failure> {
+    fn show(&self, scene: &str, settings: &[String], row: &AccuracyRow, table: &Columns) -> Result<(), Failure> {
         if self.json {
             #[derive(serde::Serialize)]
             struct Line<'l> {
@@ -189,7 +191,7 @@ impl Arguments {
             }
             return print_json(&Line { scene, settings, row });
         }
-        print(&shown(&label(scene, settings), row, width))
+        print(&table.row(&cells(&label(scene, settings), row)))
     }
 }
 
@@ -203,28 +205,41 @@ fn label(scene: &str, settings: &[String]) -> String {
     [&[scene.to_string()], settings].concat().join(" ")
 }
 
-fn head(width: usize, quantity: &str) -> String {
-    format!(
-        "before, after: errors of {quantity} before and after the first snap, of its largest value there\n\
-         {:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>8} {:>10} {:>7} {:>7}\n",
-        "run", "elements", "unknowns", "before", "snap", "after", "compared", "iterations", "factors", "wall s"
-    )
+fn columns(width: usize) -> Columns {
+    let all = vec![
+        Column::of_words("run", width),
+        Column::of_numbers("elements", 9).behind(2).rank(1),
+        Column::of_numbers("unknowns", 8).rank(3),
+        Column::of_numbers("before", 8).behind(2),
+        Column::of_numbers("snap", 9).rank(2),
+        Column::of_numbers("after", 8),
+        Column::of_numbers("compared", 8).behind(2).rank(4),
+        Column::of_numbers("iterations", 10).rank(5),
+        Column::of_numbers("factors", 7).rank(6),
+        Column::of_numbers("wall s", 7),
+    ];
+    Columns::fitting(all, output_columns())
 }
 
-fn shown(label: &str, row: &AccuracyRow, width: usize) -> String {
+fn head(table: &Columns, quantity: &str) -> String {
+    let what =
+        format!("before, after: errors of {quantity} before and after the first snap, of its largest value there");
+    format!("{what}\n{}", table.head())
+}
+
+fn cells(label: &str, row: &AccuracyRow) -> [String; 10] {
     let percent = |share: Option<f64>| share.map_or_else(String::new, |share| format!("{:.2} %", 100.0 * share));
     let [n1, n2] = row.elements;
-    format!(
-        "{:<width$}  {:>9} {:>8}  {:>8} {:>9} {:>8}  {:>8} {:>10} {:>7} {:>7.2}\n",
-        label,
+    [
+        label.to_owned(),
         format!("{n1}×{n2}"),
-        row.unknowns,
+        row.unknowns.to_string(),
         percent(row.error_before),
         row.jump_at.map_or_else(String::new, |at| format!("{at:.3}")),
         percent(row.error_after),
         format!("{}/{}", row.compared, row.steps),
-        row.iterations,
-        row.factorizations,
-        row.wall_s
-    )
+        row.iterations.to_string(),
+        row.factorizations.to_string(),
+        format!("{:.2}", row.wall_s),
+    ]
 }

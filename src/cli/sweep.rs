@@ -2,24 +2,37 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
 
 use super::failure::{EXIT_CODES, Failure};
-use super::output::{eprint, file_name, path_in_line, print, print_as_it_is, refuse_what_is_there, write_files};
+use super::output::{
+    eprint, file_name, path_in_command, path_in_line, print, print_as_it_is, refuse_what_is_there, write_files,
+};
 use super::scene_file::{NamedText, read_named};
 use super::session::watch_signals;
 use super::settings::Settings;
 use super::shipped::Shipped;
-use super::sweep_progress::SweepProgress;
+use super::sweep_progress::{SweepProgress, Told, say_head};
 use super::sweep_slurm::{SlurmArguments, queue_line};
 use super::sweep_table::{Chosen, table_of};
 use super::sweep_task::{CollectArguments, TaskArguments};
 use crate::study::{Archive, EngineError, Workers};
-use crate::sweep::{Condition, Folder, Plan, SweepFile, Table, Work, do_tasks, planned_from, to_do};
+use crate::sweep::{
+    Condition, Folder, Outcome, Plan, SweepFile, Table, Task, TaskRecord, Work, do_tasks, planned_from, to_do,
+};
 use crate::units::{count, duration};
 use crate::view::{PlotError, sweep_page};
+
+/// Rows that a browser can be asked to hold.
+const MOST_ON_A_PAGE: usize = 200_000;
+
+/// As long as no task ends, another process is waited for.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Between two looks whether another process is through with a task.
+const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 
 /// Run a scene over many designs and collect what each run shows, in a table
 #[derive(Args, Debug)]
@@ -73,7 +86,7 @@ struct PoolArguments {
     /// Threads of each task
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
-    /// Do tasks again that failed
+    /// Do tasks again that failed, or have no error against their reference
     #[arg(long)]
     retry: bool,
     /// Print a JSON object for each task; with --slurm, the numbers of the jobs
@@ -161,9 +174,11 @@ fn planned(sweep: &Path, folder: Option<&Path>) -> Result<Folder, Failure> {
         _ => read_named(Path::new(&parsed.scene)).map(|found| (found.text, found.file))?,
     };
     let folder = Folder::at(&folder.map_or_else(|| default_folder(&file), |folder| Ok(folder.to_path_buf()))?);
-    let is_planned = folder.holds_sweep() && folder.head()?.planned_from == planned_from(&text, &scene_text);
+    let scene_name = scene_file.display().to_string();
+    let is_planned =
+        folder.holds_sweep() && folder.head()?.planned_from == planned_from(&text, &scene_text, &scene_name);
     if !is_planned {
-        folder.keep(&Plan::of(&parsed, [&text, &scene_text], [&name, &scene_file.display().to_string()])?)?;
+        folder.keep(&Plan::of(&parsed, [&text, &scene_text], [&name, &scene_name])?)?;
     }
     Ok(folder)
 }
@@ -178,7 +193,10 @@ fn report(arguments: ReportArguments) -> Result<(), Failure> {
     refuse_what_is_there([&output])?;
     let mut table = Table::read(&folder)?;
     table.retain(&arguments.conditions)?;
-    let command = format!("foldline report {}/KEY.mcap -o page.html", path_in_line(&folder.logs()));
+    if table.rows.len() > MOST_ON_A_PAGE {
+        return Err(Failure::TooManyRows { rows: table.rows.len(), most: MOST_ON_A_PAGE });
+    }
+    let command = format!("foldline report {} -o page.html", path_in_command(&folder.logs().join("LOG")));
     let page = sweep_page(&table, &links(&folder.logs(), &output), &command);
     let page = page.map_err(|cause| PlotError::Drawing(cause.to_string()))?;
     write_files(&[(output.clone(), page.into_bytes())])?;
@@ -191,9 +209,16 @@ fn links(logs: &Path, page: &Path) -> String {
     let beside = page.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let (logs, beside) = (whole(logs), whole(beside));
     match logs.strip_prefix(&beside) {
-        Ok(below) => format!("{}/", below.display()),
-        Err(_) => format!("file://{}/", logs.display()),
+        Ok(below) => format!("{}/", in_address(below)),
+        Err(_) => format!("file://{}/", in_address(&logs)),
     }
+}
+
+/// A path as a part of an address (RFC 3986).
+fn in_address(path: &Path) -> String {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte);
+    let text = path.to_string_lossy();
+    text.bytes().map(|byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
 }
 
 impl PoolArguments {
@@ -201,36 +226,56 @@ impl PoolArguments {
         let raised = watch_signals()?;
         let (head, scene_text) = (folder.head()?, folder.scene_text()?);
         if self.retry {
-            let failed = folder.rows()?.into_iter().filter(|row| row.ending() == "failed");
-            let keys: Vec<String> = failed.map(|row| row.task.key).collect();
+            let rows = folder.rows()?.into_iter();
+            let short = rows.filter(|row| row.record.as_ref().is_some_and(TaskRecord::is_short));
+            let keys: Vec<String> = short.map(|row| row.task.key).collect();
             folder.forget(keys.iter().map(String::as_str))?;
         }
         if slurm.are_wanted() {
             return slurm.submit(folder, usize::from(self.threads), self.json);
         }
-        let tasks = to_do(folder)?;
         let begin = Instant::now();
         let threads = usize::from(self.threads);
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let workers = Workers { tasks: self.tasks.map_or(cores.div_ceil(threads), usize::from), threads };
         let archive =
             Archive::open(&folder.logs(), threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
-        let work = Work { head: &head, scene_text: &scene_text, archive: &archive };
-        let mut progress = SweepProgress::new(&head, tasks.len(), folder, self.json)?;
+        let work = Work::new(&head, &scene_text, &archive);
         let interrupted = || raised.load(Ordering::Relaxed);
-        let done = do_tasks(folder, &work, &tasks, workers, &interrupted, |task, outcome| progress.take(task, outcome));
-        let left = progress.finish();
-        done.map_err(|error| match error {
-            EngineError::Take(error) => Failure::Sweep(error),
-            error => Failure::Threads { source: Box::new(error) },
-        })?;
-        if interrupted() {
-            return Err(Failure::SweepInterrupted { folder: folder.path().to_path_buf() });
+        let mut tasks = to_do(folder)?;
+        if !self.json {
+            say_head(&head, tasks.len(), folder);
+        }
+        let mut told = Told::default();
+        let (mut waits, mut ended) = (false, (0, Instant::now()));
+        while !tasks.is_empty() {
+            let mut progress = SweepProgress::new(&head, tasks.len(), self.json, waits);
+            let take = |task: &Task, outcome: &Outcome| progress.take(task, outcome);
+            let done = do_tasks(folder, &work, &tasks, workers, &interrupted, take);
+            told += progress.finish();
+            done.map_err(|error| match error {
+                EngineError::Take(error) => Failure::Sweep(error),
+                error => Failure::Threads { source: Box::new(error) },
+            })?;
+            if interrupted() {
+                return Err(Failure::SweepInterrupted { folder: folder.path().to_path_buf() });
+            }
+            ended = if told.ended > ended.0 { (told.ended, Instant::now()) } else { ended };
+            if told.left > 0 || told.elsewhere == 0 || ended.1.elapsed() > PATIENCE {
+                break;
+            }
+            // What another process has in hand it puts on record, or leaves.
+            std::thread::sleep(BETWEEN_LOOKS);
+            tasks = to_do(folder)?;
+            (told.elsewhere, waits) = (0, true);
         }
         if !self.json {
             print_table(folder, &Chosen::default())?;
-            eprint(&format!("{} in {}", count(tasks.len() - left, "task"), duration(begin.elapsed().as_secs_f64())));
+            eprint(&format!("{} in {}", count(told.ended, "task"), duration(begin.elapsed().as_secs_f64())));
         }
-        if left > 0 { Err(Failure::SweepLeft { left, folder: folder.path().to_path_buf() }) } else { Ok(()) }
+        match told.left + told.elsewhere {
+            0 => Ok(()),
+            left => Err(Failure::SweepLeft { left, folder: folder.path().to_path_buf() }),
+        }
     }
 }

@@ -5,11 +5,12 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use serde_json::json;
 
-use super::failure::Failure;
 use super::output::{eprint, path_in_line, print_json};
 use super::terminal::{can_overwrite, error_columns};
 use super::wrapped::{fitted, wrapped};
-use crate::sweep::{Ending, Folder, Head, Outcome, Task, in_full};
+use crate::printable::in_full;
+use crate::study::TaskError;
+use crate::sweep::{Ending, Folder, Head, Outcome, Task};
 use crate::units::{count, duration};
 
 /// The progress of a sweep.
@@ -21,21 +22,40 @@ pub(super) struct SweepProgress<'h> {
     tasks: usize,
     ended: usize,
     failed: usize,
-    /// Tasks that are not on record, and can be continued.
-    left: usize,
+    told: Told,
+    waits: bool,
+}
+
+/// What became of tasks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Told {
+    /// On record.
+    pub(super) ended: usize,
+    /// Not on record, for reasons of the machine or the caller.
+    pub(super) left: usize,
+    /// In the hands of another process.
+    pub(super) elsewhere: usize,
+}
+
+impl std::ops::AddAssign for Told {
+    fn add_assign(&mut self, other: Self) {
+        self.ended += other.ended;
+        self.left += other.left;
+        self.elsewhere += other.elsewhere;
+    }
+}
+
+/// Says what is going to be done.
+pub(super) fn say_head(head: &Head, tasks: usize, folder: &Folder) {
+    let known = head.tasks - tasks;
+    let known = if known > 0 { format!(", {known} of them on record") } else { String::new() };
+    let line = format!("{}: {}{known} → {}", head.title, count(head.tasks, "task"), path_in_line(folder.path()));
+    eprint(&wrapped("", &line));
 }
 
 impl<'h> SweepProgress<'h> {
-    /// Says what is going to be done.
-    pub(super) fn new(head: &'h Head, tasks: usize, folder: &Folder, json: bool) -> Result<Self, Failure> {
-        let known = head.tasks - tasks;
-        if !json {
-            let known = if known > 0 { format!(", {known} of them on record") } else { String::new() };
-            eprint(&wrapped(
-                "",
-                &format!("{}: {}{known} → {}", head.title, count(head.tasks, "task"), path_in_line(folder.path())),
-            ));
-        }
+    /// Begins with so many tasks; `waits` where it was said already that another process is waited for.
+    pub(super) fn new(head: &'h Head, tasks: usize, json: bool, waits: bool) -> Self {
         let bar = (!json && can_overwrite() && tasks > 0).then(|| {
             let bar = ProgressBar::with_draw_target(Some(tasks as u64), ProgressDrawTarget::stderr());
             bar.enable_steady_tick(std::time::Duration::from_millis(200));
@@ -45,7 +65,7 @@ impl<'h> SweepProgress<'h> {
             );
             bar
         });
-        Ok(Self { head, bar, json, begin: Instant::now(), tasks, ended: 0, failed: 0, left: 0 })
+        Self { head, bar, json, begin: Instant::now(), tasks, ended: 0, failed: 0, told: Told::default(), waits }
     }
 
     /// Shows what came of a task.
@@ -54,6 +74,7 @@ impl<'h> SweepProgress<'h> {
         let named = name_of(self.head, task);
         match outcome {
             Outcome::OnRecord(record) => {
+                self.told.ended += 1;
                 self.failed += usize::from(record.ending != Ending::Done);
                 if self.json {
                     // Whoever reads may have gone; the record is kept.
@@ -66,8 +87,15 @@ impl<'h> SweepProgress<'h> {
                     self.say(&fitted(&self.line(&named), error_columns()));
                 }
             }
+            Outcome::Left(error) if error.is_of_other_writer() => {
+                if !self.waits && self.told.elsewhere == 0 {
+                    self.say(&wrapped("", &format!("task {} ({named}) and maybe others are in the hands of another process, which is waited for", task.number)));
+                }
+                self.told.elsewhere += 1;
+            }
+            Outcome::Left(TaskError::Interrupted) => self.told.left += 1,
             Outcome::Left(error) => {
-                self.left += 1;
+                self.told.left += 1;
                 self.say(&wrapped("", &format!("task {} ({named}) is left: {}", task.number, in_full(error))));
             }
         }
@@ -76,12 +104,12 @@ impl<'h> SweepProgress<'h> {
         }
     }
 
-    /// Ends what is shown; gives back how many tasks are left.
-    pub(super) fn finish(self) -> usize {
+    /// Ends what is shown; gives back what became of the tasks.
+    pub(super) fn finish(self) -> Told {
         if let Some(bar) = self.bar {
             bar.finish_and_clear();
         }
-        self.left
+        self.told
     }
 
     fn line(&self, named: &str) -> String {

@@ -146,7 +146,7 @@ impl SlurmArguments {
 fn refused_on_record(folder: &Folder) -> Result<(), Failure> {
     let (head, scene_text) = (folder.head()?, folder.scene_text()?);
     let archive = Archive::open(&folder.logs(), 1).map_err(|source| Failure::Archive { source: Box::new(source) })?;
-    let work = Work { head: &head, scene_text: &scene_text, archive: &archive };
+    let work = Work::new(&head, &scene_text, &archive);
     for task in to_do(folder)?.iter().filter(|task| task.refused.is_some()) {
         let record = work.of(task, &|| true).map_err(|source| Failure::Archive { source: Box::new(source) })?;
         folder.keep_record(&record)?;

@@ -79,7 +79,7 @@ impl TaskArguments {
         let chosen = self.chosen(&folder, &tasks)?;
         let archive =
             Archive::open(&folder.logs(), threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
-        let work = Work { head: &head, scene_text: &scene_text, archive: &archive };
+        let work = Work::new(&head, &scene_text, &archive);
         let turn = Turn::begin(raised);
         chosen.into_iter().try_for_each(|task| turn.do_task(&folder, &work, task))
     }
@@ -149,7 +149,7 @@ impl Turn {
     /// Does a task unless it is on record. Where another process has it in hand, that is waited for.
     fn do_task(&self, folder: &Folder, work: &Work<'_>, task: &Task) -> Result<(), Failure> {
         let begin = Instant::now();
-        let is_on_record = || folder.record(&task.key).is_some_and(|record| record.answers(&work.head.outputs));
+        let is_on_record = || folder.record(&task.key).is_some_and(|record| record.answers(task, &work.head().outputs));
         loop {
             if is_on_record() {
                 return Ok(());

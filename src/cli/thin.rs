@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{eprint, file_name, path_in_line, print};
+use super::output::{eprint, file_name, path_in_command, path_in_line, print};
 use crate::journal::{ThinError, Thinned, thin};
 use crate::units::count;
 
@@ -60,7 +60,7 @@ fn not_kept(text: &str, choice: Choice, thinned: &Thinned, log: &Path) -> Option
              made again where it is needed, as by `foldline stability {} --step {first}`; to keep it, thin the log that this one was \
              made of",
             count(missed.count(), "load step"),
-            path_in_line(log)
+            path_in_command(log)
         )),
         None if kept.iter().any(|step| choice.has(*step)) => None,
         None => {

@@ -32,7 +32,7 @@ fn broken(line: &str, columns: usize) -> String {
     let hang = match &pieces[..] {
         [(indent, first), (gap, _), ..] => {
             let second: usize = [indent, first, gap].map(|text| text.chars().count()).iter().sum();
-            if 3 * second <= columns { second } else { indent.len() + 2 }
+            if 5 * second <= 2 * columns { second } else { indent.len() + 2 }
         }
         _ => line.len() - line.trim_start_matches(' ').len() + 2,
     };

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use super::backend::{beside, is_at};
 use super::lease::{LONGEST, Lease, holder, not_ours};
 use crate::platform::{has_no_locks, open_itself};
+use crate::printable::word;
 use crate::whole_file::{room_for, shortage};
 
 /// Why a process may not write a log, or may no longer.
@@ -55,7 +56,8 @@ pub enum LockError {
     /// The lease is gone.
     #[error(
         "{lease} is gone, which shows that this run may write {log}: its folder was moved or removed, or another run took the log over \
-         and is done. This run stops; put the folder back, then `foldline resume {log}`"
+         and is done. This run stops; put the folder back, then `foldline resume {}`",
+        word(log)
     )]
     Gone {
         /// The log.
@@ -66,7 +68,8 @@ pub enum LockError {
     /// The lease can no longer be read.
     #[error(
         "{lease} can no longer be read, which shows whether this run may still write {log}: this run stops. When it can be read \
-         again, `foldline resume {log}`"
+         again, `foldline resume {}`",
+        word(log)
     )]
     Unreadable {
         /// The log.

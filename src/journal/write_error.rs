@@ -5,6 +5,7 @@ use std::io;
 use super::encode_error::EncodeError;
 use super::lock::LockError;
 use super::still_ours::LogChanged;
+use crate::printable::word;
 use crate::record::SinkError;
 use crate::state::Hash;
 use crate::whole_file::shortage;
@@ -14,7 +15,10 @@ use crate::whole_file::shortage;
 #[non_exhaustive]
 pub enum WriteError {
     /// There is a file of that name.
-    #[error("{log} exists and is not overwritten: `foldline resume {log}` continues it, `-o OTHER` writes elsewhere")]
+    #[error(
+        "{log} exists and is not overwritten: `foldline resume {}` continues it, `-o OTHER` writes elsewhere",
+        word(log)
+    )]
     Exists {
         /// The log.
         log: String,
@@ -68,8 +72,8 @@ pub enum WriteError {
     },
     /// The disk is full.
     #[error(
-        "no space left to {action} {log}{}; it holds {commits} stages, all good. Make space, then `foldline resume {log}`",
-        shortage(*.wanted, *.room)
+        "no space left to {action} {log}{}; it holds {commits} stages, all good. Make space, then `foldline resume {}`",
+        shortage(*.wanted, *.room), word(log)
     )]
     DiskFull {
         /// "write" or "sync".
@@ -88,7 +92,8 @@ pub enum WriteError {
     },
     /// The operating system refused.
     #[error(
-        "cannot {action} {log}; it holds {commits} stages. `foldline resume {log}` continues after the last good one"
+        "cannot {action} {log}; it holds {commits} stages. `foldline resume {}` continues after the last good one",
+        word(log)
     )]
     Io {
         /// "write", "sync" or "start".
@@ -133,7 +138,10 @@ pub enum WriteError {
         found: Hash,
     },
     /// A stage after one that failed.
-    #[error("{log} was given up after an earlier error; `foldline resume {log}` continues after its {commits} stages")]
+    #[error(
+        "{log} was given up after an earlier error; `foldline resume {}` continues after its {commits} stages",
+        word(log)
+    )]
     GivenUp {
         /// The log.
         log: String,

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use super::explain;
 use super::fault::{Fault, Source};
 use super::problem::Problem;
-use super::{explain, render};
+use super::render::Look;
 
 /// Mistakes shown at most.
 const MOST_SHOWN: usize = 10;
@@ -47,21 +48,27 @@ impl SceneError {
 
     /// Renders the annotated snippets in plain ASCII, for pipes, logs and tests.
     pub fn plain(&self) -> String {
-        self.rendered(render::plain)
+        self.rendered(&Look { colours: false, columns: None })
     }
 
     /// Renders the annotated snippets in colour, for terminals.
     pub fn coloured(&self) -> String {
-        self.rendered(render::coloured)
+        self.rendered(&Look { colours: true, columns: None })
+    }
+
+    /// Renders the annotated snippets with or without colours, in lines that fit so many columns of a terminal. Names of files
+    /// are not cut.
+    pub fn fitted(&self, colours: bool, columns: Option<usize>) -> String {
+        self.rendered(&Look { colours, columns })
     }
 
     fn first(&self) -> &Fault {
         &self.faults[0]
     }
 
-    fn rendered(&self, render: fn(&Fault, &[Source]) -> String) -> String {
+    fn rendered(&self, look: &Look) -> String {
         let shown: Vec<String> =
-            self.faults.iter().take(MOST_SHOWN).map(|fault| render(fault, &self.sources)).collect();
+            self.faults.iter().take(MOST_SHOWN).map(|fault| look.render(fault, &self.sources)).collect();
         let text = shown.join("\n\n");
         match self.faults.len().saturating_sub(MOST_SHOWN) {
             0 => text,

@@ -10,21 +10,135 @@ use super::explain::{Explanation, explain};
 use super::fault::{Fault, Source, TextSpan};
 use crate::printable::is_obeyed;
 
-pub(super) fn plain(fault: &Fault, sources: &[Source]) -> String {
-    render(fault, sources, &Renderer::plain())
+/// How errors are shown.
+pub(super) struct Look {
+    pub(super) colours: bool,
+    /// Columns that a line may have.
+    pub(super) columns: Option<usize>,
 }
 
-pub(super) fn coloured(fault: &Fault, sources: &[Source]) -> String {
-    render(fault, sources, &Renderer::styled().decor_style(DecorStyle::Unicode))
-}
+/// The parts of a message before its text: `error: `, and behind the margin with the numbers of lines `= note: `.
+const TITLE: usize = "error: ".len();
+const NOTE: usize = " = note: ".len();
+/// Columns between the numbers of lines and the source.
+const BEFORE_SOURCE: usize = 3;
+/// Columns of a tab in a source.
+const TAB: usize = 4;
 
-fn render(fault: &Fault, sources: &[Source], renderer: &Renderer) -> String {
-    let words = explain(fault).printable();
-    let mut report = vec![what_is_wrong(fault, sources, &words)];
-    if !fault.edits.is_empty() {
-        report.push(how_to_mend_it(fault, sources, &words));
+impl Look {
+    /// A fault with the lines that it is in.
+    pub(super) fn render(&self, fault: &Fault, sources: &[Source]) -> String {
+        let renderer = match self.colours {
+            true => Renderer::styled().decor_style(DecorStyle::Unicode),
+            false => Renderer::plain(),
+        };
+        let words = self.folded(explain(fault).printable(), fault, sources);
+        let mut report = vec![what_is_wrong(fault, sources, &words)];
+        if !fault.edits.is_empty() {
+            report.push(how_to_mend_it(fault, sources, &words));
+        }
+        match self.columns {
+            None => renderer.render(&report),
+            Some(columns) => {
+                let text = renderer.term_width(columns).render(&report);
+                text.split('\n').map(|line| cut(line, columns)).collect::<Vec<_>>().join("\n")
+            }
+        }
     }
-    renderer.render(&report)
+
+    /// The words in lines that fit. A label that does not fit behind what it is on becomes a note.
+    fn folded(&self, words: Explanation, fault: &Fault, sources: &[Source]) -> Explanation {
+        let Some(columns) = self.columns else { return words };
+        let margin = margin(fault, sources);
+        let title = |text: &str| folded(text, columns.saturating_sub(TITLE));
+        let note = |text: &String| folded(text, columns.saturating_sub(margin + NOTE));
+        let room =
+            |place: &TextSpan| columns.saturating_sub(margin + BEFORE_SOURCE + end_of(&sources[place.source], place));
+        let fits = |label: &str, place: &TextSpan| label.is_empty() || label.chars().count() < room(place);
+        let mut notes: Vec<String> = Vec::new();
+        let (mut label, mut also) = (words.label, words.also);
+        if !fits(&label, &fault.place) {
+            notes.push(note(&std::mem::take(&mut label)));
+        }
+        if let Some(place) = fault.also.as_ref().filter(|place| !fits(&also, place)) {
+            let source = &sources[place.source];
+            let marked = &shown(&source.text)[within(source, place)];
+            notes.push(note(&format!("{marked}: {}", std::mem::take(&mut also))));
+        }
+        notes.extend(words.notes.iter().map(note));
+        Explanation {
+            title: title(&words.title),
+            label,
+            also,
+            notes,
+            alone: note(&words.alone),
+            help: words.help.iter().map(note).collect(),
+            example: note(&words.example),
+            fix: title(&words.fix),
+        }
+    }
+}
+
+/// Digits of the largest number of a line that is shown.
+fn margin(fault: &Fault, sources: &[Source]) -> usize {
+    let places = [Some(&fault.place), fault.also.as_ref()].into_iter().flatten();
+    let places = places.chain(fault.edits.iter().map(|(place, _)| place));
+    let line = |place: &TextSpan| {
+        let text = sources[place.source].text.as_bytes();
+        2 + text[..place.span.end.min(text.len())].iter().filter(|byte| **byte == b'\n').count()
+    };
+    places.map(line).max().unwrap_or(1).to_string().len()
+}
+
+/// The column behind a place.
+fn end_of(source: &Source, place: &TextSpan) -> usize {
+    let end = within(source, place).end;
+    let line = source.text[..end].rsplit('\n').next().unwrap_or_default();
+    line.chars().map(|c| if c == '\t' { TAB } else { 1 }).sum()
+}
+
+/// A text with its lines broken between words; one behind an indent is shown as it would be written.
+fn folded(text: &str, columns: usize) -> String {
+    let fold = |line: &str| {
+        let (mut text, mut used) = (String::new(), 0);
+        for word in line.split(' ') {
+            let length = word.chars().count();
+            let is_over = used > 0 && used + 1 + length > columns;
+            if !text.is_empty() {
+                text.push(if is_over { '\n' } else { ' ' });
+            }
+            text.push_str(word);
+            used = if is_over || used == 0 { length } else { used + 1 + length };
+        }
+        text
+    };
+    let lines = text.split('\n').map(|line| if line.starts_with(' ') { line.to_owned() } else { fold(line) });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// A line as far as it fits, with all its escapes: the renderer leaves lines whole that are to be written. The name of a file is
+/// not cut.
+fn cut(line: &str, columns: usize) -> String {
+    let (mut bare, mut kept) = (String::new(), String::new());
+    let (mut used, mut is_escape) = (0, false);
+    for c in line.chars() {
+        is_escape |= c == '\u{1b}';
+        if is_escape {
+            kept.push(c);
+            is_escape = c != 'm';
+            continue;
+        }
+        bare.push(c);
+        used += 1;
+        if used < columns {
+            kept.push(c);
+        } else if used == columns {
+            kept.push('…');
+        }
+    }
+    let start = bare.trim_start();
+    let is_place = ["-->", ":::", "╭▸", "⸬"].iter().any(|mark| start.starts_with(mark));
+    if used <= columns || is_place { line.to_owned() } else { kept }
 }
 
 fn what_is_wrong<'a>(fault: &'a Fault, sources: &'a [Source], words: &'a Explanation) -> Group<'a> {

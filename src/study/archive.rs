@@ -2,7 +2,7 @@
 //! ([`Scene::results_hash`]): what is done is not done again.
 //!
 //! A run whose time counts has a record of that beside its log, since time is no function of a scene: it is kept only for the
-//! same number of threads and the same version and numerics of the program (where its speed is worked on, a folder of its own for each
+//! same machine, number of threads, version and numerics of the program (where its speed is worked on, a folder of its own for each
 //! build keeps times of one build together). Where it was interrupted it starts again, as its time would mean nothing; a run
 //! that others are compared with continues where it stopped.
 
@@ -88,6 +88,14 @@ pub enum TaskError {
     Panicked {
         /// What it said.
         message: String,
+    },
+    /// The plan of a sweep is half written.
+    #[error(
+        "the task {key} is not of the scene that the folder holds: plan again with `foldline sweep run SWEEP.toml`"
+    )]
+    OtherPlan {
+        /// Key of the task.
+        key: String,
     },
     /// The caller asked to stop.
     #[error("interrupted")]
@@ -307,7 +315,8 @@ impl Archive {
         let taken: TimeTaken = serde_json::from_slice(&fs::read(self.time_file(scene)).ok()?).ok()?;
         let counts = taken.threads == self.threads
             && taken.program_version == env!("CARGO_PKG_VERSION")
-            && taken.numerics == NUMERICS_REVISION;
+            && taken.numerics == NUMERICS_REVISION
+            && taken.host == self.manifest(scene).host;
         counts.then_some(taken.wall_s).filter(|wall_s| wall_s.is_finite() && *wall_s > 0.0)
     }
 

@@ -1,7 +1,7 @@
 //! The loop over tasks: so many at a time, each on threads of its own, and a row of each as soon as it is done.
 //!
-//! Every suite of runs goes through it: sweeps over designs, studies of error against time, paths on one mesh after another,
-//! scenes that state how they end. What a suite makes of a run is its measure; a row is what the measure found, or why it found
+//! Sweeps over designs go through it; suites whose times count (studies of error against time, paths on one mesh after another) do
+//! their tasks in turn, on all threads. What a suite makes of a run is its measure; a row is what the measure found, or why it found
 //! nothing. A panic in one task ends that task alone.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -39,9 +39,6 @@ pub enum EngineError<E: std::error::Error + 'static> {
 }
 
 impl Workers {
-    /// Tasks one at a time, on the threads that the caller has.
-    pub const ONE: Self = Self { tasks: 1, threads: 0 };
-
     /// Does the tasks `0..count` in their order and hands what came of each to `take`, on the thread of the caller and in the order
     /// in which they end. A task begins when there is `room` for the bytes that `bytes` says it takes; no task begins after
     /// `interrupted`.
@@ -57,18 +54,16 @@ impl Workers {
         measure: &(dyn Fn(usize) -> Result<R, TaskError> + Sync),
         mut take: impl FnMut(usize, Result<R, TaskError>) -> Result<(), E>,
     ) -> Result<(), EngineError<E>> {
-        let one = |index: usize| {
-            let _held = room.take(bytes(index));
-            guarded(|| measure(index))
-        };
-        if self.tasks <= 1 && self.threads == 0 {
-            let begun = (0..count).take_while(|_| !interrupted());
-            let mut begun = begun;
-            return begun.try_for_each(|index| take(index, one(index))).map_err(EngineError::Take);
-        }
         let next = AtomicUsize::new(0);
         let is_over = AtomicBool::new(false);
         let stops = || is_over.load(Ordering::Relaxed) || interrupted();
+        let one = |index: usize| {
+            guarded(|| {
+                let _held = room.take(bytes(index));
+                // It may have waited long.
+                if stops() { Err(TaskError::Interrupted) } else { measure(index) }
+            })
+        };
         // Rows are taken one by one: where that is slow, tasks wait.
         let (hand, rows) = sync_channel(self.tasks);
         let work = |hand: SyncSender<Handed<R>>| {
@@ -164,12 +159,9 @@ mod tests {
 
     #[test]
     fn every_task_is_done_once_however_many_are_done_at_a_time() {
-        for workers in [
-            Workers::ONE,
-            Workers { tasks: 1, threads: 1 },
-            Workers { tasks: 4, threads: 1 },
-            Workers { tasks: 2, threads: 3 },
-        ] {
+        for workers in
+            [Workers { tasks: 1, threads: 1 }, Workers { tasks: 4, threads: 1 }, Workers { tasks: 2, threads: 3 }]
+        {
             for count in [0, 1, 3, 100] {
                 let expected: Vec<(usize, Option<usize>)> =
                     (0..count).map(|index| (index, Some(index * index))).collect();
@@ -188,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_panic_ends_its_task_alone() {
-        for workers in [Workers::ONE, Workers { tasks: 2, threads: 1 }] {
+        for workers in [Workers { tasks: 1, threads: 1 }, Workers { tasks: 2, threads: 1 }] {
             let found = rows(workers, 6, &|index| if index == 2 { panic!("on purpose") } else { index });
             assert_eq!(
                 found.iter().filter(|(_, found)| found.is_none()).map(|(index, _)| *index).collect::<Vec<_>>(),

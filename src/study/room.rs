@@ -23,7 +23,7 @@ pub struct Held<'r> {
 impl Room {
     /// Room of so many bytes.
     pub fn of(all: u64) -> Self {
-        Self { all, lent: Mutex::new(0), returned: Condvar::new() }
+        Self { all: all.max(1), lent: Mutex::new(0), returned: Condvar::new() }
     }
 
     /// Room for any number of tasks.
@@ -31,7 +31,8 @@ impl Room {
         Self::of(u64::MAX)
     }
 
-    /// Most of what this machine says is free; where it says nothing, any number of tasks have room.
+    /// Most of what this machine says is free now, which other programs may ask for as well; where it says nothing, any number of tasks
+    /// have room.
     pub fn of_this_machine() -> Self {
         crate::platform::free_memory().map_or_else(Self::unlimited, |free| Self::of((SHARE * free as f64) as u64))
     }

@@ -51,7 +51,7 @@ pub struct Scatter {
     deviation: Option<f64>,
 }
 
-/// The most that normal values are off the mean where nothing cuts them, in standard deviations: far tails are no parts.
+/// The most that normal values are off the mean where nothing cuts them, in standard deviations: one in 500 million is farther off.
 const LARGEST_DEVIATION: f64 = 6.0;
 
 impl Axis {
@@ -77,7 +77,17 @@ impl Axis {
                 (Some(_), Some(toml::Value::Array(row))) => row.clone(),
                 (_, value) => value.cloned().into_iter().collect(),
             },
-            None => vec![toml::Value::Float(self.in_range(index))],
+            None => vec![self.number(index)],
+        }
+    }
+
+    /// A value of a range; where all of them are whole they are written so, as keys that count want them.
+    fn number(&self, index: usize) -> toml::Value {
+        const EXACT: f64 = (1_u64 << 53) as f64;
+        let is_whole = |value: f64| value.fract() == 0.0 && value.abs() < EXACT;
+        match (0..self.count()).all(|index| is_whole(self.in_range(index))) {
+            true => toml::Value::Integer(self.in_range(index) as i64),
+            false => toml::Value::Float(self.in_range(index)),
         }
     }
 
@@ -112,9 +122,12 @@ impl Axis {
             (None, Some(from), Some(to), Some(count)) => {
                 let finite = from.is_finite() && to.is_finite();
                 match (count, self.spacing) {
-                    _ if !finite => Some(format!("{name} goes from {from} to {to}, which are no lengths of anything")),
+                    _ if !finite => Some(format!("{name} goes from {from} to {to}: both ends are numbers")),
                     _ if self.keys.is_some() => {
                         Some(format!("{name} go in step: give `values` of all, as [[a, b], [c, d]]"))
+                    }
+                    _ if from == to => {
+                        Some(format!("{name} goes from {from} to {to}, which is one value: write `values`"))
                     }
                     (0 | 1, _) => Some(format!("{name}: count = {count}, and a range has both its ends: 2 or more")),
                     (_, Spacing::Log) if from <= 0.0 || to <= 0.0 => {

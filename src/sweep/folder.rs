@@ -97,14 +97,15 @@ impl Folder {
         Ok(tasks)
     }
 
-    /// Writes a plan, where none is there or it is of the same file; the head comes last, so that a kill leaves the old one.
+    /// Writes a plan, where none is there or one of the same title or file. The head goes first and comes last: a kill in between leaves
+    /// a folder that is to be planned again.
     ///
     /// # Errors
     /// Where the folder holds another sweep, or cannot be written.
     pub fn keep(&self, plan: &Plan) -> Result<(), SweepError> {
         if self.holds_sweep() {
             let there = self.head()?;
-            if there.title != plan.head.title {
+            if there.title != plan.head.title && there.file != plan.head.file {
                 let (title, file) = (there.title, there.file);
                 return Err(SweepError::OtherSweep { folder: self.path.clone(), title, file });
             }
@@ -115,9 +116,10 @@ impl Folder {
         for folder in [self.logs(), self.rows_folder()] {
             fs::create_dir_all(&folder).map_err(|source| SweepError::Write { path: folder, source })?;
         }
+        self.remove(HEAD)?;
         self.write(TASKS, &lines(&plan.tasks))?;
         self.write(SCENE, plan.scene_text.as_bytes())?;
-        self.write(HEAD, &serde_json::to_vec_pretty(&plan.head).unwrap_or_default())
+        self.write_json(HEAD, &plan.head)
     }
 
     /// Writes what is on record of a task.
@@ -125,7 +127,7 @@ impl Folder {
     /// # Errors
     /// Where it cannot be written.
     pub fn keep_record(&self, record: &TaskRecord) -> Result<(), SweepError> {
-        self.write(&record_file(&record.key), &serde_json::to_vec(record).unwrap_or_default())
+        self.write_json(&record_file(&record.key), record)
     }
 
     /// What is on record of a task. A record that cannot be read is none: the log gives it again.
@@ -139,17 +141,11 @@ impl Folder {
     /// # Errors
     /// Where a record cannot be removed.
     pub fn forget<'k>(&self, keys: impl IntoIterator<Item = &'k str>) -> Result<(), SweepError> {
-        let records = keys.into_iter().map(record_file).chain([TABLE.to_owned()]);
-        for path in records.map(|name| self.path.join(name)) {
-            match fs::remove_file(&path) {
-                Err(source) if source.kind() != ErrorKind::NotFound => return Err(SweepError::Write { path, source }),
-                _ => {}
-            }
-        }
-        Ok(())
+        let mut records = keys.into_iter().map(record_file).chain([TABLE.to_owned()]);
+        records.try_for_each(|name| self.remove(&name))
     }
 
-    /// Every task with what is on record of it; gathers records that the table does not have.
+    /// Every task with what is on record of it and answers what the sweep asks; gathers records that the table does not have.
     ///
     /// # Errors
     /// Where tasks cannot be read. The table is written where it can be.
@@ -177,16 +173,19 @@ impl Folder {
     fn rows_gathered_from(&self, most_ungathered: usize) -> Result<Vec<Row>, SweepError> {
         let (tasks, outputs) = (self.tasks()?, self.head()?.outputs);
         let mut known = self.table();
-        // What was done again since has a record of its own.
-        known.retain(|_, record| record.answers(&outputs));
         let mut gathered = 0;
         let rows: Vec<Row> = tasks
             .into_iter()
             .map(|task| {
-                let record = known.get(&task.key).cloned().or_else(|| {
-                    let found = self.record(&task.key)?;
-                    gathered += 1;
-                    known.insert(task.key.clone(), found.clone());
+                // What was done again since has a newer record of its own.
+                let in_table = known.get(&task.key).filter(|record| record.answers(&task, &outputs)).cloned();
+                let record = in_table.or_else(|| {
+                    let found = self.record(&task.key).filter(|record| record.answers(&task, &outputs))?;
+                    // What failed may be done again, and is not looked for in two places.
+                    if !found.is_short() {
+                        gathered += 1;
+                        known.insert(task.key.clone(), found.clone());
+                    }
                     Some(found)
                 });
                 Row { task, record }
@@ -206,6 +205,20 @@ impl Folder {
         let lines = BufReader::new(file).lines().map_while(Result::ok);
         let records = lines.filter_map(|line| serde_json::from_str::<TaskRecord>(&line).ok());
         records.map(|record| (record.key.clone(), record)).collect()
+    }
+
+    fn remove(&self, name: &str) -> Result<(), SweepError> {
+        let path = self.path.join(name);
+        match fs::remove_file(&path) {
+            Err(source) if source.kind() != ErrorKind::NotFound => Err(SweepError::Write { path, source }),
+            _ => Ok(()),
+        }
+    }
+
+    fn write_json(&self, name: &str, value: &impl Serialize) -> Result<(), SweepError> {
+        let text = serde_json::to_vec(value);
+        let text = text.map_err(|why| SweepError::Write { path: self.path.join(name), source: why.into() })?;
+        self.write(name, &text)
     }
 
     fn rows_folder(&self) -> PathBuf {

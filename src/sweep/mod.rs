@@ -45,4 +45,4 @@ pub use slurm::{
 pub use submission::{Submission, Submissions, Submitted, keep_list, keep_script};
 pub use sweep_file::{Combine, Method, Reference, Sample, SweepFile};
 pub use table::{Condition, Table};
-pub use work::{Work, in_full};
+pub use work::Work;

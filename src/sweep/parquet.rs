@@ -12,6 +12,9 @@ use serde_json::Value;
 
 use super::table::Table;
 
+/// Columns that are text whatever is in them.
+const WORDS: [&str; 5] = ["key", "role", "ending", "log", "reason"];
+
 impl Table {
     /// As a Parquet file of one row group: numbers as doubles, all else as text; what a row does not have is null.
     ///
@@ -21,8 +24,11 @@ impl Table {
         let names = self.columns();
         let rows: Vec<Vec<Value>> = self.rows.iter().map(|row| self.values(row)).collect();
         let of = |column: usize| rows.iter().map(move |row| &row[column]);
-        let is_number: Vec<bool> =
-            (0..names.len()).map(|column| of(column).all(|value| value.is_number() || value.is_null())).collect();
+        let is_number: Vec<bool> = (0..names.len())
+            .map(|column| {
+                !WORDS.contains(&&names[column][..]) && of(column).all(|value| value.is_number() || value.is_null())
+            })
+            .collect();
         let fields = names.iter().zip(&is_number).map(|(name, is_number)| field(name, *is_number));
         let fields = fields.collect::<Result<Vec<_>, _>>()?;
         let schema = Type::group_type_builder("sweep").with_fields(fields).build()?;

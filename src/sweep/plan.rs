@@ -6,10 +6,14 @@ use serde_json::Value;
 
 use super::error::SweepError;
 use super::quantity::Quantity;
-use super::sampling::{MOST_OF_SOBOL, points};
+use super::sampling::{MOST_AXES_OF_SOBOL, points};
 use super::sweep_file::{Combine, Method, SweepFile};
+use crate::record::NUMERICS_REVISION;
 use crate::scene::{Geometry, Scene, parse, parse_with_settings};
-use crate::study::run_name;
+use crate::study::{is_comparable, run_name};
+
+/// Columns of what is wrong with a scene: it goes on record, and is read on whatever terminal.
+const COLUMNS: usize = 60;
 
 /// What all tasks of a sweep share.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,7 +86,7 @@ impl Head {
 }
 
 fn scene_with(text: &str, name: &str, settings: &[String]) -> Result<Scene, String> {
-    parse_with_settings(text, name, settings).map_err(|error| error.plain())
+    parse_with_settings(text, name, settings).map_err(|error| error.fitted(false, Some(COLUMNS)))
 }
 
 impl Plan {
@@ -97,9 +101,9 @@ impl Plan {
     ) -> Result<Self, SweepError> {
         let wrong = |problem: String| SweepError::Wrong { file: file.to_owned(), problem };
         let sobol = sweep.sample.is_some_and(|sample| sample.method == Method::Sobol);
-        if sobol && sweep.scatter.len() > MOST_OF_SOBOL {
+        if sobol && sweep.scatter.len() > MOST_AXES_OF_SOBOL {
             return Err(wrong(format!(
-                "{} keys scatter, and Sobol's sequence is known for {MOST_OF_SOBOL}: write method = \"latin-hypercube\"",
+                "{} keys scatter, and Sobol's sequence is known for {MOST_AXES_OF_SOBOL}: write method = \"latin-hypercube\"",
                 sweep.scatter.len()
             )));
         }
@@ -113,7 +117,7 @@ impl Plan {
             outputs: sweep.outputs.clone(),
             tasks: 0,
             references: 0,
-            planned_from: planned_from(sweep_text, scene_text),
+            planned_from: planned_from(sweep_text, scene_text, scene_file),
         };
         let scene_text = whole(scene_text, scene_file);
         let values = all_values(sweep);
@@ -135,6 +139,9 @@ impl Plan {
             let of_tasks: Vec<Task> =
                 tasks.par_iter().map(|task| made(values_of_reference(&head, &task.values), true)).collect();
             let mut seen = std::collections::BTreeSet::new();
+            if let Some(problem) = not_comparable(&head, &scene_text, &tasks, &of_tasks) {
+                return Err(wrong(problem));
+            }
             for (task, reference) in tasks.iter_mut().zip(of_tasks) {
                 task.reference = Some(reference.key.clone());
                 if seen.insert(reference.key.clone()) {
@@ -159,6 +166,15 @@ impl Plan {
     }
 }
 
+/// Why the first task that can be run cannot be compared with its reference.
+fn not_comparable(head: &Head, scene_text: &str, tasks: &[Task], references: &[Task]) -> Option<String> {
+    let scenes =
+        |(task, reference)| Some((head.scene_of(scene_text, task).ok()?, head.scene_of(scene_text, reference).ok()?));
+    let (scene, reference) = tasks.iter().zip(references).find_map(scenes)?;
+    let why = is_comparable(&scene, &reference).err()?;
+    Some(format!("tasks cannot be compared with their [reference]: {why}"))
+}
+
 /// Values of the columns of a task's reference: what the reference sets itself replaces the task's.
 fn values_of_reference(head: &Head, values: &[Value]) -> Vec<Value> {
     let set = |key: &String| {
@@ -173,10 +189,11 @@ fn values_of_reference(head: &Head, values: &[Value]) -> Vec<Value> {
     head.columns.iter().zip(values).map(|(key, value)| set(key).unwrap_or_else(|| value.clone())).collect()
 }
 
-/// Hash of what a plan follows from.
-pub fn planned_from(sweep_text: &str, scene_text: &str) -> String {
+/// Hash of what a plan follows from: the sweep, the scene with the surface that it reads from a file of its own, and the program.
+pub fn planned_from(sweep_text: &str, scene_text: &str, scene_file: &str) -> String {
     let mut hasher = blake3::Hasher::new();
-    for text in [sweep_text, scene_text] {
+    for text in [sweep_text, &whole(scene_text, scene_file), env!("CARGO_PKG_VERSION"), &NUMERICS_REVISION.to_string()]
+    {
         hasher.update(&(text.len() as u64).to_le_bytes()).update(text.as_bytes());
     }
     hasher.finalize().to_hex().to_string()

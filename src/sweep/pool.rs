@@ -1,5 +1,7 @@
 //! The tasks of a sweep on this machine: references first, then all others, as many at a time as there is room for.
 
+use std::collections::BTreeSet;
+
 use super::error::SweepError;
 use super::folder::Folder;
 use super::plan::Task;
@@ -22,10 +24,10 @@ pub enum Outcome {
 /// # Errors
 /// Where the folder cannot be read.
 pub fn to_do(folder: &Folder) -> Result<Vec<Task>, SweepError> {
-    let outputs = folder.head()?.outputs;
-    let rows = folder.rows()?.into_iter();
-    let open = rows.filter(|row| row.record.as_ref().is_none_or(|record| !record.answers(&outputs)));
-    Ok(open.map(|row| row.task).collect())
+    let mut seen = BTreeSet::new();
+    let open = folder.rows()?.into_iter().filter(|row| row.record.is_none()).map(|row| row.task);
+    // Tasks that share what decides their results are one.
+    Ok(open.filter(|task| seen.insert((task.key.clone(), task.is_reference))).collect())
 }
 
 /// Does tasks, and puts what came of each on record before `take` is told. No task begins after `interrupted`, which also stops those in
@@ -66,7 +68,7 @@ pub fn do_tasks(
 /// matrix, unknowns times half the band.
 fn bytes_of(work: &Work<'_>, task: &Task) -> u64 {
     const AT_LEAST: f64 = 20e6;
-    let Ok(scene) = work.head.scene_of(work.scene_text, task) else { return 0 };
+    let Ok(scene) = work.scene_of(task) else { return 0 };
     let Ok(mesh) = starting_mesh(&scene) else { return AT_LEAST as u64 };
     let elements = mesh.element_counts();
     let judged = if scene.adapt.is_some() { 2 } else { 1 };

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::record::{Record, Report};
 use crate::scene::{Drive, Scene};
-use crate::study::{Snap, Summary, equilibria};
+use crate::study::{Passed, Snap, Summary, equilibria};
 
 /// A finished run, as quantities are read of it.
 #[derive(Debug)]
@@ -78,8 +78,8 @@ pub static FIGURES: &[Figure] = figures! {
     "snap_after", "the same of the first equilibrium behind it", |run| Some(first_snap(run)?.after);
     "snap_released_n_mm", "energy that the first snap released, N·mm", |run| first_snap(run)?.energy_released_n_mm;
     "fold_moment_n_mm", "moment of the fold, N·mm", |run| Some(run.summary.fold?.moment_n_mm);
-    "limit_parameter", "rotation or load factor of the first critical point of the path", |run| Some(run.summary.passed.first()?.parameter);
-    "limit_probe", "the first probe there", |run| run.summary.passed.first()?.probe;
+    "limit_parameter", "rotation or load factor of the first limit point of the path", |run| Some(first_limit(run)?.parameter);
+    "limit_probe", "the first probe there", |run| first_limit(run)?.probe;
     "energy_balance", "work for which no energy accounts, relative", |run| Some(run.summary.balance?.relative_error());
     "theory_stiffness_n_mm", "2EI/L of beam theory, N·mm per radian", |run| Some(run.summary.spring.as_ref()?.initial_stiffness_n_mm());
     "theory_peak_n_mm", "peak of Wuest's law, N·mm", |run| Some(run.summary.spring.as_ref()?.peak()?.moment_n_mm);
@@ -107,6 +107,10 @@ pub static FIELDS: &[Field] = fields! {
     "residual", |report| Some(report.residual);
     "unknowns", |report| Some(report.unknowns as f64);
 };
+
+fn first_limit(run: &Finished<'_>) -> Option<Passed> {
+    run.summary.passed.iter().find(|passed| passed.critical.limit_point).copied()
+}
 
 fn first_snap(run: &Finished<'_>) -> Option<Snap> {
     run.summary.snaps.first().copied()

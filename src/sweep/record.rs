@@ -27,21 +27,24 @@ pub struct TaskRecord {
     pub key: String,
     /// How it ended.
     pub ending: Ending,
-    /// Why it did not reach its target.
+    /// Why it did not reach its target, or has no error against its reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// Key of the reference that it was compared with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference: Option<String>,
     /// What was collected, by name; `None` where the run has no such thing.
     #[serde(default)]
     pub results: BTreeMap<String, Option<f64>>,
-    /// Load steps.
-    #[serde(default)]
-    pub load_steps: u64,
-    /// Free unknowns at the end.
-    #[serde(default)]
-    pub unknowns: usize,
+    /// Load steps of a finished run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_steps: Option<u64>,
+    /// Free unknowns at its end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unknowns: Option<usize>,
     /// Wall time of its stages and of keeping them, seconds.
-    #[serde(default)]
-    pub wall_s: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall_s: Option<f64>,
     /// Name of its log in the folder for logs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub log: Option<String>,
@@ -54,11 +57,23 @@ pub struct TaskRecord {
 }
 
 impl TaskRecord {
-    /// Whether a sweep with these outputs need not do the task again: numbers of other numerics do not count, and what is newly
-    /// asked for is read from the log.
-    pub fn answers(&self, outputs: &[Quantity]) -> bool {
+    /// Whether a sweep with these outputs need not do the task again. Numbers of other numerics do not count, nor what another version of
+    /// the program refused, nor errors against another reference; what is newly asked for is read from the log.
+    pub fn answers(&self, task: &Task, outputs: &[Quantity]) -> bool {
         let has = |output: &Quantity| self.results.contains_key(&output.to_string());
-        self.numerics == NUMERICS_REVISION && (self.ending != Ending::Done || outputs.iter().all(has))
+        let is_compared =
+            task.is_reference || self.reference == task.reference || !outputs.iter().any(Quantity::needs_reference);
+        self.numerics == NUMERICS_REVISION
+            && match self.ending {
+                Ending::Done => is_compared && outputs.iter().all(has),
+                Ending::Failed => true,
+                Ending::Refused => self.program_version == env!("CARGO_PKG_VERSION"),
+            }
+    }
+
+    /// Whether the task may come to more where it is done again.
+    pub fn is_short(&self) -> bool {
+        self.ending == Ending::Failed || self.reason.is_some() && self.ending == Ending::Done
     }
 }
 

@@ -2,8 +2,11 @@
 
 use super::sweep_file::{Method, Sample};
 
+/// Points that Sobol's sequence is known for.
+pub(super) const MOST_OF_SOBOL: usize = 1 << 16;
+
 /// Axes that Sobol's sequence is known for.
-pub(super) const MOST_OF_SOBOL: usize = sobol_burley::NUM_DIMENSIONS as usize;
+pub(super) const MOST_AXES_OF_SOBOL: usize = sobol_burley::NUM_DIMENSIONS as usize;
 
 /// Points of the unit cube with so many axes, one after another.
 pub(super) fn points(sample: &Sample, axes: usize) -> Vec<Vec<f64>> {

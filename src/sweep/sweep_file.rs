@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::axis::{Axis, Scatter};
 use super::error::SweepError;
 use super::quantity::Quantity;
+use super::sampling::MOST_OF_SOBOL;
 
 /// The most tasks of a sweep.
 pub const MOST_TASKS: usize = 1_000_000;
@@ -166,6 +167,18 @@ impl SweepFile {
         if let Some(error) = self.outputs.iter().find(|output| output.needs_reference() && self.reference.is_none()) {
             return Some(format!("{error} compares with a reference: write [reference] settings = [...] for its runs"));
         }
+        let mut asked = BTreeSet::new();
+        if let Some(twice) = self.outputs.iter().map(ToString::to_string).find(|output| !asked.insert(output.clone())) {
+            return Some(format!("{twice} is asked for twice in `outputs`"));
+        }
+        match (&self.sample, self.count()) {
+            (Some(Sample { count, method: Method::Sobol, .. }), _) if *count > MOST_OF_SOBOL => {
+                return Some(format!(
+                    "Sobol's sequence is known for {MOST_OF_SOBOL} points, and {count} are asked for: write method = \"latin-hypercube\""
+                ));
+            }
+            _ => {}
+        }
         match self.count() {
             Some(count) if count <= MOST_TASKS => None,
             count => Some(format!(
@@ -223,6 +236,12 @@ mod tests {
             ("[sample]\ncount = 2000000\n[[scatter]]\nkey = \"a.b\"\nfrom = 1\nto = 2", "at most 1000000"),
             ("outputs = [\"error_before\"]\n[[axis]]\nkey = \"a.b\"\nvalues = [1]", "reference"),
             ("outputs = [\"peak_momnt\"]\n[[axis]]\nkey = \"a.b\"\nvalues = [1]", "peak_moment_n_mm"),
+            (
+                "[sample]\ncount = 70000\nmethod = \"sobol\"\n[[scatter]]\nkey = \"a.b\"\nfrom = 1\nto = 2",
+                "65536 points",
+            ),
+            ("[[axis]]\nkey = \"a.b\"\nfrom = 1\nto = 1\ncount = 3", "one value"),
+            ("outputs = [\"snaps\", \"snaps\"]\n[[axis]]\nkey = \"a.b\"\nvalues = [1]", "asked for twice"),
             ("[[axes]]\nkey = 1", "axes"),
         ] {
             let problem = problem(&format!("{head}{text}"));

@@ -11,7 +11,7 @@ use super::plan::Head;
 use super::record::Row;
 
 /// What stands before the values of the axes in every row, and behind the results.
-const BEFORE: [&str; 3] = ["number", "key", "ending"];
+const BEFORE: [&str; 4] = ["number", "key", "role", "ending"];
 const BEHIND: [&str; 5] = ["load_steps", "unknowns", "wall_s", "log", "reason"];
 
 /// Rows of a sweep.
@@ -85,14 +85,14 @@ impl Table {
     /// The value of a row in each column; null where it has none.
     pub fn values(&self, row: &Row) -> Vec<Value> {
         let Row { task, record } = row;
-        let mut values = vec![json!(task.number), json!(task.key), json!(row.ending())];
+        let mut values = vec![json!(task.number), json!(task.key), json!(role(row)), json!(row.ending())];
         values.extend(task.values.iter().cloned());
         values.extend(self.head.outputs.iter().map(|output| json!(row.result(&output.to_string()))));
         let record = record.as_ref();
         values.extend([
-            json!(record.map(|record| record.load_steps)),
-            json!(record.map(|record| record.unknowns)),
-            json!(record.map(|record| record.wall_s)),
+            json!(record.and_then(|record| record.load_steps)),
+            json!(record.and_then(|record| record.unknowns)),
+            json!(record.and_then(|record| record.wall_s)),
             json!(record.and_then(|record| record.log.clone())),
             json!(record.and_then(|record| record.reason.clone())),
         ]);
@@ -117,7 +117,7 @@ impl Table {
     /// Keeps the rows that meet all conditions.
     ///
     /// # Errors
-    /// Where a condition is on no column, or compares with what the column never holds.
+    /// Where a condition is on no column.
     pub fn retain(&mut self, conditions: &[Condition]) -> Result<(), SweepError> {
         for condition in conditions {
             let column = self.column(&condition.column)?;
@@ -153,6 +153,11 @@ impl Table {
         };
         self.rows.iter().map(object).collect()
     }
+}
+
+/// Whether others are compared with it.
+fn role(row: &Row) -> &'static str {
+    if row.task.is_reference { "reference" } else { "task" }
 }
 
 fn line<'c>(cells: impl Iterator<Item = Cow<'c, str>>) -> String {

@@ -1,36 +1,59 @@
 //! One task, done: its run in a log of its own, and what is put on record of it.
 
-use std::collections::BTreeMap;
-use std::error::Error;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::plan::{Head, Task};
 use super::quantity::{Finished, Quantity};
 use super::record::{Ending, TaskRecord};
 use crate::journal::Manifest;
+use crate::printable::in_full;
 use crate::record::NUMERICS_REVISION;
 use crate::scene::Scene;
-use crate::study::{AccuracyError, Archive, Done, Measured, Purpose, Summary, TaskError};
+use crate::study::{Archive, Done, Measured, Purpose, Summary, TaskError, run_name};
 
 /// Does tasks of one sweep.
 #[derive(Debug)]
 pub struct Work<'w> {
-    /// What the tasks share.
-    pub head: &'w Head,
-    /// The scene that is varied.
-    pub scene_text: &'w str,
-    /// Where logs lie.
-    pub archive: &'w Archive,
+    head: &'w Head,
+    scene_text: &'w str,
+    archive: &'w Archive,
+    /// References that were read, or why they give nothing, by their keys.
+    references: Mutex<HashMap<String, Arc<Reference>>>,
 }
 
-impl Work<'_> {
+/// What a task is compared with.
+type Reference = Result<Measured, String>;
+
+impl<'w> Work<'w> {
+    /// Prepares for tasks of the plan with this head and this scene, with logs in an archive.
+    pub fn new(head: &'w Head, scene_text: &'w str, archive: &'w Archive) -> Self {
+        Self { head, scene_text, archive, references: Mutex::default() }
+    }
+
+    /// What the tasks share.
+    pub fn head(&self) -> &Head {
+        self.head
+    }
+
+    /// The scene of a task.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn scene_of(&self, task: &Task) -> Result<Scene, String> {
+        self.head.scene_of(self.scene_text, task)
+    }
+
     /// Does a task to its end, from wherever its log stands, and says what is to be put on record.
     ///
     /// # Errors
     /// Where its run stops; see [`Self::record`].
     pub fn of(&self, task: &Task, interrupted: &dyn Fn() -> bool) -> Result<TaskRecord, TaskError> {
-        match self.head.scene_of(self.scene_text, task) {
+        match self.scene_of(task) {
             Err(why) => Ok(self.ended(task, Ending::Refused, Some(why))),
+            // As a kill while another plan was written may leave it.
+            Ok(scene) if run_name(&scene) != task.key => Err(TaskError::OtherPlan { key: task.key.clone() }),
             Ok(scene) => {
                 let done = self.archive.done(&scene, Purpose::Results, interrupted)?;
                 self.measured(task, &scene, &done, interrupted)
@@ -48,7 +71,7 @@ impl Work<'_> {
             ended => return ended,
         };
         let ending = if matches!(error, TaskError::Model(_)) { Ending::Refused } else { Ending::Failed };
-        let scene = self.head.scene_of(self.scene_text, task).ok();
+        let scene = self.scene_of(task).ok();
         let log = scene.and_then(|scene| self.log_of(&scene));
         Ok(TaskRecord { log, ..self.ended(task, ending, Some(in_full(&error))) })
     }
@@ -61,10 +84,11 @@ impl Work<'_> {
         interrupted: &dyn Fn() -> bool,
     ) -> Result<TaskRecord, TaskError> {
         let compares = self.head.outputs.iter().any(Quantity::needs_reference) && !task.is_reference;
-        let compared = if compares { self.compared(task, scene, done, interrupted)? } else { Ok([None; 2]) };
-        let (errors, reason) = match compared {
-            Ok(errors) => (errors, None),
-            Err(why) => ([None; 2], Some(why)),
+        let reference = if compares { Some(self.reference(task, interrupted)?) } else { None };
+        let (errors, reason) = match reference.map(|reference| compared(scene, done, &reference)) {
+            None => ([None; 2], None),
+            Some(Ok(errors)) => (errors, None),
+            Some(Err(why)) => ([None; 2], Some(format!("not compared with its reference: {why}"))),
         };
         let summary = Summary::new(scene, &done.records);
         let run = Finished { scene, records: &done.records, summary: &summary, errors };
@@ -74,37 +98,32 @@ impl Work<'_> {
         Ok(TaskRecord {
             results,
             reason,
-            load_steps: last.map_or(0, |report| report.step),
-            unknowns: last.map_or(0, |report| report.unknowns),
-            wall_s: done.wall_s,
+            reference: task.reference.clone(),
+            load_steps: last.map(|report| report.step),
+            unknowns: last.map(|report| report.unknowns),
+            wall_s: Some(summary.wall_s()),
             log: self.log_of(scene),
             ..self.ended(task, Ending::Done, None)
         })
     }
 
-    /// Errors against the task's reference, or why there are none.
-    fn compared(
-        &self,
-        task: &Task,
-        scene: &Scene,
-        done: &Done,
-        interrupted: &dyn Fn() -> bool,
-    ) -> Result<Result<[Option<f64>; 2], String>, TaskError> {
+    /// The run that a task is compared with, done where it is not yet and read once.
+    fn reference(&self, task: &Task, interrupted: &dyn Fn() -> bool) -> Result<Arc<Reference>, TaskError> {
+        let key = task.reference.clone().unwrap_or_default();
+        let known = || self.references.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(reference) = known().get(&key) {
+            return Ok(reference.clone());
+        }
         let of_reference = Task { is_reference: true, refused: None, ..task.clone() };
-        let other = match self.head.scene_of(self.scene_text, &of_reference) {
-            Ok(other) => other,
-            Err(why) => return Ok(Err(format!("its reference is wrong: {why}"))),
+        let reference = match self.scene_of(&of_reference) {
+            Err(why) => Err(why),
+            Ok(scene) => match self.archive.done(&scene, Purpose::Results, interrupted) {
+                Err(error) if error.is_of_scene() => Err(in_full(&error)),
+                Err(error) => return Err(error),
+                Ok(done) => Measured::of(&scene, &done.records, done.wall_s).map_err(|error| in_full(&error)),
+            },
         };
-        let reference = match self.archive.done(&other, Purpose::Results, interrupted) {
-            Err(error) if error.is_of_scene() => return Ok(Err(format!("its reference: {}", in_full(&error)))),
-            reference => reference?,
-        };
-        let errors = || -> Result<[Option<f64>; 2], AccuracyError> {
-            let expected = Measured::of(&other, &reference.records, reference.wall_s)?;
-            let row = Measured::of(scene, &done.records, done.wall_s)?.against(&expected)?;
-            Ok([row.error_before, row.error_after])
-        };
-        Ok(errors().map_err(|error| in_full(&error)))
+        Ok(known().entry(key).or_insert_with(|| Arc::new(reference)).clone())
     }
 
     fn log_of(&self, scene: &Scene) -> Option<String> {
@@ -119,9 +138,10 @@ impl Work<'_> {
             ending,
             reason,
             results: BTreeMap::new(),
-            load_steps: 0,
-            unknowns: 0,
-            wall_s: 0.0,
+            reference: None,
+            load_steps: None,
+            unknowns: None,
+            wall_s: None,
             log: None,
             program_version,
             numerics: NUMERICS_REVISION,
@@ -130,16 +150,9 @@ impl Work<'_> {
     }
 }
 
-/// An error with what is below it, in one line.
-pub fn in_full(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        let below = error.to_string();
-        if !text.ends_with(&below) {
-            text = format!("{text}: {below}");
-        }
-        cause = error.source();
-    }
-    text
+/// Errors before the first snap and behind it.
+fn compared(scene: &Scene, done: &Done, reference: &Reference) -> Result<[Option<f64>; 2], String> {
+    let expected = reference.as_ref().map_err(Clone::clone)?;
+    let row = Measured::of(scene, &done.records, done.wall_s).and_then(|found| found.against(expected));
+    row.map(|row| [row.error_before, row.error_after]).map_err(|error| in_full(&error))
 }

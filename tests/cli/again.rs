@@ -86,3 +86,19 @@ fn what_is_set_once_changes_no_result() {
         .says(&["foldline.toml", "nothing that could change a result"]);
     assert!(!place.file("never.mcap").exists());
 }
+
+/// Commands that are proposed can be typed as they stand, whatever the files are called.
+#[test]
+fn names_in_proposed_commands_are_quoted() {
+    let place = Sandbox::new();
+    place.write("my scene.toml", SMALL);
+    let run = |arguments: &[&str]| {
+        let mut command = place.command("run");
+        Said::new("run", command.args(arguments).output().unwrap())
+    };
+    let said = run(&["my scene.toml", "-o", "it's mine.mcap", "--until", "4"]).ends(0);
+    said.says(&[r"foldline inspect 'it'\''s mine.mcap'"]);
+    let said = run(&["my scene.toml", "-o", "it's mine.mcap", "--set", "load.sense=\"opposite\""]).ends(2);
+    let said = said.says(&[r"foldline resume 'it'\''s mine.mcap'"]);
+    said.says(&["foldline run 'my scene.toml' --set 'load.sense=\"opposite\"' -o OTHER.mcap"]);
+}

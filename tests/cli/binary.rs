@@ -65,7 +65,7 @@ fn every_option_stands_in_the_long_help_and_the_short() {
 
 #[test]
 fn wrong_usage() {
-    insta::assert_snapshot!(refusal(&["help", "plto"], 2), @"error: no help on `plto`; there is help on scenes, new, check, run, resume, inspect, plot, report, compare, export, replay, bisect, stability, verify, recover, thin, bench, converge, calibrate, study, extremes, completions, man, help, scene; did you mean `plot`?");
+    insta::assert_snapshot!(refusal(&["help", "plto"], 2), @"error: no help on `plto`; there is help on scenes, new, check, run, resume, inspect, plot, report, compare, export, replay, bisect, stability, verify, recover, thin, bench, converge, calibrate, study, sweep, extremes, completions, man, help, scene; did you mean `plot`?");
     insta::assert_snapshot!(refusal(&["run", "nope.toml"], 2), @"error: cannot read nope.toml: there is no such file, and no scene of that name comes with the program; `foldline scenes` lists those");
     insta::assert_snapshot!(refusal(&["run", "a.toml", "--until", "-3"], 2), @r"
     error: invalid value '-3' for '--until <AT>': a rotation or a load factor above 0 is wanted; by arc length it counts on both sides of 0

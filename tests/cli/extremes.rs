@@ -60,9 +60,17 @@ fn table() {
         refused,
         broken,
     ];
-    let table = ExtremesTable::new(rows.iter().map(|row| row.scene.trim_end_matches(".toml")));
-    let text: String = rows.iter().map(|row| table.row(row)).collect();
-    insta::assert_snapshot!(table.head() + &text);
+    let shown = |columns: Option<usize>| {
+        let table = ExtremesTable::new(rows.iter().map(|row| row.scene.trim_end_matches(".toml")), columns);
+        table.head() + &rows.iter().map(|row| table.row(row)).collect::<String>()
+    };
+    insta::assert_snapshot!(shown(None));
+    for columns in [60, 80, 120] {
+        let narrow = shown(Some(columns));
+        assert!(narrow.lines().all(|line| line.chars().count() <= columns), "{narrow}");
+        assert!(rows.iter().all(|row| narrow.contains(row.outcome.name())), "{narrow}");
+    }
+    insta::assert_snapshot!("table_at_80", shown(Some(80)));
 }
 
 #[test]

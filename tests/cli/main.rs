@@ -11,6 +11,7 @@ mod folded;
 mod pictures;
 mod plot;
 mod progress;
+mod pty;
 mod report;
 mod stability;
 mod stages;

@@ -136,7 +136,10 @@ fn shipped_sweeps_are_planned() {
     let told = place.foldline("scenes sweeps").ends(0).out;
     for name in ["fold-moments", "scattered-springs", "roof-snap", "mesh-error"] {
         assert!(told.contains(name), "{told}");
+        place.foldline(&format!("sweep run sweeps/{name} --folder {name} --slurm --dry-run")).ends(0);
     }
+    let tasks = String::from_utf8(place.read("fold-moments/tasks.jsonl")).unwrap();
+    assert_eq!((tasks.lines().count(), tasks.matches("refused").count()), (21, 0));
 }
 
 /// Scripts for Slurm are written where there is none, and hold what is not on record: wrong scenes never need a job.

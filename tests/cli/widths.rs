@@ -2,13 +2,13 @@
 
 use foldline::cli::stage_table;
 
-use crate::program::{Said, Sandbox};
+use crate::program::{Said, Sandbox, small_with};
 use crate::synthetic;
 
 const WIDTHS: [usize; 3] = [60, 80, 120];
 
 /// Commands that print tables or prose; each is run after those before it, at each width with files of its own (`N`).
-const COMMANDS: [&str; 26] = [
+const COMMANDS: [&str; 51] = [
     "run small.toml -o N-run.mcap",
     "run small.toml -o N-until.mcap --until 7",
     "resume N-until.mcap",
@@ -35,12 +35,63 @@ const COMMANDS: [&str; 26] = [
     "help export",
     "rnu small.toml",
     "man -o N-pages",
+    "help scene",
+    "help scene load",
+    "help scene places",
+    "help study",
+    "help extremes",
+    "help bench",
+    "inspect run.mcap --probes",
+    "plot run.mcap -o N-plot.svg",
+    "report run.mcap -o N-report.html",
+    "bench small.toml --elements 8,8 --repeats 1",
+    "converge short.toml --degree 3 --elements 8,4 --logs converged",
+    "calibrate short.toml --fine 8,8",
+    "study short.toml --against short.toml --vary mesh.quadrature=[\"full\",\"patch\"] --logs studied",
+    "study study.toml --logs studied",
+    "extremes one-element-degree-2 --logs extremes",
+    "run typo.toml",
+    "run unit.toml",
+    "run support.toml",
+    "run range.toml",
+    "run missing.toml",
+    "run syntax.toml",
+    "run stages.toml",
+    "run twice.toml",
+    "run small.toml --set load.rotation_dge=7",
+    "run nothing.toml",
 ];
+
+/// Scenes that are wrong in one place each, by their names.
+const WRONG: [(&str, &str, &str); 8] = [
+    (
+        "typo",
+        "rotation_deg = 16.0",
+        "rotation_dge = 16.0 # how far each of the two ends turns about its own axis, in degrees",
+    ),
+    ("unit", "length_mm = 300.0", "length_m = 0.3"),
+    ("support", "[adapt]", "[[support]]\non = \"u-strat\"\nkind = \"clampd\"\n[adapt]"),
+    ("range", "poissons_ratio = 0.3", "poissons_ratio = 0.7"),
+    ("missing", "thickness_mm = 0.1", ""),
+    ("syntax", "arc_deg = 110.0", "arc_deg = 110,0"),
+    ("stages", "\"refine-knots\", \"project-displacements\"", "\"project-displacements\", \"refine-knots\""),
+    ("twice", "part = \"quarter\"", "part = \"quarter\"\npart = \"full\""),
+];
+
+/// Two meshes against a third.
+const STUDY: &str = include_str!("small_study.toml");
 
 #[test]
 fn no_line_is_wider_than_the_terminal() {
     let place = Sandbox::new();
-    place.foldline("run small.toml -o run.mcap").ends(0);
+    let probes = "\n[[probe]]\nname = \"strain energy of the whole spring\"\nkind = \"energy\"\n";
+    place.write("probed.toml", format!("{}{probes}{}", crate::program::SMALL, probes.replace("whole", "very same")));
+    place.write("short.toml", small_with(&[("rotation_deg = 16.0", "rotation_deg = 4.0")]));
+    place.write("study.toml", STUDY);
+    for (name, right, wrong) in WRONG {
+        place.write(&format!("{name}.toml"), small_with(&[(right, wrong)]));
+    }
+    place.foldline("run probed.toml -o run.mcap").ends(0);
     let mut wide = String::new();
     for width in WIDTHS {
         for command in COMMANDS {
@@ -74,4 +125,43 @@ fn the_meshes_of_a_run() {
     place.foldline("run small.toml -o run.mcap --until 7").ends(0);
     let output = place.command("inspect run.mcap --mesh").env("COLUMNS", "60").output().unwrap();
     insta::assert_snapshot!(String::from_utf8(output.stdout).unwrap());
+}
+
+/// What a command says at a width, with times and hashes masked.
+fn said_at(place: &Sandbox, command: &str, width: usize) -> String {
+    let output = place.command(command).env("COLUMNS", width.to_string()).output().unwrap();
+    let Said { out, err, .. } = Said::new(command, output);
+    let is_time = |word: &str| word.ends_with('s') && word.starts_with(|c: char| c.is_ascii_digit());
+    let masked = |line: &str| {
+        let words: Vec<&str> = line.split(' ').collect();
+        let units = words.iter().skip(1).chain([&""]);
+        let words = words.iter().zip(units).map(|(word, unit)| match () {
+            _ if is_time(word) || ["s", "s,", "ms", "ms,", "min"].contains(unit) && word.parse::<f64>().is_ok() => "…",
+            _ => word,
+        });
+        words.collect::<Vec<_>>().join(" ")
+    };
+    (out + &err).lines().map(masked).collect::<Vec<_>>().join("\n")
+}
+
+/// What is read most, at each width.
+#[test]
+fn what_is_read_most() {
+    let place = Sandbox::new();
+    place.write("unit.toml", small_with(&[(WRONG[1].1, WRONG[1].2)]));
+    place.foldline("run small.toml -o run.mcap").ends(0);
+    for width in WIDTHS {
+        let commands = [
+            "scenes cured",
+            "run unit.toml",
+            "bisect run.mcap --snap",
+            "replay run.mcap --step 3",
+            "run small.toml -o run.mcap",
+            "inspect run.mcap --mesh",
+        ];
+        let shown = commands.map(|command| format!("$ foldline {command}\n{}\n", said_at(&place, command, width)));
+        insta::with_settings!({ omit_expression => true }, {
+            insta::assert_snapshot!(format!("read_at_{width}"), shown.join("\n"));
+        });
+    }
 }

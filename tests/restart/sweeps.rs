@@ -85,13 +85,13 @@ fn two_sweeps_in_one_folder_do_each_task_once() {
     let place = place();
     let mut children: Vec<_> = (0..2).map(|_| place.command(COMMAND).spawn().unwrap()).collect();
     for child in &mut children {
-        // 1 where the other still had a task in hand.
-        assert!(matches!(child.wait().unwrap().code(), Some(0 | 1)));
+        assert!(child.wait().unwrap().success(), "each waits for what the other has in hand");
     }
-    place.foldline(COMMAND).ends(0);
     assert_eq!(table(&place), table(&straight));
     for (name, bytes) in logs(&place) {
         assert!(is_finished(&bytes), "{name}");
+        let stretches = Log::from_bytes(bytes).unwrap().manifests().len();
+        assert_eq!(stretches, 1, "{name} was begun once");
         place.foldline(&format!("verify f/logs/{name}")).ends(0);
     }
 }
@@ -115,6 +115,57 @@ fn a_finished_sweep_runs_nothing_again_and_reads_what_is_newly_asked_for() {
     assert_eq!((now.len(), made.iter().all(|(name, bytes)| now[name] == *bytes)), (8, true));
 }
 
+/// Errors are against the reference that the sweep has now; a reference among the tasks has none.
+#[test]
+fn another_reference_gives_other_errors() {
+    let place = Sandbox::new();
+    let small = include_str!("small.toml");
+    let (before, _) = small.split_once("[adapt]").unwrap();
+    place.write("uniform.toml", format!("{before}[pipeline]\nstages = [\"solve\"]\n"));
+    let sweep = |reference: &str| {
+        format!(
+            "title = \"error\"\nscene = \"uniform.toml\"\nsettings = [\"load.rotation_deg=4\"]\noutputs = [\"error_before\"]\n\
+             [reference]\nsettings = [\"mesh.elements={reference}\"]\n[[axis]]\nkey = \"mesh.elements\"\nvalues = [[4, 4], [8, 4]]\n"
+        )
+    };
+    let errors = |reference: &str| -> Vec<Option<f64>> {
+        place.write("sweep.toml", sweep(reference));
+        place.foldline(COMMAND).ends(0);
+        let rows = table(&place).into_iter().filter(|row| row["role"] == "task");
+        rows.map(|row| row["error_before"].as_f64()).collect()
+    };
+    let fine = errors("[16, 4]");
+    let own = errors("[8, 4]");
+    assert!(fine.iter().all(|error| error.is_some_and(|error| error > 0.0)), "{fine:?}");
+    assert!(own[0].is_some_and(|error| Some(error) != fine[0]) && own[1] == Some(0.0), "{own:?}");
+    assert_eq!(errors("[16, 4]"), fine);
+    place.write("sweep.toml", sweep("[8, 4]\", \"geometry.radius_mm=20"));
+    place.foldline(COMMAND).ends(2).says(&["cannot be compared with their [reference]", "radius_mm"]);
+}
+
+/// A record of other numerics does not count, one that is no record neither, and a half-written plan is planned again.
+#[test]
+fn what_is_damaged_is_done_again_from_the_logs() {
+    let place = place();
+    place.foldline(COMMAND).ends(0);
+    let (expected, made) = (table(&place), logs(&place));
+    let records: Vec<_> = std::fs::read_dir(place.file("f/rows")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    std::fs::write(&records[0], "{").unwrap();
+    std::fs::write(&records[1], "").unwrap();
+    let text = std::fs::read_to_string(&records[2]).unwrap();
+    std::fs::write(&records[2], text.replace("\"numerics\":", "\"numerics\":1")).unwrap();
+    let endings = |rows: &[Value]| rows.iter().filter(|row| row["ending"] == "done").count();
+    assert_eq!(endings(&table(&place)), 3);
+    std::fs::remove_file(place.file("f/sweep.json")).unwrap();
+    place.foldline("sweep resume f").ends(2);
+    place.foldline(COMMAND).ends(0);
+    assert_eq!((table(&place), logs(&place)), (expected, made));
+    // Tasks of another plan than the scene beside them are not done under their names.
+    std::fs::write(&records[0], "{").unwrap();
+    std::fs::write(place.file("f/scene.toml"), include_str!("small.toml").replace("131000.0", "131001.0")).unwrap();
+    place.foldline("sweep resume f").ends(1).says(&["plan again with"]);
+}
+
 /// A log holds a finished run to a nearer target: it is no answer for a farther one.
 #[test]
 fn a_farther_target_is_another_task() {
@@ -134,11 +185,19 @@ fn a_farther_target_is_another_task() {
 #[test]
 fn an_interrupted_sweep_says_how_it_continues() {
     let place = place();
-    let mut child = place.command(COMMAND).stderr(std::process::Stdio::piped()).spawn().unwrap();
+    let child = place
+        .command(COMMAND)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
     std::thread::sleep(Duration::from_millis(150));
     std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
-    let code = child.wait().unwrap().code();
-    assert!(matches!(code, Some(75 | 0)), "{code:?}");
+    let said = crate::program::Said::new(COMMAND, child.wait_with_output().unwrap());
+    // It may have come to its end.
+    if said.code != Some(0) {
+        said.ends(75).says(&["continue with: foldline sweep resume f"]);
+    }
     place.foldline("sweep resume f").ends(0);
     assert!(table(&place).iter().all(|row| row["ending"] == "done"));
 }

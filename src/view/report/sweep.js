@@ -1,8 +1,10 @@
 "use strict";
-const { columns, varies, outputs, rows, logs, command } = JSON.parse(document.getElementById("data").textContent);
+const { columns, varies, outputs, rows: all, logs, command } = JSON.parse(document.getElementById("data").textContent);
 const find = (id) => document.getElementById(id);
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const at = (name) => columns.indexOf(name);
+// References are listed in other tables; here they are no samples.
+const rows = all.filter((row) => row[at("role")] === "task");
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 const figure = (value) => value === null || value === undefined ? "–" : isNumber(value) ? String(Number(value.toPrecision(6))) : typeof value === "string" ? value : JSON.stringify(value);
 const element = (name, text, parent) => {
@@ -195,7 +197,7 @@ let order = { column: at("number"), down: false };
 function listed(list) {
     const table = find("tasks");
     table.replaceChildren();
-    const shown = ["number", "ending", ...varies, ...outputs, "load_steps", "unknowns", "wall_s", "reason"].filter((name) => at(name) >= 0);
+    const shown = ["number", "ending", ...varies, ...outputs, "load_steps", "unknowns", "wall_s", "log", "reason"].filter((name) => at(name) >= 0);
     const head = element("tr", undefined, table);
     for (const name of shown) {
         const cell = element("th", at(name) === order.column ? `${name} ${order.down ? "▼" : "▲"}` : name, head);
@@ -203,7 +205,7 @@ function listed(list) {
         cell.addEventListener("click", () => { order = { column: at(name), down: order.column === at(name) && !order.down }; draw(); });
     }
     const by = (a, b) => a === b ? 0 : a === null ? 1 : b === null ? -1 : a < b ? -1 : 1;
-    const sorted = [...list].sort((a, b) => (order.down ? -1 : 1) * by(a[order.column], b[order.column])).slice(0, MOST_ROWS);
+    const sorted = [...list].sort((a, b) => (order.down && a[order.column] !== null && b[order.column] !== null ? -1 : 1) * by(a[order.column], b[order.column])).slice(0, MOST_ROWS);
     for (const row of sorted) {
         const line = element("tr", undefined, table);
         for (const name of shown) {
@@ -227,7 +229,8 @@ function draw() {
 }
 const endings = new Map();
 for (const row of rows) endings.set(row[at("ending")], (endings.get(row[at("ending")]) ?? 0) + 1);
-find("lead").textContent = `${rows.length} tasks: ${[...endings].map(([word, count]) => `${count} ${word}`).join(", ")}`;
+const references = all.length - rows.length;
+find("lead").textContent = `${rows.length} tasks: ${[...endings].map(([word, count]) => `${count} ${word}`).join(", ")}${references ? `; ${references} references` : ""}`;
 draw();
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 window.addEventListener("resize", () => parallel(chosen()));
