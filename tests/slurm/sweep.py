@@ -247,10 +247,10 @@ def limited(folder, tasks):
         folder, "sweep", "run", "sweep.toml", "--time=00:01:00", f"--per-job={max(1, TASKS // 4)}", "--memory=100"
     )
     begin, restarts = time.monotonic(), 0
-    jobs = ",".join(str(job["job"]) for job in submission["jobs"])
+    jobs = {f"ArrayJobId={job['job']}" for job in submission["jobs"]}
     while queue():
-        shown = run("scontrol", "--oneliner", "show", "jobs").stdout.splitlines()
-        counts = [word.split("=")[1] for line in shown if "foldline-" in line for word in line.split() if word.startswith("Restarts=")]
+        shown = [line.split() for line in run("scontrol", "--oneliner", "show", "jobs").stdout.splitlines()]
+        counts = [word.split("=")[1] for words in shown if jobs & set(words) for word in words if word.startswith("Restarts=")]
         restarts = max(restarts, sum(map(int, counts)))
         if time.monotonic() - begin > 900:
             sys.exit(f"not done in 900 s: {queue()}")
