@@ -39,10 +39,10 @@ pub use pool::{Outcome, do_tasks, to_do};
 pub use quantity::{FIELDS, FIGURES, Field, Figure, Finished, Quantity, Which};
 pub use record::{Ending, Row, TaskRecord};
 pub use slurm::{
-    Array, END_FORMAT, JobOptions, QUEUE_FORMAT, Queued, Script, USUAL_MAX_ARRAY_SIZE, job_number, max_array_size,
-    shell_word, time_left,
+    Array, END_FORMAT, JobOptions, QUEUE_FORMAT, Queued, Role, Script, USUAL_MAX_ARRAY_SIZE, job_number,
+    max_array_size, shell_word, time_left,
 };
-pub use submission::{Role, Submission, Submissions, Submitted, keep_list, keep_script};
+pub use submission::{Submission, Submissions, Submitted, keep_list, keep_script};
 pub use sweep_file::{Combine, Method, Reference, Sample, SweepFile};
 pub use table::{Condition, Table};
 pub use work::Work;

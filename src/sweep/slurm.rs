@@ -4,16 +4,40 @@
 //! the end of the time to the script's own process alone, and one of a shell does not reach the program that it waits for.
 //! Elements are numbered from 1 on; the largest number that Slurm allows is one below its `MaxArraySize`.
 
+use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
+
 use super::error::SweepError;
-use super::submission::Role;
 
 /// What Slurm's `MaxArraySize` is unless it is set.
 pub const USUAL_MAX_ARRAY_SIZE: usize = 1001;
 
 /// Seconds between the signal and the end of a job's time: longer than most stages take.
 const WARNING_S: u32 = 30;
+
+/// What a job is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Role {
+    /// Does the runs that others are compared with.
+    References,
+    /// Does all others.
+    Tasks,
+    /// Collects the table.
+    Collect,
+}
+
+impl Display for Role {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Role::References => "references",
+            Role::Tasks => "tasks",
+            Role::Collect => "collect",
+        })
+    }
+}
 
 /// What jobs ask for.
 #[derive(Clone, Debug, Default)]

@@ -9,7 +9,6 @@
 //! Lists hold keys and not numbers: those stay what they are where the sweep is changed.
 
 use std::collections::BTreeSet;
-use std::fmt::{self, Display, Formatter};
 use std::fs;
 use std::path::PathBuf;
 
@@ -17,31 +16,9 @@ use serde::{Deserialize, Serialize};
 
 use super::error::SweepError;
 use super::folder::Folder;
-use super::slurm::Queued;
+use super::slurm::{Queued, Role};
 
 const FILE: &str = "slurm.json";
-
-/// What a job is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Role {
-    /// Does the runs that others are compared with.
-    References,
-    /// Does all others.
-    Tasks,
-    /// Collects the table.
-    Collect,
-}
-
-impl Display for Role {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Role::References => "references",
-            Role::Tasks => "tasks",
-            Role::Collect => "collect",
-        })
-    }
-}
 
 /// A job that was submitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

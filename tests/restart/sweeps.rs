@@ -210,7 +210,9 @@ fn a_task_outlives_repeated_signals_and_waits_for_a_log_that_is_held() {
     place.foldline("sweep run sweep.toml --folder f --slurm --dry-run").ends(0);
     let command = "sweep task f 1";
     let mut child = place.command(command).spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(60));
+    while logs(&place).is_empty() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
     let code = loop {
         if let Some(status) = child.try_wait().unwrap() {
             break status.code();
@@ -218,16 +220,14 @@ fn a_task_outlives_repeated_signals_and_waits_for_a_log_that_is_held() {
         std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     };
     assert!(matches!(code, Some(75 | 0)), "{code:?}");
-    let name = logs(&place).into_keys().next();
-    if let Some(name) = name {
-        place.foldline(&format!("verify f/logs/{name}")).ends(0);
-        let held = foldline::journal::LogLock::take(&place.file(&format!("f/logs/{name}"))).unwrap();
-        let mut child = place.command(command).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(500));
-        assert!(code == Some(0) || child.try_wait().unwrap().is_none(), "it waits");
-        drop(held);
-        assert!(child.wait().unwrap().success());
-    }
+    let name = logs(&place).into_keys().next().unwrap();
+    place.foldline(&format!("verify f/logs/{name}")).ends(0);
+    let held = foldline::journal::LogLock::take(&place.file(&format!("f/logs/{name}"))).unwrap();
+    let mut child = place.command(command).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(code == Some(0) || child.try_wait().unwrap().is_none(), "it waits");
+    drop(held);
+    assert!(child.wait().unwrap().success());
     place.foldline(command).ends(0);
     assert_eq!(table(&place).iter().filter(|row| row["ending"] == "done").count(), 1);
 }

@@ -127,11 +127,16 @@ class Disturbance:
 
     def lose_node(self):
         """The daemon of a node dies and its tasks hang; Slurm gives them to the other node, too."""
-        os.kill(int((LAB / "slurmd-n2.pid").read_text()), signal.SIGKILL)
         for number in processes(self.folder):
             if environment(number).get("SLURMD_NODENAME") == "n2":
-                os.kill(number, signal.SIGSTOP)
-                self.stopped.append(number)
+                try:
+                    os.kill(number, signal.SIGSTOP)
+                    self.stopped.append(number)
+                except ProcessLookupError:
+                    pass
+        if not self.stopped:
+            return
+        os.kill(int((LAB / "slurmd-n2.pid").read_text()), signal.SIGKILL)
         self.node_is_lost_until = time.monotonic() + 60
         self.counts["lost nodes"] += 1
 
@@ -141,6 +146,7 @@ class Disturbance:
             return
         names = ("SLURM_ARRAY_JOB_ID", "SLURM_ARRAY_TASK_ID")
         elements = [tuple(environment(number).get(name) for name in names) for number in processes(self.folder)]
+        elements = [element for element in elements if None not in element]
         twice = len(elements) - len(set(elements))
         self.twice = max(self.twice, twice)
         if now or twice == len(self.stopped) or time.monotonic() > self.node_is_lost_until:
@@ -160,10 +166,10 @@ class Disturbance:
 
     def once(self):
         running = [one for one in queue() if one[2] == "RUNNING" and one[3] == "low" and one[1].isdigit()]
-        if running:
-            actions = [self.kill, self.kill, self.term, self.requeue, self.preempt]
+        actions = [self.kill, self.kill, self.term, self.requeue, self.requeue, self.preempt]
+        for action in RANDOM.choices(actions, k=RANDOM.randint(1, 3) if running else 0):
             try:
-                RANDOM.choice(actions)(running)
+                action(running)
             except (IndexError, ProcessLookupError):
                 pass  # It has ended meanwhile.
         self.find_node()
@@ -190,7 +196,7 @@ def disturbed(folder, tasks, limit_s):
         if sum(disturbance.counts.values()) < tasks:
             disturbance.once()
         else:
-            disturbance.find_node(now=True)
+            disturbance.find_node()
         done = watch.look()
         if TASKS >= 200 and done > tasks // 4 and not disturbance.counts["lost nodes"]:
             disturbance.lose_node()
@@ -241,10 +247,10 @@ def limited(folder, tasks):
         folder, "sweep", "run", "sweep.toml", "--time=00:01:00", f"--per-job={max(1, TASKS // 4)}", "--memory=100"
     )
     begin, restarts = time.monotonic(), 0
-    jobs = ",".join(str(job["job"]) for job in submission["jobs"])
+    jobs = {f"ArrayJobId={job['job']}" for job in submission["jobs"]}
     while queue():
-        shown = run("scontrol", "--oneliner", "show", "jobs").stdout.splitlines()
-        counts = [word.split("=")[1] for line in shown if "foldline-" in line for word in line.split() if word.startswith("Restarts=")]
+        shown = [line.split() for line in run("scontrol", "--oneliner", "show", "jobs").stdout.splitlines()]
+        counts = [word.split("=")[1] for words in shown if jobs & set(words) for word in words if word.startswith("Restarts=")]
         restarts = max(restarts, sum(map(int, counts)))
         if time.monotonic() - begin > 900:
             sys.exit(f"not done in 900 s: {queue()}")
