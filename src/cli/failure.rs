@@ -168,6 +168,8 @@ pub(super) enum Failure {
         "this program was built without Parquet: `cargo install --path . --features parquet` builds one with it, and --csv is always there"
     )]
     NoParquet,
+    #[error("{} is a sweep over designs, and a scene is wanted: foldline sweep run {}", file.display(), word(&file.to_string_lossy()))]
+    IsSweep { file: PathBuf },
     #[error(
         "{rows} rows are more than the {most} that a page holds: choose some with --where, or write all with `sweep status --csv`"
     )]
@@ -242,7 +244,7 @@ impl Failure {
             Failure::Sweep(error) if !matches!(error, SweepError::Write { .. }) => 2,
             #[cfg(not(feature = "parquet"))]
             Failure::NoParquet => 2,
-            Failure::NotASpring(_) | Failure::TooManyRows { .. } => 2,
+            Failure::NotASpring(_) | Failure::IsSweep { .. } | Failure::TooManyRows { .. } => 2,
             // A wrong scene as well.
             Failure::Convergence { source, .. } if matches!(**source, TaskError::Model(_)) => 2,
             Failure::Calibration { source, .. }

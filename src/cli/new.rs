@@ -37,14 +37,31 @@ fn named(name: &str) -> Result<&'static Shipped, String> {
     })
 }
 
+/// A sweep with its scene by the name that it comes with the program under: the path beside it leads nowhere from another folder.
+fn away_from_home(text: &str) -> String {
+    let named = |line: &str| match line.strip_prefix("scene = \"../").and_then(|rest| rest.strip_suffix(".toml\"")) {
+        Some(name) => format!("scene = \"{name}\""),
+        None => line.to_owned(),
+    };
+    text.lines().map(|line| named(line) + "\n").collect()
+}
+
 impl Arguments {
     /// Writes the scene where nothing is yet.
     pub(super) fn run(self) -> Result<(), Failure> {
         let file = self.output.unwrap_or_else(|| format!("{}.toml", self.kind.last_name()).into());
-        write_files(&[(file.clone(), self.kind.text.as_bytes().to_vec())])?;
+        let is_sweep = self.kind.name.starts_with("sweeps/");
+        write_files(&[(
+            file.clone(),
+            if is_sweep { away_from_home(self.kind.text) } else { self.kind.text.to_owned() }.into_bytes(),
+        )])?;
         let shown = path_in_line(&file);
         let word = path_in_command(&file);
-        eprint(&format!("{shown} written; next: foldline check {word}, foldline run {word}"));
+        let next = match is_sweep {
+            true => format!("foldline sweep run {word}"),
+            false => format!("foldline check {word}, foldline run {word}"),
+        };
+        eprint(&format!("{shown} written; next: {next}"));
         Ok(())
     }
 }

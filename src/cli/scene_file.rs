@@ -48,6 +48,9 @@ pub(super) struct NamedText {
 /// Reads and checks a scene file, with settings `section.key=value` laid over it.
 pub(super) fn read_scene(path: &Path, settings: &[String]) -> Result<SceneFile, Failure> {
     let NamedText { text, file, .. } = read_named(path)?;
+    if is_sweep(&text) {
+        return Err(Failure::IsSweep { file: path.to_path_buf() });
+    }
     let scene = checked(&text, &path_in_line(path), settings)?;
     // A log needs no other file: a surface from a file of its own goes into the text that the log keeps, and settings do.
     let kept = match scene.geometry {
@@ -57,6 +60,15 @@ pub(super) fn read_scene(path: &Path, settings: &[String]) -> Result<SceneFile, 
     };
     let written = WrittenScene { text, name: path_in_line(path), settings: settings.to_vec() };
     Ok(SceneFile { scene, text: kept, file, written })
+}
+
+/// Whether a text is a sweep over designs: it names a scene and what varies.
+fn is_sweep(text: &str) -> bool {
+    let names_scene = text.lines().any(|line| line.trim_start().starts_with("scene"));
+    let is_sweep = |table: toml::Table| {
+        table.contains_key("scene") && (table.contains_key("axis") || table.contains_key("scatter"))
+    };
+    names_scene && toml::from_str(text).is_ok_and(is_sweep)
 }
 
 /// Reads the text of a scene or a study: a file, or else what comes with the program under that name.

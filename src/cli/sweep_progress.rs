@@ -130,8 +130,10 @@ impl<'h> SweepProgress<'h> {
 
 /// A task by its values: the last parts of the keys suffice.
 fn name_of(head: &Head, task: &Task) -> String {
-    let part =
-        |(key, value): (&String, &serde_json::Value)| format!("{} {value}", key.rsplit('.').next().unwrap_or(key));
+    let part = |(key, value): (&String, &serde_json::Value)| {
+        let value = value.as_f64().map_or_else(|| value.to_string(), |number| significant(number, 6));
+        format!("{} {value}", key.rsplit('.').next().unwrap_or(key))
+    };
     let values: Vec<String> = head.columns.iter().zip(&task.values).map(part).collect();
     let what = if task.is_reference { "reference, " } else { "" };
     format!("{what}{}", values.join(", "))

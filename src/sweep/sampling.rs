@@ -2,9 +2,6 @@
 
 use super::sweep_file::{Method, Sample};
 
-/// Points that Sobol's sequence is known for.
-pub(super) const MOST_OF_SOBOL: usize = 1 << 16;
-
 /// Axes that Sobol's sequence is known for.
 pub(super) const MOST_AXES_OF_SOBOL: usize = sobol_burley::NUM_DIMENSIONS as usize;
 

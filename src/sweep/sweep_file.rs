@@ -7,7 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::axis::{Axis, Scatter};
 use super::error::SweepError;
 use super::quantity::Quantity;
-use super::sampling::MOST_OF_SOBOL;
+
+/// Points that Sobol's sequence is known for.
+const MOST_OF_SOBOL: usize = 1 << 16;
 
 /// The most tasks of a sweep.
 pub const MOST_TASKS: usize = 1_000_000;

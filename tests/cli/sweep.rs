@@ -67,7 +67,14 @@ fn another_sweep_is_not_written_over() {
         "other.toml",
         "title = \"other\"\nscene = \"small.toml\"\n[[axis]]\nkey = \"geometry.radius_mm\"\nvalues = [9]\n",
     );
-    place.foldline("sweep run other.toml --folder f").ends(2).says(&["holds the sweep `t` of s.toml", "--folder"]);
+    place.foldline("sweep run other.toml --folder f").ends(2).says(&["holds the sweep `t` of", "s.toml", "--folder"]);
+    std::fs::create_dir(place.file("g")).unwrap();
+    place.write("g/scene.toml", "precious");
+    place.foldline("sweep run other.toml --folder g").ends(2).says(&["has a `scene.toml` and holds no sweep"]);
+    assert_eq!(place.read("g/scene.toml"), b"precious");
+    place.foldline("run other.toml").ends(2).says(&["is a sweep over designs", "foldline sweep run other.toml"]);
+    place.foldline("new sweeps/roof-snap -o roof.toml").ends(0).says(&["next: foldline sweep run roof.toml"]);
+    place.foldline("sweep run roof.toml --slurm --dry-run").ends(0);
 }
 
 #[test]
