@@ -8,7 +8,7 @@ use crate::synthetic;
 const WIDTHS: [usize; 3] = [60, 80, 120];
 
 /// Commands that print tables or prose; each is run after those before it, at each width with files of its own (`N`).
-const COMMANDS: [&str; 51] = [
+const COMMANDS: [&str; 58] = [
     "run small.toml -o N-run.mcap",
     "run small.toml -o N-until.mcap --until 7",
     "resume N-until.mcap",
@@ -50,6 +50,13 @@ const COMMANDS: [&str; 51] = [
     "study short.toml --against short.toml --vary mesh.quadrature=[\"full\",\"patch\"] --logs studied",
     "study study.toml --logs studied",
     "extremes one-element-degree-2 --logs extremes",
+    "sweep run sweep.toml --folder N-sweep",
+    "sweep status N-sweep",
+    "sweep status N-sweep --where radius_mm>99",
+    "sweep run wrong-sweep.toml --folder N-wrong",
+    "sweep report N-sweep",
+    "sweep run sweep.toml --folder N-slurm --slurm --dry-run",
+    "help sweep",
     "run typo.toml",
     "run unit.toml",
     "run support.toml",
@@ -81,6 +88,16 @@ const WRONG: [(&str, &str, &str); 8] = [
 /// Two meshes against a third.
 const STUDY: &str = include_str!("small_study.toml");
 
+/// Designs of which one cannot be.
+const SWEEP: &str = r#"
+title = "Moments of small springs over their radius, arc and thickness"
+scene = "short.toml"
+outputs = ["stiffness_n_mm", "last.moment_n_mm", "last.strain_energy_n_mm", "theory_stiffness_n_mm", "theory_peak_n_mm"]
+[[axis]]
+keys = ["geometry.radius_mm", "geometry.arc_deg", "material.thickness_mm"]
+values = [[9, 110, 0.1], [10.123456789, 400, 0.12]]
+"#;
+
 #[test]
 fn no_line_is_wider_than_the_terminal() {
     let place = Sandbox::new();
@@ -88,6 +105,8 @@ fn no_line_is_wider_than_the_terminal() {
     place.write("probed.toml", format!("{}{probes}{}", crate::program::SMALL, probes.replace("whole", "very same")));
     place.write("short.toml", small_with(&[("rotation_deg = 16.0", "rotation_deg = 4.0")]));
     place.write("study.toml", STUDY);
+    place.write("sweep.toml", SWEEP);
+    place.write("wrong-sweep.toml", SWEEP.replace("geometry.radius_mm", "geometry.radius"));
     for (name, right, wrong) in WRONG {
         place.write(&format!("{name}.toml"), small_with(&[(right, wrong)]));
     }
