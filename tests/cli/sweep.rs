@@ -96,8 +96,8 @@ fn rows_are_chosen_and_written() {
     place.foldline("sweep status s.toml --csv t.csv").ends(0).says(&["4 rows: 4 done"]);
     let csv = String::from_utf8(place.read("t.csv")).unwrap();
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
-    assert_eq!(lines[0][..5], ["number", "key", "ending", "geometry.radius_mm", "last.moment_n_mm"]);
-    assert_eq!(lines[4][4].parse::<f64>().unwrap(), moments[3]);
+    assert_eq!(lines[0][..6], ["number", "key", "role", "ending", "geometry.radius_mm", "last.moment_n_mm"]);
+    assert_eq!(lines[4][5].parse::<f64>().unwrap(), moments[3]);
     place.foldline("sweep status s.toml --csv t.csv").ends(2).says(&["t.csv exists"]);
     place.foldline("sweep report s.toml -o page.html").ends(0).says(&["page.html"]);
     let page = String::from_utf8(place.read("page.html")).unwrap();

@@ -8,7 +8,7 @@ use crate::synthetic;
 const WIDTHS: [usize; 3] = [60, 80, 120];
 
 /// Commands that print tables or prose; each is run after those before it, at each width with files of its own (`N`).
-const COMMANDS: [&str; 58] = [
+const COMMANDS: [&str; 57] = [
     "run small.toml -o N-run.mcap",
     "run small.toml -o N-until.mcap --until 7",
     "resume N-until.mcap",
@@ -55,7 +55,6 @@ const COMMANDS: [&str; 58] = [
     "sweep status N-sweep --where radius_mm>99",
     "sweep run wrong-sweep.toml --folder N-wrong",
     "sweep report N-sweep",
-    "sweep run sweep.toml --folder N-slurm --slurm --dry-run",
     "help sweep",
     "run typo.toml",
     "run unit.toml",
