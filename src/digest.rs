@@ -1,9 +1,9 @@
-//! Content hashes of numbers, independent of how anything is encoded.
+//! Content hashes of numbers and texts, independent of how anything is encoded.
 
 /// A content hash (BLAKE3, 256 bits).
 pub type Hash = blake3::Hash;
 
-/// Hasher of numbers by their bits; each sequence is preceded by its length.
+/// Hasher of numbers by their bits, and of texts; each sequence is preceded by its length.
 pub(crate) struct Feed {
     hasher: blake3::Hasher,
     /// Bytes collected for the hasher, which is fast only on long inputs.
@@ -16,9 +16,13 @@ const BATCH: usize = 64 * 1024;
 impl Feed {
     pub(crate) fn new(domain: &str) -> Self {
         let mut feed = Self { hasher: blake3::Hasher::new(), pending: Vec::with_capacity(2 * BATCH) };
-        feed.integer(domain.len() as u64);
-        feed.bytes(domain.as_bytes());
+        feed.text(domain);
         feed
+    }
+
+    pub(crate) fn text(&mut self, text: &str) {
+        self.integer(text.len() as u64);
+        self.bytes(text.as_bytes());
     }
 
     pub(crate) fn bytes(&mut self, bytes: &[u8]) {

@@ -9,10 +9,10 @@ use super::columns::{Column, Columns};
 use super::failure::Failure;
 use super::output::{path_in_line, print, print_json};
 use super::scene_file::{checked, read_scene};
-use super::session::{use_threads, watch_signals};
+use super::session::{open_archive, use_threads, watch_signals};
 use super::terminal::output_columns;
 use crate::scene::Scene;
-use crate::study::{Archive, ConvergenceRow, Purpose, TaskError, converged, in_turn, path_scene};
+use crate::study::{ConvergenceRow, Purpose, TaskError, converged, in_turn, path_scene};
 
 /// Follow a tape spring past its limit point, down the unstable path and up the fold, on uniform meshes of every degree and
 /// size asked for: peak, limit rotation and moments of each, with its run time
@@ -56,8 +56,7 @@ impl Arguments {
         let threads = use_threads(None)?;
         let raised = watch_signals()?;
         let scenes = scenes.iter().map(path_scene).collect::<Result<Vec<_>, _>>()?;
-        let archive =
-            Archive::open(&self.logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let archive = open_archive(&self.logs, threads)?;
         let table = columns(self.unstable_at, scenes.first().map_or(0.0, |scene| scene.load.target()));
         if !self.json {
             print(&table.head())?;

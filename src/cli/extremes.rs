@@ -10,12 +10,12 @@ use super::columns::{Column, Columns};
 use super::failure::Failure;
 use super::output::{eprint, print, print_json};
 use super::scene_file::read_scene;
-use super::session::use_threads;
+use super::session::{open_archive, use_threads};
 use super::shipped::SHIPPED;
 use super::terminal::output_columns;
 use super::wrapped::hanging;
 use crate::scene::Scene;
-use crate::study::{Archive, ExtremeRow, ExtremesSuite};
+use crate::study::{ExtremeRow, ExtremesSuite};
 use crate::units::{count, duration};
 
 /// Run scenes at and beyond the edge, and report whether each ends as it states
@@ -80,8 +80,7 @@ impl Arguments {
         let scenes = read_scenes(&files, &names)?;
         let threads = use_threads(self.threads.map(usize::from))?;
         let fresh = tempfile::tempdir().map_err(|source| Failure::Write { path: std::env::temp_dir(), source })?;
-        let archive = Archive::open(self.logs.as_deref().unwrap_or(fresh.path()), threads)
-            .map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let archive = open_archive(self.logs.as_deref().unwrap_or(fresh.path()), threads)?;
         let table = ExtremesTable::new(names.iter().map(|name| stem(name)), output_columns());
         if !self.json {
             print(&table.head())?;

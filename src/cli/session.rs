@@ -1,7 +1,7 @@
 //! A run under way: threads, signals, the log, and what is shown; shared by the commands that compute.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,7 +18,7 @@ use crate::pipeline::{Ending, Run};
 use crate::platform::signals;
 use crate::record::Record;
 use crate::scene::Scene;
-use crate::study::Summary;
+use crate::study::{Archive, Summary};
 use crate::view::MeshHistory;
 
 /// What a run is given besides its scene; none of it changes a state, except where the run stops.
@@ -109,6 +109,11 @@ fn waiting_threads(count: usize) -> io::Result<Sender<ThreadBuilder>> {
         })?;
     }
     Ok(hand)
+}
+
+/// Opens the folder of the logs of a suite's runs, which take so many threads each.
+pub(super) fn open_archive(folder: &Path, threads: usize) -> Result<Archive, Failure> {
+    Archive::open(folder, threads).map_err(|source| Failure::Archive { source: Box::new(source) })
 }
 
 /// Makes a limit on the size of files an error that names the file, instead of the end of the process.

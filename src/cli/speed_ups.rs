@@ -11,7 +11,7 @@ use super::columns::{Column, Columns};
 use super::failure::Failure;
 use super::output::{eprint, path_in_line, print, print_json, refuse_what_is_there, write_files};
 use super::scene_file::{NamedText, read_named, rendered};
-use super::session::watch_signals;
+use super::session::{open_archive, watch_signals};
 use super::shipped::Shipped;
 use super::terminal::output_columns;
 use crate::printable::in_full;
@@ -57,7 +57,7 @@ pub(super) fn run(
     refuse_what_is_there(page)?;
     let raised = watch_signals()?;
     let studies = files.iter().map(|file| planned(file, set)).collect::<Result<Vec<_>, _>>()?;
-    let archive = Archive::open(logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+    let archive = open_archive(logs, threads)?;
     let interrupted = || raised.load(Ordering::Relaxed);
     let mut running = Running { archive, interrupted: &interrupted, json, failed: 0, runs: 0, rows: Vec::new() };
     for (study, planned) in &studies {

@@ -9,12 +9,12 @@ use super::columns::{Column, Columns};
 use super::failure::Failure;
 use super::output::{eprint, file_name, path_in_line, print, print_json, say};
 use super::scene_file::{checked, read_scene};
-use super::session::{use_threads, watch_signals};
+use super::session::{open_archive, use_threads, watch_signals};
 use super::speed_ups;
 use super::terminal::output_columns;
 use crate::scene::Scene;
 use crate::study::{
-    AccuracyError, AccuracyRow, Archive, Measured, Purpose, TaskError, in_turn, is_comparable, is_one_structure,
+    AccuracyError, AccuracyRow, Measured, Purpose, TaskError, in_turn, is_comparable, is_one_structure,
 };
 
 /// Run scenes with one setting after another, and hold each against a reference: the error of its moment (or first probe)
@@ -97,8 +97,7 @@ impl Arguments {
             eprint(&format!("reference: {name}"));
         }
         let raised = watch_signals()?;
-        let archive =
-            Archive::open(&self.logs, threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let archive = open_archive(&self.logs, threads)?;
         let scenes = std::iter::once(&reference).chain(cases.iter().map(|case| &case.scene));
         let runs: Vec<(&Scene, Purpose)> = scenes.map(|scene| (scene, Purpose::Time)).collect();
         let labels = cases.iter().map(Case::label).chain([name.clone()]);

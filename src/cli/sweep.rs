@@ -11,7 +11,7 @@ use super::output::{
     eprint, file_name, path_in_command, path_in_line, print, print_as_it_is, refuse_what_is_there, write_files,
 };
 use super::scene_file::{NamedText, read_named};
-use super::session::watch_signals;
+use super::session::{open_archive, watch_signals};
 use super::settings::Settings;
 use super::shipped::Shipped;
 use super::sweep_progress::{SweepProgress, Told, say_head};
@@ -19,7 +19,7 @@ use super::sweep_slurm::{SlurmArguments, queue_line};
 use super::sweep_table::{Chosen, table_of};
 use super::sweep_task::{CollectArguments, TaskArguments};
 use super::wrapped::wrapped;
-use crate::study::{Archive, EngineError, Workers};
+use crate::study::{EngineError, Workers};
 use crate::sweep::{
     Condition, Folder, Head, Outcome, Plan, SweepError, SweepFile, Table, Task, TaskRecord, Work, do_tasks,
     planned_from, to_do,
@@ -284,8 +284,7 @@ impl PoolArguments {
         let threads = usize::from(self.threads);
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let workers = Workers { tasks: self.tasks.map_or(cores.div_ceil(threads), usize::from), threads };
-        let archive =
-            Archive::open(&folder.logs(), threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let archive = open_archive(&folder.logs(), threads)?;
         let work = Work::new(&head, &scene_text, &archive);
         let interrupted = || raised.load(Ordering::Relaxed);
         let mut tasks = to_do(folder)?;

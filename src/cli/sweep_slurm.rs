@@ -7,8 +7,8 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::output::{eprint, path_in_line, print, print_as_it_is, print_json};
+use super::session::open_archive;
 use super::slurm::{asked_max_array_size, queued, sbatch};
-use crate::study::Archive;
 use crate::sweep::{
     Array, Folder, JobOptions, Role, Script, Submission, Submissions, Submitted, Task, USUAL_MAX_ARRAY_SIZE, Work,
     keep_list, keep_script, shell_word, to_do,
@@ -145,7 +145,7 @@ impl SlurmArguments {
 /// Wrong scenes need no job to be put on record.
 fn refused_on_record(folder: &Folder) -> Result<(), Failure> {
     let (head, scene_text) = (folder.head()?, folder.scene_text()?);
-    let archive = Archive::open(&folder.logs(), 1).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+    let archive = open_archive(&folder.logs(), 1)?;
     let work = Work::new(&head, &scene_text, &archive);
     for task in to_do(folder)?.iter().filter(|task| task.refused.is_some()) {
         let record = work.of(task, &|| true).map_err(|source| Failure::Archive { source: Box::new(source) })?;

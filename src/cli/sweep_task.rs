@@ -12,9 +12,9 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::output::{eprint, path_in_line, print};
-use super::session::{use_threads, watch_signals_that_repeat};
+use super::session::{open_archive, use_threads, watch_signals_that_repeat};
 use super::slurm::OwnJob;
-use crate::study::{Archive, TaskError, guarded};
+use crate::study::{TaskError, guarded};
 use crate::sweep::{Folder, SweepError, Table, Task, Work};
 use crate::units::count;
 
@@ -77,8 +77,7 @@ impl TaskArguments {
         let folder = Folder::at(&self.folder);
         let (head, scene_text, tasks) = (folder.head()?, folder.scene_text()?, folder.tasks()?);
         let chosen = self.chosen(&folder, &tasks)?;
-        let archive =
-            Archive::open(&folder.logs(), threads).map_err(|source| Failure::Archive { source: Box::new(source) })?;
+        let archive = open_archive(&folder.logs(), threads)?;
         let work = Work::new(&head, &scene_text, &archive);
         let turn = Turn::begin(raised);
         chosen.into_iter().try_for_each(|task| turn.do_task(&folder, &work, task))

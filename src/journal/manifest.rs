@@ -353,7 +353,8 @@ fn cpu_features() -> Vec<&'static str> {
     known.into_iter().filter(|(_, present)| *present).map(|(name, _)| name).collect()
 }
 
-pub(super) fn host() -> String {
+/// Name of this machine; empty where it has none.
+pub(crate) fn host() -> String {
     let from_system = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
     let name = from_system.or_else(|| std::env::var("HOSTNAME").ok()).or_else(|| std::env::var("COMPUTERNAME").ok());
     name.unwrap_or_default().trim().to_owned()

@@ -139,6 +139,7 @@ pub use log::{Entry, Log, Note, StateError};
 pub use long::{LongLog, LongLogError};
 #[cfg(feature = "cli")]
 pub(crate) use lost_manifest::stages_in_words;
+pub(crate) use manifest::host;
 pub use manifest::{Manifest, ManifestError, SceneInLogError};
 pub use mending::MendError;
 pub use new_log::NewLogError;

@@ -11,6 +11,7 @@ use super::data::{Indicator, Probe, Scene};
 use super::difference::{Difference, of_tables};
 use super::key_table::SECTIONS;
 use super::keys::{Reach, Section};
+use crate::digest::Feed;
 
 /// Where the path of a value in [`Scene`] is not the key of the scene file.
 const RENAMED: [(&str, &str); 3] = [
@@ -94,17 +95,12 @@ impl Scene {
 
 /// Hashes the values that are chosen by their path.
 fn hash_of(domain: &str, leaves: BTreeMap<String, Value>, is_chosen: impl Fn(&str) -> bool) -> blake3::Hash {
-    let mut hasher = blake3::Hasher::new();
-    let mut feed = |text: &str| {
-        hasher.update(&(text.len() as u64).to_le_bytes());
-        hasher.update(text.as_bytes());
-    };
-    feed(domain);
+    let mut feed = Feed::new(domain);
     for (path, value) in leaves.iter().filter(|(path, _)| is_chosen(path)) {
-        feed(path);
-        feed(&value.to_string());
+        feed.text(path);
+        feed.text(&value.to_string());
     }
-    hasher.finalize()
+    feed.finish()
 }
 
 /// Takes from each ply what reaches nothing, where there is any.

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::history::{BasisError, basis};
 use crate::journal::{
-    Completeness, JournalWriter, LockError, Log, Manifest, ReadError, Resume, ResumeError, WriteError,
+    Completeness, JournalWriter, LockError, Log, Manifest, ReadError, Resume, ResumeError, WriteError, host,
 };
 use crate::model::ModelError;
 use crate::pipeline::{Ending, Run, RunError, Stages};
@@ -29,7 +29,12 @@ const DIGITS: usize = 16;
 
 /// The name of a run of a scene among others: the first digits of what decides its results, in hexadecimal.
 pub fn run_name(scene: &Scene) -> String {
-    scene.results_hash().to_hex()[..DIGITS].to_owned()
+    short_name(scene.results_hash())
+}
+
+/// A name by the first digits of a hash.
+pub(crate) fn short_name(hash: blake3::Hash) -> String {
+    hash.to_hex()[..DIGITS].to_owned()
 }
 
 /// A folder with the logs of finished and interrupted runs.
@@ -316,7 +321,7 @@ impl Archive {
         let counts = taken.threads == self.threads
             && taken.program_version == env!("CARGO_PKG_VERSION")
             && taken.numerics == NUMERICS_REVISION
-            && taken.host == self.manifest(scene).host;
+            && taken.host == host();
         counts.then_some(taken.wall_s).filter(|wall_s| wall_s.is_finite() && *wall_s > 0.0)
     }
 

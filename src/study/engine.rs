@@ -132,10 +132,14 @@ pub fn in_turn<E>(
 /// # Errors
 /// Those of the task, and its panic.
 pub fn guarded<R>(task: impl FnOnce() -> Result<R, TaskError>) -> Result<R, TaskError> {
-    catch_unwind(AssertUnwindSafe(task)).unwrap_or_else(|payload| {
+    panic_or(task).unwrap_or_else(|message| Err(TaskError::Panicked { message }))
+}
+
+/// Does some work, and gives back what it panicked with, if it did.
+pub(super) fn panic_or<R>(work: impl FnOnce() -> R) -> Result<R, String> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
         let said = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
-        let message = said.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
-        Err(TaskError::Panicked { message })
+        said.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default()
     })
 }
 

@@ -2,7 +2,6 @@
 //! worth: residuals, balance of work and energy, condition and symmetry of the stiffness, digits that survive.
 
 use std::collections::BTreeMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
@@ -12,6 +11,7 @@ use crate::record::Record;
 use crate::scene::{Expectation, ExpectedOutcome, Scene};
 use crate::state::State;
 use crate::study::archive::Archive;
+use crate::study::engine::panic_or;
 use crate::study::extremes_curve::{Curve, energy_balance, is_equilibrium, largest_error, nudged, significant_bits};
 use crate::study::extremes_fault::ExtremeFault;
 use crate::study::extremes_run::{Done, ExtremeEnd};
@@ -106,10 +106,7 @@ impl ExtremesSuite {
     pub fn run(&mut self, name: &str) -> Option<ExtremeRow> {
         let scene = self.scenes.get(name)?.clone();
         let begin = Instant::now();
-        let row = catch_unwind(AssertUnwindSafe(|| self.examine(name, &scene)));
-        Some(row.unwrap_or_else(|payload| {
-            let said = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
-            let message = said.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
+        Some(panic_or(|| self.examine(name, &scene)).unwrap_or_else(|message| {
             let mut row = ExtremeRow::new(name, ExtremeEnd::Panicked { message });
             row.faults.push(ExtremeFault::Panicked);
             row.wall_s = begin.elapsed().as_secs_f64();

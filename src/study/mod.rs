@@ -39,6 +39,7 @@ mod timed_run;
 mod wuest;
 
 pub use accuracy::{AccuracyError, AccuracyRow, Measured, is_comparable, is_one_structure};
+pub(crate) use archive::short_name;
 pub use archive::{Archive, Done, Purpose, TaskError, run_name};
 pub use bench::{BenchError, Figure, kernel_figures, run_figure};
 pub use calibration::{

@@ -23,6 +23,7 @@ use serde::de::DeserializeOwned;
 use super::error::SweepError;
 use super::plan::{Head, Plan, Task};
 use super::record::{Row, TaskRecord};
+use crate::digest::Feed;
 use crate::whole_file::WholeFile;
 
 const HEAD: &str = "sweep.json";
@@ -78,15 +79,16 @@ impl Folder {
 
     /// Hash of a plan as it lies in the folder.
     fn plan_hash(&self, head: &Head) -> Result<String, SweepError> {
-        let mut hasher = blake3::Hasher::new();
+        let mut feed = Feed::new("foldline planned 1");
         let head = Head { plan_hash: String::new(), ..head.clone() };
-        hasher.update(&serde_json::to_vec(&head).unwrap_or_default());
+        feed.text(&serde_json::to_string(&head).unwrap_or_default());
         for name in [TASKS, SCENE] {
             let path = self.path.join(name);
             let bytes = fs::read(&path).map_err(|source| SweepError::Read { path, source })?;
-            hasher.update(&(bytes.len() as u64).to_le_bytes()).update(&bytes);
+            feed.integer(bytes.len() as u64);
+            feed.bytes(&bytes);
         }
-        Ok(hasher.finalize().to_hex().to_string())
+        Ok(feed.finish().to_hex().to_string())
     }
 
     /// The text of the scene that is varied.

@@ -6,11 +6,12 @@ use serde_json::Value;
 
 use super::error::SweepError;
 use super::quantity::Quantity;
-use super::sampling::{MOST_AXES_OF_SOBOL, points};
-use super::sweep_file::{Combine, Method, SweepFile};
+use super::sampling::points;
+use super::sweep_file::{Combine, SweepFile};
+use crate::digest::Feed;
 use crate::record::NUMERICS_REVISION;
 use crate::scene::{Geometry, Scene, parse, parse_with_settings};
-use crate::study::{is_comparable, run_name};
+use crate::study::{is_comparable, run_name, short_name};
 
 /// Columns of what is wrong with a scene: it goes on record, and is read on whatever terminal.
 const COLUMNS: usize = 60;
@@ -35,8 +36,6 @@ pub struct Head {
     pub outputs: Vec<Quantity>,
     /// Number of tasks, references among them.
     pub tasks: usize,
-    /// Number of them that are references: the first ones.
-    pub references: usize,
     /// Hash of the texts that it was planned from.
     pub planned_from: String,
     /// Hash of the plan as it was written; none before that.
@@ -96,20 +95,13 @@ impl Plan {
     /// Plans the tasks of a sweep in `file`, whose text is `sweep_text`, over the scene of `scene_text` in the file `scene_file`.
     ///
     /// # Errors
-    /// Where not one of the scenes can be run, or more is scattered than Sobol's sequence has axes.
+    /// Where not one of the scenes can be run, they cannot be compared with their references, or have no probe that is asked for.
     pub fn of(
         sweep: &SweepFile,
         [sweep_text, scene_text]: [&str; 2],
         [file, scene_file]: [&str; 2],
     ) -> Result<Self, SweepError> {
         let wrong = |problem: String| SweepError::Wrong { file: file.to_owned(), problem };
-        let sobol = sweep.sample.is_some_and(|sample| sample.method == Method::Sobol);
-        if sobol && sweep.scatter.len() > MOST_AXES_OF_SOBOL {
-            return Err(wrong(format!(
-                "{} keys scatter, and Sobol's sequence is known for {MOST_AXES_OF_SOBOL}: write method = \"latin-hypercube\"",
-                sweep.scatter.len()
-            )));
-        }
         let mut head = Head {
             title: sweep.title.clone(),
             file: file.to_owned(),
@@ -119,7 +111,6 @@ impl Plan {
             columns: sweep.columns(),
             outputs: sweep.outputs.clone(),
             tasks: 0,
-            references: 0,
             planned_from: planned_from(sweep_text, scene_text, scene_file),
             plan_hash: String::new(),
         };
@@ -153,18 +144,18 @@ impl Plan {
                 }
             }
         }
-        head.references = references.len();
         references.append(&mut tasks);
         let mut tasks = references;
         tasks.iter_mut().enumerate().for_each(|(index, task)| task.number = index + 1);
         head.tasks = tasks.len();
-        if head.outputs.is_empty() {
-            let scenes = tasks.iter().find(|task| task.refused.is_none());
-            let scene = scenes.and_then(|task| head.scene_of(&scene_text, task).ok());
-            head.outputs = scene.map_or_else(Vec::new, |scene| Quantity::of_scene(&scene));
-        }
-        if let Some(output) = head.outputs.iter().find(|output| is_of_no_probe(output, &head, &scene_text, &tasks)) {
-            return Err(wrong(format!("{output}: the scene has no [[probe]] of that name")));
+        let can_be_run = tasks.iter().filter(|task| task.refused.is_none());
+        if let Some(scene) = can_be_run.filter_map(|task| head.scene_of(&scene_text, task).ok()).next() {
+            if head.outputs.is_empty() {
+                head.outputs = Quantity::of_scene(&scene);
+            }
+            if let Some(output) = head.outputs.iter().find(|output| output.is_of_no_probe(&scene)) {
+                return Err(wrong(format!("{output}: the scene has no [[probe]] of that name")));
+            }
         }
         Ok(Self { head, scene_text, tasks })
     }
@@ -195,12 +186,12 @@ fn values_of_reference(head: &Head, values: &[Value]) -> Vec<Value> {
 
 /// Hash of what a plan follows from: the sweep, the scene with the surface that it reads from a file of its own, and the program.
 pub fn planned_from(sweep_text: &str, scene_text: &str, scene_file: &str) -> String {
-    let mut hasher = blake3::Hasher::new();
+    let mut feed = Feed::new("foldline plan 1");
     for text in [sweep_text, &whole(scene_text, scene_file), env!("CARGO_PKG_VERSION"), &NUMERICS_REVISION.to_string()]
     {
-        hasher.update(&(text.len() as u64).to_le_bytes()).update(text.as_bytes());
+        feed.text(text);
     }
-    hasher.finalize().to_hex().to_string()
+    feed.finish().to_hex().to_string()
 }
 
 /// A scene needs no other file: a surface from a file of its own goes into the text.
@@ -213,20 +204,10 @@ fn whole(scene_text: &str, name: &str) -> String {
 
 /// The name of a task whose scene is wrong.
 fn name_of_refused(scene_text: &str, task: &Task, why: &str) -> String {
-    let mut hasher = blake3::Hasher::new();
+    let mut feed = Feed::new("foldline refused 1");
     let values = task.values.iter().map(Value::to_string).collect::<Vec<_>>().join("\n");
-    for text in ["foldline refused 1", scene_text, &values, why] {
-        hasher.update(&(text.len() as u64).to_le_bytes()).update(text.as_bytes());
-    }
-    hasher.finalize().to_hex()[..16].to_owned()
-}
-
-/// Whether an output is of a probe that the first scene that can be run does not have.
-fn is_of_no_probe(output: &Quantity, head: &Head, scene_text: &str, tasks: &[Task]) -> bool {
-    let Quantity::Probe(_, name) = output else { return false };
-    let runs = tasks.iter().find(|task| task.refused.is_none());
-    let scene = runs.and_then(|task| head.scene_of(scene_text, task).ok());
-    scene.is_some_and(|scene| scene.probes.iter().all(|probe| probe.name != *name))
+    [scene_text, &values, why].into_iter().for_each(|text| feed.text(text));
+    short_name(feed.finish())
 }
 
 /// Values of the columns for each task, samples changing fastest.

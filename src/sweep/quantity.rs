@@ -145,6 +145,11 @@ impl Quantity {
         matches!(self, Quantity::Figure(figure) if ERRORS.contains(&figure.name))
     }
 
+    /// Whether it is of a probe that a scene does not have.
+    pub(super) fn is_of_no_probe(&self, scene: &Scene) -> bool {
+        matches!(self, Quantity::Probe(_, name) if scene.probes.iter().all(|probe| probe.name != *name))
+    }
+
     /// Reads it of a run; `None` where the run has none.
     pub fn of(&self, run: &Finished<'_>) -> Option<f64> {
         let reports = || equilibria(run.records).map(|record| &record.report);

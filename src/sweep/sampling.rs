@@ -2,9 +2,6 @@
 
 use super::sweep_file::{Method, Sample};
 
-/// Axes that Sobol's sequence is known for.
-pub(super) const MOST_AXES_OF_SOBOL: usize = sobol_burley::NUM_DIMENSIONS as usize;
-
 /// Points of the unit cube with so many axes, one after another.
 pub(super) fn points(sample: &Sample, axes: usize) -> Vec<Vec<f64>> {
     let Sample { count, method, seed } = *sample;

@@ -11,6 +11,9 @@ use super::quantity::Quantity;
 /// Points that Sobol's sequence is known for.
 const MOST_OF_SOBOL: usize = 1 << 16;
 
+/// Axes that it is known for.
+const MOST_AXES_OF_SOBOL: usize = sobol_burley::NUM_DIMENSIONS as usize;
+
 /// The most tasks of a sweep.
 pub const MOST_TASKS: usize = 1_000_000;
 
@@ -124,6 +127,19 @@ impl SweepFile {
         self.sample.filter(|_| !self.scatter.is_empty()).map_or(1, |sample| sample.count)
     }
 
+    /// Why Sobol's sequence, where it is asked for, does not go as far.
+    fn problem_of_sobol(&self) -> Option<String> {
+        let Sample { count, .. } = self.sample.filter(|sample| sample.method == Method::Sobol)?;
+        let too_many = match self.scatter.len() {
+            axes if axes > MOST_AXES_OF_SOBOL => {
+                format!("{MOST_AXES_OF_SOBOL} keys that scatter, and there are {axes}")
+            }
+            _ if count > MOST_OF_SOBOL => format!("{MOST_OF_SOBOL} points, and {count} are asked for"),
+            _ => return None,
+        };
+        Some(format!("Sobol's sequence is known for {too_many}: write method = \"latin-hypercube\""))
+    }
+
     /// What the types do not say.
     fn problem(&self) -> Option<String> {
         if self.axis.is_empty() && self.scatter.is_empty() {
@@ -173,13 +189,8 @@ impl SweepFile {
         if let Some(twice) = self.outputs.iter().map(ToString::to_string).find(|output| !asked.insert(output.clone())) {
             return Some(format!("{twice} is asked for twice in `outputs`"));
         }
-        match (&self.sample, self.count()) {
-            (Some(Sample { count, method: Method::Sobol, .. }), _) if *count > MOST_OF_SOBOL => {
-                return Some(format!(
-                    "Sobol's sequence is known for {MOST_OF_SOBOL} points, and {count} are asked for: write method = \"latin-hypercube\""
-                ));
-            }
-            _ => {}
+        if let Some(problem) = self.problem_of_sobol() {
+            return Some(problem);
         }
         match self.count() {
             Some(count) if count <= MOST_TASKS => None,

@@ -1,13 +1,12 @@
 //! One task, done: its run in a log of its own, and what is put on record of it.
 
 use std::collections::{BTreeMap, HashMap};
-use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::plan::{Head, Task};
 use super::quantity::{Finished, Quantity};
 use super::record::{Ending, TaskRecord};
-use crate::journal::Manifest;
+use crate::journal::host;
 use crate::printable::in_full;
 use crate::record::NUMERICS_REVISION;
 use crate::scene::Scene;
@@ -133,7 +132,6 @@ impl<'w> Work<'w> {
     }
 
     fn ended(&self, task: &Task, ending: Ending, reason: Option<String>) -> TaskRecord {
-        let Manifest { program_version, host, .. } = Manifest::here(Path::new("sweep"), "", 1);
         TaskRecord {
             key: task.key.clone(),
             ending,
@@ -144,9 +142,9 @@ impl<'w> Work<'w> {
             unknowns: None,
             wall_s: None,
             log: None,
-            program_version,
+            program_version: env!("CARGO_PKG_VERSION").to_owned(),
             numerics: NUMERICS_REVISION,
-            host,
+            host: host(),
             warnings: Vec::new(),
             hash: String::new(),
         }
