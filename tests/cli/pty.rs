@@ -12,7 +12,7 @@ use rustix::termios::{Winsize, tcsetwinsize};
 use crate::program::Sandbox;
 
 /// Variables that say what a terminal is; a test sets its own.
-const OF_TERMINALS: [&str; 5] = ["NO_COLOR", "CLICOLOR_FORCE", "CLICOLOR", "TERM", "COLUMNS"];
+const OF_TERMINALS: [&str; 6] = ["NO_COLOR", "CLICOLOR_FORCE", "CLICOLOR", "TERM", "COLUMNS", "CI"];
 
 /// All that a command sends to a terminal of so many columns.
 fn on_a_terminal(place: &Sandbox, arguments: &str, columns: u16, set: &[(&str, &str)]) -> String {
