@@ -5,19 +5,19 @@ use std::sync::Arc;
 use crate::digest::Feed;
 pub use crate::digest::Hash;
 use crate::scene::Stage;
-pub use crate::spline::Mesh;
+pub use crate::spline::{KnotLists, Mesh, Patch};
 
 /// The state of a run between two stages: everything that decides its future.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Geometry and spline space that the displacement belongs to.
     pub mesh: Arc<Mesh>,
-    /// Displacement of every control point, mm, in the order of the mesh.
+    /// Displacement of every control point, mm, in the order of the mesh: shell by shell.
     pub displacement: Vec<[f64; 3]>,
-    /// New knots in each direction that evaluate-indicators asks for; emptied by refine-knots.
-    pub marked: [Vec<f64>; 2],
-    /// Knots in each direction that evaluate-indicators finds superfluous; emptied by coarsen-knots.
-    pub superfluous: [Vec<f64>; 2],
+    /// New knots of each patch that evaluate-indicators asks for; emptied by refine-knots.
+    pub marked: KnotLists,
+    /// Knots of each patch that evaluate-indicators finds superfluous; emptied by coarsen-knots.
+    pub superfluous: KnotLists,
     /// The finer mesh that refine-knots made; project-displacements replaces `mesh` by it.
     pub refined: Option<Arc<Mesh>>,
     /// Load step: 0 before the first solve.
@@ -229,13 +229,14 @@ impl MeshHash {
 }
 
 impl State {
-    /// Creates the state of an undeformed shell, before the first step.
-    pub fn undeformed(mesh: Mesh) -> Self {
+    /// Creates the state of undeformed shells, before the first step.
+    pub fn undeformed(mesh: impl Into<Mesh>) -> Self {
+        let mesh = mesh.into();
         Self {
-            displacement: vec![[0.0; 3]; mesh.control_points.len()],
+            displacement: vec![[0.0; 3]; mesh.point_count()],
+            marked: mesh.no_knots(),
+            superfluous: mesh.no_knots(),
             mesh: Arc::new(mesh),
-            marked: Default::default(),
-            superfluous: Default::default(),
             refined: None,
             step: 0,
             stage: None,
@@ -280,7 +281,7 @@ impl State {
         feed.bytes(mesh.as_bytes());
         feed.integer(displacement.len() as u64);
         feed.each(displacement.as_flattened());
-        marked.iter().for_each(|knots| feed.numbers(knots));
+        marked.iter().flatten().for_each(|knots| feed.numbers(knots));
         feed.integer(u64::from(refined.is_some()));
         if let Some(mesh) = refined {
             feed.bytes(mesh.hash().as_bytes());
@@ -307,9 +308,9 @@ impl State {
             feed.numbers(&[*changed_n_mm, *growth, *ripple_n_mm]);
             feed.numbers(expected_n_mm.as_slice());
         }
-        if superfluous.iter().any(|knots| !knots.is_empty()) {
+        if superfluous.iter().flatten().any(|knots| !knots.is_empty()) {
             feed.bytes(b"superfluous");
-            superfluous.iter().for_each(|knots| feed.numbers(knots));
+            superfluous.iter().flatten().for_each(|knots| feed.numbers(knots));
         }
         if let Some(Estimate { step, relative_error, largest_indicator: [one, other] }) = estimate {
             feed.bytes(b"estimate");

@@ -5,13 +5,11 @@
 //! say too little: a span whose displacement is nearly resolved has next to none, whatever happens when it grows. By them half of
 //! the baseline's fold left at 44°, and had to come back.
 
-use std::sync::Arc;
-
 use crate::adapt::refinement::{unweighted, weighted};
 use crate::equilibrium::{Configuration, SolveError, Workspace};
 use crate::scene::Scene;
 use crate::shell::sub;
-use crate::spline::{Coarsening, Grid, Mesh, without_knots};
+use crate::spline::{Coarsening, Grid, Patch, without_knots};
 use crate::state::State;
 
 /// Relative error of the measured quantity that is taken for a relative change of the energy: where spans are too long for the fold
@@ -39,7 +37,7 @@ pub fn superfluous(
     scene: &Scene,
     work: &mut Workspace,
     state: &State,
-    start: &Mesh,
+    start: &Patch,
     room: f64,
 ) -> Result<[Vec<f64>; 2], SolveError> {
     let mut candidates = Vec::new();
@@ -66,12 +64,13 @@ fn candidates_of(
     scene: &Scene,
     work: &mut Workspace,
     state: &State,
-    start: &Mesh,
+    start: &Patch,
     direction: usize,
 ) -> Result<Vec<Leaving>, SolveError> {
     let State { mesh, displacement, .. } = state;
-    let (knots, degree) = (&mesh.knots[direction], mesh.degree[direction]);
-    let points = mesh.control_counts()[1 - direction] as f64;
+    let patch = mesh.lone();
+    let (knots, degree) = (&patch.knots[direction], patch.degree[direction]);
+    let points = patch.control_counts()[1 - direction] as f64;
     let energy_of_model = state.strain_energy_n_mm.abs() / scene.symmetry.copies() as f64;
     let inner = &knots[degree + 1..knots.len() - degree - 1];
     let mut found = Vec::new();
@@ -82,7 +81,7 @@ fn candidates_of(
         }
         let mut taken: [Vec<f64>; 2] = Default::default();
         taken[direction].push(*knot);
-        let Some(coarsened) = Coarsened::new(mesh, &taken, start) else { continue };
+        let Some(coarsened) = Coarsened::new(patch, &taken, start) else { continue };
         let shown = coarsened.shown(displacement);
         let hidden: Vec<[f64; 3]> = displacement.iter().zip(shown).map(|(u, v)| sub(*u, v)).collect();
         let energy = work.energy_of_motion(Configuration::of(state), &hidden)?;
@@ -92,18 +91,18 @@ fn candidates_of(
     Ok(found)
 }
 
-/// A mesh without some of its inserted knots, and the map of vectors at its control points to those that are left.
+/// A patch without some of its inserted knots, and the map of vectors at its control points to those that are left.
 #[derive(Debug)]
 pub struct Coarsened {
-    /// The coarser mesh; geometry as on the mesh that the run starts with, to rounding.
-    pub mesh: Arc<Mesh>,
-    finer: Arc<Mesh>,
+    /// The coarser patch; geometry as on the mesh that the run starts with, to rounding.
+    pub patch: Patch,
+    finer: Patch,
     maps: [Coarsening; 2],
 }
 
 impl Coarsened {
-    /// Takes knots out of a mesh; `start` is one that has none of them and the same geometry. `None` where it has.
-    pub fn new(finer: &Arc<Mesh>, superfluous: &[Vec<f64>; 2], start: &Mesh) -> Option<Self> {
+    /// Takes knots out of a patch; `start` is one that has none of them and the same geometry. `None` where it has.
+    pub fn new(finer: &Patch, superfluous: &[Vec<f64>; 2], start: &Patch) -> Option<Self> {
         let kept = [0, 1].map(|k| without_knots(&finer.knots[k], &superfluous[k]));
         let count = |knots: &[f64], knot: &f64| knots.iter().filter(|other| *other == knot).count();
         let has_start =
@@ -113,15 +112,15 @@ impl Coarsened {
         }
         let inserted = [0, 1].map(|k| without_knots(&kept[k], &start.knots[k]));
         // Geometry is inserted again rather than approximated.
-        let mesh = Arc::new(start.with_knots(&inserted));
-        let maps = [0, 1].map(|k| Coarsening::new(&finer.knots[k], &mesh.knots[k], finer.degree[k]));
-        Some(Self { mesh, finer: finer.clone(), maps })
+        let patch = start.with_knots(&inserted);
+        let maps = [0, 1].map(|k| Coarsening::new(&finer.knots[k], &patch.knots[k], finer.degree[k]));
+        Some(Self { patch, finer: finer.clone(), maps })
     }
 
     /// The best approximation of vectors at the control points, in the coarser space.
     pub fn approximated(&self, vectors: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let (_, net) = self.coarse_net(vectors);
-        unweighted(&self.mesh, &net)
+        unweighted(&self.patch, &net)
     }
 
     /// The same at the control points of the finer mesh: what of the vectors the coarser space can show.

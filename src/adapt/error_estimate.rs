@@ -21,7 +21,7 @@ use crate::equilibrium::{Configuration, LinearRelease, Workspace, WorkspaceError
 use crate::model::ModelError;
 use crate::scene::Scene;
 use crate::shell::{dot, scaled, sub};
-use crate::spline::{Coarsening, Mesh, Spans, find_span};
+use crate::spline::{Coarsening, Mesh, Patch, Spans, find_span};
 use crate::state::State;
 
 /// Share of the step along which the measured quantity is differentiated: its curvature leaves a thousandth of the estimate,
@@ -61,11 +61,13 @@ impl Enriched {
         mesh: &Mesh,
         direction: usize,
     ) -> Result<Self, WorkspaceError> {
-        let (knots, degree) = (&mesh.knots[direction], mesh.degree[direction]);
+        let patch = mesh.lone();
+        let (knots, degree) = (&patch.knots[direction], patch.degree[direction]);
         let mut middles: [Vec<f64>; 2] = Default::default();
         middles[direction] = Spans::of(knots, degree).middles();
-        let finer = Arc::new(mesh.with_knots(&middles));
+        let finer = patch.with_knots(&middles);
         let coarsening = Coarsening::new(&finer.knots[direction], knots, degree);
+        let finer = Arc::new(Mesh::from(finer));
         Ok(Self { direction, work: Workspace::with_terms(scene, &finer, own)?, coarsening })
     }
 
@@ -92,16 +94,17 @@ impl Enriched {
         Ok(Some(DirectionalError {
             energy: release.energy,
             measured: before - here + (after - before) / SLIGHTLY,
-            shares: self.shares(&state.mesh, &release),
+            shares: self.shares(state.mesh.lone(), &release),
         }))
     }
 
     /// −½ r · (d − best approximation of d on the current mesh) by the span in which a control point has its weight, for a step d
     /// and the residual r. Points that supports or joints hold have forces that are no residual.
-    fn shares(&self, mesh: &Mesh, release: &LinearRelease) -> Vec<f64> {
+    fn shares(&self, patch: &Patch, release: &LinearRelease) -> Vec<f64> {
         let Discretization { mesh: finer, unknowns, .. } = self.work.discretization();
-        let (direction, degree) = (self.direction, mesh.degree[self.direction]);
-        let spans = Spans::of(&mesh.knots[direction], degree);
+        let finer = finer.lone();
+        let (direction, degree) = (self.direction, patch.degree[self.direction]);
+        let spans = Spans::of(&patch.knots[direction], degree);
         let knots = &finer.knots[direction];
         let grid = finer.grid();
         let weight = |point: usize| finer.control_points[point][3];
@@ -113,7 +116,7 @@ impl Enriched {
             for (row, point) in line.into_iter().enumerate().filter(|(_, point)| unknowns.is_regular(*point)) {
                 let hidden = scaled(1.0 / weight(point), sub(step[row], shown[row]));
                 let middle = knots[row + 1..=row + degree].iter().sum::<f64>() / degree as f64;
-                let span = find_span(&mesh.knots[direction], degree, middle);
+                let span = find_span(&patch.knots[direction], degree, middle);
                 let element = spans.index.partition_point(|index| *index < span);
                 shares[element] -= 0.5 * dot(release.forces[point], hidden);
             }

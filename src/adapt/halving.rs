@@ -12,7 +12,7 @@ use crate::equilibrium::{Configuration, LinearBuckling, Placed, Workspace};
 use crate::model::MOST_CONTROL_POINTS;
 use crate::scene::Scene;
 use crate::shell::norm;
-use crate::spline::{Mesh, Spans};
+use crate::spline::Mesh;
 use crate::state::State;
 
 /// Control points of a halved mesh up to which it is looked at. A run may have more, and what is said at its end is not to take
@@ -63,9 +63,8 @@ impl Halved {
     /// stiffness there has no factor, does not fit in memory, or there are more than a fifth of [`MOST_CONTROL_POINTS`].
     pub fn of(scene: &Scene, own: &[Arc<dyn TermSource>], state: &State) -> Option<Self> {
         let mesh = &state.mesh;
-        let middles = [0, 1].map(|direction| Spans::of(&mesh.knots[direction], mesh.degree[direction]).middles());
-        let finer = Arc::new(mesh.with_knots(&middles));
-        if finer.control_points.len() > MOST_LOOKED_AT {
+        let finer = Arc::new(mesh.halved());
+        if finer.point_count() > MOST_LOOKED_AT {
             return None;
         }
         let displacement = project_displacements(mesh, &finer, &state.displacement);

@@ -2,7 +2,7 @@
 //! few unknowns as that takes.
 
 use crate::adapt::DirectionalError;
-use crate::spline::{Mesh, Spans};
+use crate::spline::{Patch, Spans};
 
 /// Share of the tolerance from which on a mesh is refined. Estimates are of first order, and made now and then: where a fold grows
 /// over spans much too long for it, an error of 0.9 % was estimated as 0.15 % (the quarter of L = 150 mm at 36°, with 0.3 here).
@@ -39,7 +39,7 @@ struct Split {
 #[derive(Clone, Copy, Debug)]
 pub struct JudgedMesh<'a> {
     /// The mesh.
-    pub mesh: &'a Mesh,
+    pub mesh: &'a Patch,
     /// What halving the spans of either direction would change.
     pub errors: &'a [DirectionalError; 2],
     /// Relative error of the measured quantity by direction.

@@ -104,13 +104,12 @@ fn columns(widest: usize) -> Columns {
 }
 
 fn row(table: &Columns, figure: &Figure) -> String {
-    let [n1, n2] = figure.elements;
     let [p1, p2] = figure.degree;
     table.row(&[
         figure.name.to_string(),
         format!("{:.3}", figure.median_ms),
         figure.fraction_of_peak.map_or_else(String::new, |share| format!("{:.0} %", 100.0 * share)),
-        format!("{n1}×{n2}"),
+        figure.elements.with_sign("×"),
         format!("{p1}×{p2}"),
         figure.threads.to_string(),
         figure.quadrature.to_string(),

@@ -203,7 +203,7 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
     let [stable, most, end] = report.negative_pivots;
     let at = place_mm(report.mode_at);
     let [u, v, w] = report.mode.shape[report.mode.largest_at].map(unsigned_zero);
-    let [n1, n2] = report.stable.mesh.element_counts();
+    let elements = report.stable.mesh.elements();
     let (name, degree) = match parameter {
         Parameter::Rotation => ("critical rotation", "°"),
         Parameter::LoadFactor => ("critical load", ""),
@@ -225,7 +225,7 @@ fn told(report: &SnapReport, parameter: Parameter) -> String {
     };
     let released = report.energy_released_n_mm.map_or("not known".to_string(), |energy| format!("{energy:.4} N·mm"));
     format!(
-        "{name:<20} {below:.9}{degree} to {beyond:.9}{degree}, on {n1} × {n2} elements, {}\n\
+        "{name:<20} {below:.9}{degree} to {beyond:.9}{degree}, on {elements} elements, {}\n\
          {moment}\
          energy released      {released}; strain energy before: {:.4} N·mm\n\
          kind                 {kind}\n\

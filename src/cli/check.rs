@@ -12,7 +12,7 @@ use super::session::use_threads;
 use super::wrapped::wrapped;
 use crate::pipeline::RunError;
 use crate::scene::{Scene, Symmetry};
-use crate::spline::Grid;
+use crate::spline::Elements;
 use crate::study::{FinestCost, Forecast, StepCost, Summary};
 use crate::units::{count, duration, significant};
 
@@ -39,7 +39,7 @@ struct Line<'l> {
     smallest_radius_mm: Option<f64>,
     thickness_mm: f64,
     youngs_moduli_mpa: [f64; 2],
-    elements: [usize; 2],
+    elements: Elements,
     degree: [usize; 2],
     unknowns: usize,
     refines: bool,
@@ -56,9 +56,9 @@ struct Line<'l> {
 }
 
 /// The finest mesh that refining may end with, as a program reads it.
-#[derive(Clone, Copy, Serialize)]
+#[derive(Clone, Serialize)]
 struct FinestLine {
-    elements: [usize; 2],
+    elements: Elements,
     unknowns: Option<usize>,
     memory_bytes: Option<u64>,
     step_s: Option<f64>,
@@ -89,7 +89,7 @@ fn finest(scene: &Scene, forecast: &Forecast) -> Option<FinestLine> {
     let step =
         |cost: FinestCost| Some((1.0 + forecast.step.as_ref()?.as_ref().ok()?.iterations as f64) * cost.iteration_s);
     Some(FinestLine {
-        elements: mesh.elements,
+        elements: mesh.elements.clone(),
         unknowns: cost.map(|cost| cost.unknowns),
         memory_bytes: cost.and_then(|_| peak_memory()),
         step_s: cost.and_then(step),
@@ -111,7 +111,7 @@ fn line<'l>(
         smallest_radius_mm: size.radius_mm,
         thickness_mm: size.thickness_mm,
         youngs_moduli_mpa: size.moduli_mpa,
-        elements: *elements,
+        elements: elements.clone(),
         degree: scene.mesh.degree,
         unknowns: *unknowns,
         refines: finest.is_some(),
@@ -136,12 +136,12 @@ fn shown(
     finest: Option<FinestLine>,
     threads: usize,
 ) -> String {
-    let Forecast { size, elements: [n1, n2], unknowns, odd, remarks, .. } = forecast;
+    let Forecast { size, elements, unknowns, odd, remarks, .. } = forecast;
     let [p, q] = scene.mesh.degree;
     let shell = format!("{name}: {}", Summary::new(scene, &[]).shell);
     let mesh = format!(
-        "{n1} × {n2} = {} of degree {p}, {q}; {}{}",
-        count(Grid::new([*n1, *n2]).len(), "element"),
+        "{elements} = {} of degree {p}, {q}; {}{}",
+        count(elements.count(), "element"),
         count(*unknowns, "unknown"),
         if finest.is_some() { ", at the start" } else { "" }
     );
@@ -178,7 +178,7 @@ fn megabytes(bytes: u64) -> String {
 
 /// What the mesh may become, and what that takes.
 fn refined(finest: &FinestLine) -> String {
-    let FinestLine { elements: [n1, n2], unknowns, memory_bytes, step_s } = finest;
+    let FinestLine { elements, unknowns, memory_bytes, step_s } = finest;
     let parts = [
         unknowns.map(|unknowns| count(unknowns, "unknown")),
         memory_bytes.map(megabytes),
@@ -188,7 +188,7 @@ fn refined(finest: &FinestLine) -> String {
     let cost =
         if parts.is_empty() { ", more than is tried out here".to_owned() } else { format!(": {}", parts.join(", ")) };
     format!(
-        "the mesh grows where the shell bends, to {n1} × {n2} elements at most, which is the length limit everywhere{cost}; a run \
+        "the mesh grows where the shell bends, to {elements} elements at most, which is the length limit everywhere{cost}; a run \
          takes from what is needed at the start to twice that"
     )
 }

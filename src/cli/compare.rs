@@ -13,6 +13,7 @@ use crate::history::{redefined_probes, remove_redefined};
 use crate::printable::one_line;
 use crate::record::Parameter;
 use crate::scene::Difference;
+use crate::spline::Elements;
 use crate::study::{Curve, Deviation, Finding, Summary};
 use crate::units::{signed, significant};
 
@@ -63,7 +64,7 @@ struct ComparedRun {
     path: PathBuf,
     read: ReadLog,
     /// Elements (along u, along v) of the model at the end.
-    elements: Option<[usize; 2]>,
+    elements: Option<Elements>,
     findings: Vec<Finding>,
     curve: Curve,
 }
@@ -78,7 +79,7 @@ impl ComparedRun {
         Ok(Self {
             letter: letter(index),
             path: path.to_path_buf(),
-            elements: summary.meshes.last().map(|mesh| mesh.elements),
+            elements: summary.meshes.last().map(|mesh| mesh.elements.clone()),
             findings: summary.findings(),
             curve: Curve::of(&read.scene, &records),
             read,
@@ -94,9 +95,9 @@ impl ComparedRun {
         let end = if read.is_finished() { "finished" } else { "unfinished" };
         let mut text = format!("{letter:<3}{}\n", path_in_line(path));
         let _ = writeln!(text, "   scene {} ({}), {end}", one_line(&file), &hash[..HASH]);
-        if let Some([along, across]) = elements {
+        if let Some(elements) = elements {
             let [p, q] = read.scene.mesh.degree;
-            let _ = writeln!(text, "   {along} × {across} elements of the model at the end, degrees {p} and {q}");
+            let _ = writeln!(text, "   {elements} elements of the model at the end, degrees {p} and {q}");
         }
         text
     }

@@ -2,6 +2,7 @@
 
 use crate::record::{CriticalPoint, Outcome, Parameter, Record, Report, released_in_words};
 use crate::scene::{Scene, Stage};
+use crate::spline::Elements;
 use crate::units::{count, duration, reading};
 
 /// A load step that found an equilibrium, with what it took to find it.
@@ -9,7 +10,7 @@ use crate::units::{count, duration, reading};
 pub(super) struct LoadStep {
     /// What its last stage reported.
     report: Report,
-    elements_before: [usize; 2],
+    elements_before: Elements,
     iterations: usize,
     wall_s: f64,
     /// Solves rejected on the way: without equilibrium, for a jump or an unstable shape on the way, for a critical point, for a sharp turn.
@@ -28,7 +29,7 @@ pub(super) struct LoadStep {
 impl LoadStep {
     /// One line: step, rotation, moment, elements, iterations, time, and what else happened.
     pub(super) fn line(&self) -> String {
-        let Report { step, parameter, moment_n_mm, elements: [n1, n2], .. } = self.report;
+        let Report { step, parameter, moment_n_mm, ref elements, .. } = self.report;
         let reached = match self.report.driven_by {
             Parameter::Rotation => format!("{parameter:>8.3}°  {:>9} N·mm", reading(moment_n_mm, 3)),
             Parameter::LoadFactor => {
@@ -38,7 +39,7 @@ impl LoadStep {
                 format!("factor {parameter:>8.4}{}", shown.unwrap_or_default())
             }
         };
-        let elements = format!("{n1} × {n2}");
+        let elements = elements.to_string();
         let mut line = format!(
             "step {step:>4}  {reached}  {elements:>9}  {:>3} {:<10}  {:>8}",
             self.iterations,
@@ -62,7 +63,7 @@ impl LoadStep {
             events.push("a ripple of the mesh".to_string());
         }
         if self.elements_before != self.report.elements {
-            events.push(format!("refined from {} × {}", self.elements_before[0], self.elements_before[1]));
+            events.push(format!("refined from {}", self.elements_before));
         }
         if let Some(parameter) = self.returned_from {
             events.push(format!(
@@ -108,7 +109,7 @@ pub(super) struct Gatherer {
     refines: bool,
     loads_follow: bool,
     last_stage: Option<Stage>,
-    elements: Option<[usize; 2]>,
+    elements: Option<Elements>,
     pending_rejections: [usize; 4],
     pending_iterations: usize,
     pending_wall_s: f64,
@@ -139,7 +140,7 @@ impl Gatherer {
             if report.outcome == Outcome::Done {
                 self.open = Some(LoadStep {
                     report: report.clone(),
-                    elements_before: self.elements.unwrap_or(report.elements),
+                    elements_before: self.elements.clone().unwrap_or_else(|| report.elements.clone()),
                     iterations: std::mem::take(&mut self.pending_iterations),
                     wall_s: std::mem::take(&mut self.pending_wall_s),
                     rejected: std::mem::take(&mut self.pending_rejections),
@@ -151,7 +152,7 @@ impl Gatherer {
                 });
             }
         }
-        self.elements = Some(report.elements);
+        self.elements = Some(report.elements.clone());
         match report.outcome {
             Outcome::Done => {}
             Outcome::RejectedNoEquilibrium => self.pending_rejections[0] += 1,

@@ -7,7 +7,8 @@ use super::failure::Failure;
 use super::wrapped::wrapped;
 use crate::history::States;
 use crate::record::{Parameter, Record};
-use crate::state::Mesh;
+use crate::scene::Scene;
+use crate::spline::{Mesh, Patch};
 use crate::units::significant;
 
 /// A row for the first mesh and for each that followed; below it the knots, from 0 to 1 along each side, that it has and the one
@@ -29,7 +30,7 @@ pub(super) fn mesh_table(asked: &Asked) -> Result<String, Failure> {
             let state = states.at(index).map_err(|source| asked.unusable(source))?;
             text += &row(record);
             if let Some(before) = before.replace(state.mesh.clone()) {
-                text += &knots_changed(&before, &state.mesh);
+                text += &knots_changed(&asked.scene, &before, &state.mesh);
             }
         }
     }
@@ -37,14 +38,26 @@ pub(super) fn mesh_table(asked: &Asked) -> Result<String, Failure> {
 }
 
 fn row(Record { report, .. }: &Record) -> String {
-    let elements = format!("{} × {}", report.elements[0], report.elements[1]);
+    let elements = report.elements.to_string();
     format!("{:>6}  {:>9.3}  {elements:>11}  {:>8}\n", report.step, report.parameter, report.unknowns)
 }
 
-fn knots_changed(before: &Mesh, after: &Mesh) -> String {
+fn knots_changed(scene: &Scene, before: &Mesh, after: &Mesh) -> String {
+    let mut lines = String::new();
+    for (shell, patches) in before.patches.iter().zip(&after.patches).enumerate() {
+        let changed = patch_changed(patches.0, patches.1);
+        if let Some(name) = scene.shell_name(shell).filter(|_| !changed.is_empty()) {
+            lines += &format!("          {name}\n");
+        }
+        lines += &changed;
+    }
+    lines
+}
+
+fn patch_changed(before: &Patch, after: &Patch) -> String {
     let mut lines = String::new();
     for (direction, name) in ["length", "arc"].into_iter().enumerate() {
-        let [before, after] = [before, after].map(|mesh| &mesh.knots[direction]);
+        let [before, after] = [before, after].map(|patch| &patch.knots[direction]);
         for (sign, knots) in [("+", not_among(after, before)), ("−", not_among(before, after))] {
             if !knots.is_empty() {
                 let knots: Vec<String> = knots.iter().map(|knot| significant(*knot, 6)).collect();

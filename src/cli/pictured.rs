@@ -76,16 +76,16 @@ fn listed(field: &Field) -> String {
 
 /// Cells that make a coarse mesh look smooth and a fine one no larger than need be.
 pub(super) fn cells_per_element(mesh: &Mesh) -> [usize; 2] {
-    let [n1, n2] = mesh.element_counts();
-    [SMOOTH.div_ceil(n1.max(n2)).clamp(2, 12); 2]
+    let most = mesh.elements().each().iter().flatten().copied().max().unwrap_or(1);
+    [SMOOTH.div_ceil(most).clamp(2, 12); 2]
 }
 
 /// The numbers of the state that a picture shows.
 fn subtitle(report: &Report) -> String {
-    let Report { parameter, moment_n_mm, elements: [n1, n2], .. } = report;
+    let Report { parameter, moment_n_mm, elements, .. } = report;
     let reached = match report.driven_by {
         Parameter::Rotation => format!("θ {}°, M {moment_n_mm:.2} N·mm", rounded(*parameter)),
         Parameter::LoadFactor => format!("load factor {}", rounded(*parameter)),
     };
-    format!("{reached}, {n1} × {n2} elements in the model")
+    format!("{reached}, {elements} elements in the model")
 }

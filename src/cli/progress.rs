@@ -214,7 +214,7 @@ fn live_prefix(driven_by: Parameter, parameter: f64, target: f64) -> String {
 
 /// The text after the bar: the last stage and the numbers of the state that it made.
 fn live_message(report: &Report) -> String {
-    let Report { stage, moment_n_mm, elements: [n1, n2], .. } = report;
+    let Report { stage, moment_n_mm, elements, .. } = report;
     let degree = if report.driven_by == Parameter::Rotation { "°" } else { "" };
     let outcome = match report.outcome {
         Outcome::Done if report.iterations > 0 => format!(", {}", count(report.iterations, "iteration")),
@@ -232,9 +232,10 @@ fn live_message(report: &Report) -> String {
             format!(" rejected at {:.3}{degree}: no equilibrium", report.attempted_parameter)
         }
     };
+    let elements = elements.with_sign("×");
     match report.driven_by {
-        Parameter::Rotation => format!("{moment_n_mm:.2} N·mm  {n1}×{n2}  {stage}{outcome}"),
-        Parameter::LoadFactor => format!("{n1}×{n2}  {stage}{outcome}"),
+        Parameter::Rotation => format!("{moment_n_mm:.2} N·mm  {elements}  {stage}{outcome}"),
+        Parameter::LoadFactor => format!("{elements}  {stage}{outcome}"),
     }
 }
 
@@ -253,6 +254,7 @@ mod tests {
             work_n_mm: 0.0,
             put_in_n_mm: 0.0,
             probes: vec![],
+            connections: vec![],
             path_length_mm: None,
             critical_point: None,
             warnings: vec![],
@@ -260,7 +262,7 @@ mod tests {
             attempted_parameter: 9.615,
             moment_n_mm: 289.1247,
             strain_energy_n_mm: 63.0,
-            elements: [16, 8],
+            elements: [16, 8].into(),
             unknowns: 615,
             iterations: 5,
             factorizations: 5,

@@ -211,10 +211,9 @@ impl Running<'_> {
             (None, _) => String::new(),
         };
         let seconds = |time: f64| if timed { format!("{time:.2}") } else { String::new() };
-        let [n1, n2] = row.elements;
         print(&columns().row(&[
             planned.label.clone(),
-            format!("{n1}×{n2}"),
+            row.elements.with_sign("×"),
             row.unknowns.to_string(),
             percent(row.error_before, own[0]),
             row.jump_at.map_or_else(String::new, |at| format!("{at:.3}")),

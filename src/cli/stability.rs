@@ -108,10 +108,8 @@ fn in_full(record: &Record, report: &StabilityReport) -> String {
 /// The shell with the mode added to its displacement.
 fn draw(folder: &Path, scene: &Scene, record: &Record, report: &StabilityReport) -> Result<(), Failure> {
     let mesh = &report.state.mesh;
-    let points = mesh.points();
-    let first = mesh.control_points[0];
-    let corner = [0, 1, 2].map(|c| first[c] / first[3]);
-    let size = points.map(|point| norm(sub(point, corner))).fold(0.0, f64::max);
+    let corner = mesh.point(0);
+    let size = mesh.points().map(|point| norm(sub(point, corner))).fold(0.0, f64::max);
     let mode: Vec<[f64; 3]> = report.mode.shape.iter().map(|mode| scaled(SHOWN_AMPLITUDE * size, *mode)).collect();
     let displacement = report.state.displacement.iter().zip(&mode).map(|(u, mode)| add(*u, *mode)).collect();
     let moved = State { displacement, ..report.state.clone() };

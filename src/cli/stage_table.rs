@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use super::wrapped::hanging;
 use crate::record::{Outcome, Parameter, Record, Report};
 use crate::scene::Stage;
-use crate::spline::Grid;
 use crate::units::{reading, significant};
 
 /// A column: its head, and whether its cells are right-aligned.
@@ -105,7 +104,7 @@ fn cells(record: &Record, probe: Option<&str>) -> [String; COLUMNS.len()] {
             }
         },
         reading(report.strain_energy_n_mm, 3),
-        format!("{}×{}", report.elements[0], report.elements[1]),
+        report.elements.with_sign("×"),
         report.unknowns.to_string(),
         unless_zero(report.iterations as u64),
         unless_zero(report.factorizations as u64),
@@ -191,7 +190,6 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
         }
         Outcome::RejectedNoEquilibrium => "rejected: no equilibrium found; the increment is halved".to_string(),
     };
-    let [n1, n2] = report.elements;
     let mut lines = vec![
         ("", format!("stage {}: {}, load step {}", commit.ordinal, report.stage, report.step)),
         ("outcome", outcome),
@@ -227,7 +225,7 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
         ));
     }
     lines.extend([
-        ("elements", format!("{n1} × {n2} = {} (length × arc, of the model)", Grid::new(report.elements).len())),
+        ("elements", format!("{} = {} (length × arc, of the model)", report.elements, report.elements.count())),
         ("free unknowns", report.unknowns.to_string()),
     ]);
     if report.stage.finds_equilibrium() {

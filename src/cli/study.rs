@@ -228,10 +228,9 @@ fn head(table: &Columns, quantity: &str) -> String {
 
 fn cells(label: &str, row: &AccuracyRow) -> [String; 10] {
     let percent = |share: Option<f64>| share.map_or_else(String::new, |share| format!("{:.2} %", 100.0 * share));
-    let [n1, n2] = row.elements;
     [
         label.to_owned(),
-        format!("{n1}×{n2}"),
+        row.elements.with_sign("×"),
         row.unknowns.to_string(),
         percent(row.error_before),
         row.jump_at.map_or_else(String::new, |at| format!("{at:.3}")),

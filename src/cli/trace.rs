@@ -22,7 +22,7 @@ pub(super) fn row(commit: &Commit, mesh: &Mesh, iterate: &Iterate) -> TraceRow {
         step_length: iterate.step_length,
         shift_n_per_mm: iterate.shift,
         negative_pivots: iterate.negative_pivots,
-        worst_point: mesh.grid().place(iterate.worst_point),
+        worst_point: mesh.grid_place(iterate.worst_point),
         worst_point_mm: mesh.point(iterate.worst_point),
     }
 }

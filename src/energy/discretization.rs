@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::energy::{At, Shell, Term, TermSource, Terms};
-use crate::model::{BlockPattern, FreeStrains, ModelError, Tables, Unknowns};
+use crate::energy::{At, Connections, Shell, Term, TermSource, Terms, Want};
+use crate::model::{
+    BlockPattern, Blocks, Connectivity, FreeStrains, Member, ModelError, NaturalState, Tables, Unknowns, members,
+};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
@@ -16,9 +18,11 @@ pub struct Discretization {
     pub blocks: Arc<BlockPattern>,
     /// Free unknowns, and how the control points follow from them.
     pub unknowns: Unknowns,
-    /// The shell, which is the first term.
-    pub shell: Shell,
-    /// Terms other than the shell: loads and further energies.
+    /// The shells, which are the first terms.
+    pub shells: Vec<Shell>,
+    /// The joints and bonds among the terms.
+    pub connections: Connections,
+    /// Terms other than the shells: loads and further energies.
     pub terms: Terms,
 }
 
@@ -49,22 +53,45 @@ impl Discretization {
         unknowns: Unknowns,
         own: &[Arc<dyn TermSource>],
     ) -> Result<Self, ModelError> {
-        let tables = Tables::new(scene, mesh);
-        let terms = Terms::new(scene, mesh, &tables, own)?;
-        let blocks = Arc::new(BlockPattern::new(&[&tables.connectivity], &terms.pairs()));
-        let shell = Shell { tables, free_strains: FreeStrains::new(scene, mesh), blocks: blocks.clone() };
-        Ok(Self { mesh: mesh.clone(), blocks, unknowns, shell, terms })
+        let tables = Tables::of_structure(scene, mesh);
+        let connections = Connections::new(scene, mesh)?;
+        let terms = Terms::with_connections(scene, mesh, &tables, own, &connections)?;
+        let parts: Vec<&Connectivity> = tables.iter().map(|tables| &tables.connectivity).collect();
+        let blocks = Arc::new(BlockPattern::new(&parts, &terms.pairs()));
+        let shell = |(tables, member): (Tables, &Member)| Shell {
+            tables,
+            free_strains: FreeStrains::new(&member.scene, member.patch),
+            blocks: blocks.clone(),
+            part: member.index,
+        };
+        let shells = tables.into_iter().zip(&members(scene, mesh)).map(shell).collect();
+        Ok(Self { mesh: mesh.clone(), blocks, unknowns, shells, connections, terms })
     }
 
-    /// All terms, the shell first.
+    /// All terms, the shells first.
     pub fn all_terms(&self) -> impl Iterator<Item = &dyn Term> {
-        std::iter::once(&self.shell as &dyn Term).chain(self.terms.iter())
+        self.shells.iter().map(|shell| shell as &dyn Term).chain(self.terms.iter())
+    }
+
+    /// States of the shells without forces at a value of the parameter; `None` where it is the undeformed one.
+    pub fn natural_at(&self, parameter: f64) -> Vec<Option<NaturalState>> {
+        self.shells.iter().map(|shell| shell.free_strains.at(parameter)).collect()
+    }
+
+    /// Gradient of the strain energy of all shells, N, where `natural` are their states without forces.
+    pub(crate) fn residual(&self, displacement: &[[f64; 3]], natural: &[Option<NaturalState>]) -> Vec<[f64; 3]> {
+        let mut residual = vec![[0.0; 3]; displacement.len()];
+        for (shell, natural) in self.shells.iter().zip(natural) {
+            let elements = shell.elements(*natural);
+            elements.add(displacement, Want::Residual, &mut residual, &mut Blocks::default());
+        }
+        residual
     }
 
     /// Energy that the model stores at a displacement and a parameter, N·mm.
     pub fn energy(&self, displacement: &[[f64; 3]], parameter: f64) -> f64 {
         let at = At { mesh: &self.mesh, displacement, parameter };
-        self.shell.energy(at) + self.terms.energy(at)
+        self.shells.iter().map(|shell| shell.energy(at)).sum::<f64>() + self.terms.energy(at)
     }
 
     /// Change of the energy that the model stores, N·mm, as the parameter changes while the displacement stays.

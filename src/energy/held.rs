@@ -5,7 +5,9 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use crate::energy::{At, TermSource, Terms};
-use crate::model::{BlockPattern, Blocks, Body, FreeMotions, HELD, ModelError, Tables, Unknowns, free_motions};
+use crate::model::{
+    BlockPattern, Blocks, Body, Connectivity, FreeMotions, HELD, ModelError, Tables, Unknowns, free_motions,
+};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
@@ -62,11 +64,12 @@ impl FreeMotions {
         mesh: &Mesh,
         own: &[Arc<dyn TermSource>],
     ) -> Result<[Self; 2], ModelError> {
-        let tables = Tables::new(scene, mesh);
+        let tables = Tables::of_structure(scene, mesh);
         let terms = Terms::new(scene, mesh, &tables, own)?;
-        let pattern = BlockPattern::new(&[&tables.connectivity], &terms.pairs());
+        let parts: Vec<&Connectivity> = tables.iter().map(|tables| &tables.connectivity).collect();
+        let pattern = BlockPattern::new(&parts, &terms.pairs());
         let mut stiffness = Blocks::zeros(&pattern);
-        let still = vec![[0.0; 3]; mesh.control_points.len()];
+        let still = vec![[0.0; 3]; mesh.point_count()];
         terms.add_tangent(At { mesh, displacement: &still, parameter: 0.0 }, &pattern, &mut stiffness);
         let answers = self.basis.column_iter().map(|motion| {
             let moved = |point| {

@@ -5,6 +5,7 @@
 //! | `term` | what a term is, and the sum of all other than the shell |
 //! | `shell`, `kernel` | the shell, and its elements |
 //! | `loads` | the actions of a scene |
+//! | `connections` | joints and bonds of a structure |
 //! | `balance` | what is stored, worked and dissipated |
 //! | `discretization` | a scene on a mesh, with all its terms |
 //! | `held` | whether supports and terms hold the shell |
@@ -12,6 +13,7 @@
 //! | `remarks` | what a scene leaves open, in words |
 
 mod balance;
+mod connections;
 mod discretization;
 mod held;
 mod kernel;
@@ -22,6 +24,7 @@ mod shell;
 mod term;
 
 pub use balance::Balance;
+pub use connections::{ConnectionState, Connections};
 pub use discretization::Discretization;
 pub(crate) use held::check_held;
 pub(crate) use kernel::Build;

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use crate::energy::{At, TermSource, Terms};
 use crate::model::{
-    ERROR_OF_OFFSET, Extent, FreeStrains, Mirror, ModelError, ROUNDING, THICK, Unknowns, parameters_of,
+    ERROR_OF_OFFSET, Extent, FreeStrains, Member, Mirror, ModelError, ROUNDING, THICK, Unknowns, members, parameters_of,
 };
 use crate::scene::{Action, ActionKind, ForceVector, Geometry, History, Scene, SurfaceDirection};
 use crate::shell::{FreeStrain, cross, dot, norm, scaled};
-use crate::spline::{Mesh, Spans, mid_surface_point};
+use crate::spline::{Mesh, Patch, Spans, mid_surface_point};
 use crate::units::{rounded, significant};
 
 /// Offset over radius from which on there is a remark.
@@ -40,20 +40,27 @@ pub fn remarks(
              are in balance"
         )
     });
-    let actions = scene.actions.iter().filter_map(|action| of_action(scene, mesh, action));
-    let theory = of_thickness(scene, mesh).into_iter().chain(of_degree_2(scene, mesh));
-    let all = supports
-        .chain(actions)
-        .chain(of_images(scene, mesh)?)
-        .chain(of_nothing(scene, mesh, unknowns, own)?)
-        .chain(theory);
-    Ok(all.collect())
+    let (mut of_actions, mut images, mut theory) = (Vec::new(), Vec::new(), Vec::new());
+    for Member { scene, patch, .. } in members(scene, mesh) {
+        of_actions.extend(scene.actions.iter().filter_map(|action| of_action(&scene, patch, action)));
+        images.extend(of_images(&scene, patch)?);
+        theory.extend(of_thickness(&scene, patch).into_iter().chain(of_degree_2(&scene, patch)));
+    }
+    let all = supports.chain(of_actions).chain(images).chain(of_nothing(scene, mesh, unknowns, own)?).chain(theory);
+    let mut said: Vec<String> = Vec::new();
+    // Shells that are alike would say the same twice.
+    all.for_each(|remark| {
+        if !said.contains(&remark) {
+            said.push(remark)
+        }
+    });
+    Ok(said)
 }
 
 /// Remarks on what the theory of thin shells leaves out: a shell that is thick for its radius or its side, and a curved
 /// surface off the middle of the thickness.
-fn of_thickness(scene: &Scene, mesh: &Mesh) -> Vec<String> {
-    let Extent { radius_mm, side_mm, .. } = Extent::of(mesh, &scene.material);
+fn of_thickness(scene: &Scene, patch: &Patch) -> Vec<String> {
+    let Extent { radius_mm, side_mm, .. } = Extent::of(patch, &scene.material);
     let (thickness_mm, offset_mm) = (scene.material.thickness_mm(), scene.material.offset_mm());
     let lengths = [("smallest radius of curvature", radius_mm), ("shorter side", side_mm)];
     let thick = lengths.into_iter().filter(|(_, length_mm)| thickness_mm >= THICK * length_mm).map(|(name, length_mm)| {
@@ -79,13 +86,13 @@ fn of_thickness(scene: &Scene, mesh: &Mesh) -> Vec<String> {
 }
 
 /// Remarks on elements of degree 2 that are long for the curvature along them: a change of curvature stretches them.
-fn of_degree_2(scene: &Scene, mesh: &Mesh) -> Option<String> {
+fn of_degree_2(scene: &Scene, patch: &Patch) -> Option<String> {
     let thickness = scene.material.thickness_mm();
     let lengths = |direction: usize| {
-        let spans = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
+        let spans = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
         spans.into_iter().map(move |[from, to]| {
             let middle = 0.5 * (from + to);
-            let point = mid_surface_point(mesh, &[], if direction == 0 { [middle, 0.5] } else { [0.5, middle] });
+            let point = mid_surface_point(patch, &[], if direction == 0 { [middle, 0.5] } else { [0.5, middle] });
             let [a1, a2, a11, a22, _] = point.derivatives;
             let (tangent, second) = if direction == 0 { (a1, a11) } else { (a2, a22) };
             let normal = cross(a1, a2);
@@ -93,7 +100,7 @@ fn of_degree_2(scene: &Scene, mesh: &Mesh) -> Option<String> {
             ((to - from) * norm(tangent), (thickness / curvature).sqrt())
         })
     };
-    let quadratic = (0..2).filter(|direction| mesh.degree[*direction] == 2);
+    let quadratic = (0..2).filter(|direction| patch.degree[*direction] == 2);
     let worst =
         quadratic.flat_map(|direction| lengths(direction).map(move |(length, layer)| (direction, length, layer)));
     let (direction, length, layer) = worst.max_by(|one, other| (one.1 / one.2).total_cmp(&(other.1 / other.2)))?;
@@ -115,14 +122,17 @@ fn of_nothing(
     unknowns: &Unknowns,
     own: &[Arc<dyn TermSource>],
 ) -> Result<Option<String>, ModelError> {
-    let (loads, free_strains) = (Terms::on(scene, mesh, own)?, FreeStrains::new(scene, mesh));
-    let still = vec![[0.0; 3]; mesh.control_points.len()];
+    let loads = Terms::on(scene, mesh, own)?;
+    let free_strains: Vec<FreeStrains> =
+        members(scene, mesh).iter().map(|member| FreeStrains::new(&member.scene, member.patch)).collect();
+    let still = vec![[0.0; 3]; mesh.point_count()];
     let histories = scene.actions.iter().map(|action| &action.history);
     let kinks = histories.chain(scene.supports.iter().map(|support| &support.history)).flat_map(History::kinks);
     let mut loaded = false;
     for load_factor in kinks.chain([scene.load.target()]) {
         let moves = unknowns.given_at(load_factor).iter().any(|value| *value != 0.0);
-        let strained = free_strains.at(load_factor).is_some_and(|state| state.strain != FreeStrain::default());
+        let natural = free_strains.iter().filter_map(|strains| strains.at(load_factor));
+        let strained = natural.into_iter().any(|state| state.strain != FreeStrain::default());
         let forces = loads.forces(At { mesh, displacement: &still, parameter: load_factor });
         let all: f64 = forces.iter().map(|force| norm(*force)).sum();
         let placement = unknowns.configure(&vec![0.0; unknowns.count()], load_factor);
@@ -141,8 +151,8 @@ fn of_nothing(
 
 /// Remarks on forces across a plane of symmetry away from its edge: the mirrored shell is pulled in the opposite
 /// direction.
-fn of_images(scene: &Scene, mesh: &Mesh) -> Result<Vec<String>, ModelError> {
-    let mirrors = Mirror::all(scene, &scene.supports, mesh)?;
+fn of_images(scene: &Scene, patch: &Patch) -> Result<Vec<String>, ModelError> {
+    let mirrors = Mirror::all(scene, &scene.supports, patch)?;
     let of = |Action { name, kind, .. }: &Action| {
         let (force, unit) = match kind {
             ActionKind::Force { force_n: ForceVector::Components(force), .. } => (force, "N"),
@@ -160,7 +170,7 @@ fn of_images(scene: &Scene, mesh: &Mesh) -> Result<Vec<String>, ModelError> {
     Ok(scene.actions.iter().filter_map(of).collect())
 }
 
-fn of_action(scene: &Scene, mesh: &Mesh, Action { name, kind, .. }: &Action) -> Option<String> {
+fn of_action(scene: &Scene, patch: &Patch, Action { name, kind, .. }: &Action) -> Option<String> {
     let sense = match kind {
         ActionKind::Pressure { pressure_mpa, follower } => {
             let how = if *follower {
@@ -168,18 +178,18 @@ fn of_action(scene: &Scene, mesh: &Mesh, Action { name, kind, .. }: &Action) -> 
             } else {
                 "keeps that direction and acts on the undeformed area"
             };
-            return Some(format!("action \"{name}\" pushes {}, {how}", side(scene, mesh, *pressure_mpa)));
+            return Some(format!("action \"{name}\" pushes {}, {how}", side(scene, patch, *pressure_mpa)));
         }
         ActionKind::Force { force_n: ForceVector::Along(size, SurfaceDirection::Normal), .. } => *size,
         ActionKind::LineForce { force_n_per_mm: ForceVector::Along(size, SurfaceDirection::Normal), .. } => *size,
         ActionKind::AreaForce { force_n_per_mm2: ForceVector::Along(size, SurfaceDirection::Normal), .. } => *size,
         _ => return None,
     };
-    Some(format!("action \"{name}\" pushes {}, and keeps that direction", side(scene, mesh, sense)))
+    Some(format!("action \"{name}\" pushes {}, and keeps that direction", side(scene, patch, sense)))
 }
 
 /// Says in words where a load of this sign along the normal pushes the undeformed shell.
-fn side(scene: &Scene, mesh: &Mesh, sense: f64) -> String {
+fn side(scene: &Scene, patch: &Patch, sense: f64) -> String {
     let out = sense >= 0.0;
     let which = |one: &str, other: &str| if out { one.to_owned() } else { other.to_owned() };
     match &scene.geometry {
@@ -187,7 +197,7 @@ fn side(scene: &Scene, mesh: &Mesh, sense: f64) -> String {
         Geometry::TapeSpring { .. } | Geometry::CylinderPanel { .. } => which("away from the axis", "towards the axis"),
         Geometry::SphereZone { .. } => which("away from the centre", "towards the centre"),
         Geometry::Nurbs(_) => {
-            let middle = mid_surface_point(mesh, &[], parameters_of(&scene.geometry, [0.5; 2]));
+            let middle = mid_surface_point(patch, &[], parameters_of(&scene.geometry, [0.5; 2]));
             let normal = cross(middle.derivatives[0], middle.derivatives[1]);
             let unit = scaled(if out { 1.0 } else { -1.0 } / norm(normal), normal).map(rounded);
             format!("along ({}, {}, {}) at u 0.5, v 0.5", unit[0], unit[1], unit[2])

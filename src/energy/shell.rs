@@ -23,19 +23,21 @@ pub struct Shell {
     pub tables: Tables,
     /// Strains that have no energy, over the parameter.
     pub free_strains: FreeStrains,
-    /// Pattern of the matrix that its elements are the first part of.
+    /// Pattern of the matrix that its elements are a part of.
     pub blocks: Arc<BlockPattern>,
+    /// Index of that part: the place of the shell in the structure.
+    pub part: usize,
 }
 
 impl Shell {
     /// Elements of the shell, where `natural` is the state without forces (`None`: the undeformed state).
     #[doc(hidden)]
     pub fn elements(&self, natural: Option<NaturalState>) -> ShellElements<'_> {
-        ShellElements { tables: &self.tables, blocks: &self.blocks, part: 0, natural }
+        ShellElements { tables: &self.tables, blocks: &self.blocks, part: self.part, natural }
     }
 
     /// Computes the gradient of the strain energy, N, where `natural` is the state without forces.
-    pub(crate) fn residual(&self, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> Vec<[f64; 3]> {
+    fn residual(&self, displacement: &[[f64; 3]], natural: Option<NaturalState>) -> Vec<[f64; 3]> {
         let mut residual = vec![[0.0; 3]; displacement.len()];
         let elements = self.elements(natural);
         elements.add(displacement, Want::Residual, &mut residual, &mut Blocks::default());

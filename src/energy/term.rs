@@ -4,6 +4,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use crate::digest::Hash;
+use crate::energy::Connections;
 use crate::model::{BlockPattern, Blocks, ModelError, Tables};
 use crate::scene::Scene;
 use crate::shell::{add, dot};
@@ -88,18 +89,19 @@ pub trait TermSource: Debug + Send + Sync {
     /// Hash of everything that decides the numbers of the term.
     fn hash(&self) -> Hash;
 
-    /// Makes the term on a mesh, whose quadrature points are in `tables`.
+    /// Makes the term on a mesh; the quadrature points of each of its shells are in `tables`, and their control points have
+    /// the numbers that they have in the structure.
     ///
     /// # Errors
     /// Where it does not fit the mesh.
-    fn on(&self, scene: &Scene, mesh: &Mesh, tables: &Tables) -> Result<Box<dyn Term>, ModelError>;
+    fn on(&self, scene: &Scene, mesh: &Mesh, tables: &[Tables]) -> Result<Box<dyn Term>, ModelError>;
 
     /// Makes the part of the term that acts where both parameters of the surface are below `limits`: the moment of a
     /// section follows from everything that acts on one side of it.
     ///
     /// # Errors
     /// Where the term cannot be divided, as by default; then probes of such moments are refused.
-    fn below(&self, _: &Scene, _: &Mesh, _: &Tables, _limits: [f64; 2]) -> Result<Box<dyn Term>, ModelError> {
+    fn below(&self, _: &Scene, _: &Mesh, _: &[Tables], _limits: [f64; 2]) -> Result<Box<dyn Term>, ModelError> {
         Err(ModelError::NoPart { term: self.name().to_owned() })
     }
 }
@@ -235,8 +237,23 @@ impl Terms {
     ///
     /// # Errors
     /// Where one of them does not fit the mesh.
-    pub fn new(scene: &Scene, mesh: &Mesh, tables: &Tables, own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
+    pub fn new(scene: &Scene, mesh: &Mesh, tables: &[Tables], own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
+        Self::with_connections(scene, mesh, tables, own, &Connections::new(scene, mesh)?)
+    }
+
+    /// Makes the terms where the joints and bonds are known.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub(super) fn with_connections(
+        scene: &Scene,
+        mesh: &Mesh,
+        tables: &[Tables],
+        own: &[Arc<dyn TermSource>],
+        connections: &Connections,
+    ) -> Result<Self, ModelError> {
         let mut terms = Self { own: own.to_vec(), ..Self::of_actions(scene, mesh)? };
+        terms.push_connections(connections);
         for source in own {
             terms.push(source.name(), source.on(scene, mesh, tables)?);
         }
@@ -249,8 +266,8 @@ impl Terms {
     /// As for [`Self::new`].
     pub fn on(scene: &Scene, mesh: &Mesh, own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
         match own.is_empty() {
-            true => Self::of_actions(scene, mesh),
-            false => Self::new(scene, mesh, &Tables::new(scene, mesh), own),
+            true if scene.joints.is_empty() && scene.bonds.is_empty() => Self::of_actions(scene, mesh),
+            _ => Self::new(scene, mesh, &Tables::of_structure(scene, mesh), own),
         }
     }
 
@@ -258,7 +275,7 @@ impl Terms {
     ///
     /// # Errors
     /// Where a term does not fit the mesh or cannot be divided.
-    pub fn below(&self, scene: &Scene, mesh: &Mesh, tables: &Tables, limits: [f64; 2]) -> Result<Self, ModelError> {
+    pub fn below(&self, scene: &Scene, mesh: &Mesh, tables: &[Tables], limits: [f64; 2]) -> Result<Self, ModelError> {
         let mut part = Self::of_actions_below(scene, mesh, limits)?;
         for source in &self.own {
             part.push(source.name(), source.below(scene, mesh, tables, limits)?);

@@ -39,24 +39,24 @@ impl Assembled {
     /// Assembles residual and energy, and the stiffness where `want` says so, at a displacement of the control points and a
     /// value of the scene's parameter.
     pub fn assemble(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64, want: Want) {
-        let natural = discretization.shell.free_strains.at(parameter);
-        self.assemble_shell(discretization, displacement, natural, want);
+        let natural = discretization.natural_at(parameter);
+        self.assemble_shells(discretization, displacement, &natural, want);
         self.add_terms(discretization, displacement, parameter, want);
-        self.free_strain_forces = match natural {
-            Some(_) => length(&self.change_of_forces(discretization, displacement, None)),
-            None => 0.0,
+        self.free_strain_forces = match natural.iter().any(Option::is_some) {
+            true => length(&self.change_of_forces(discretization, displacement, &vec![None; natural.len()])),
+            false => 0.0,
         };
     }
 
-    /// Computes the change of the internal forces, N, as the natural state becomes another one while the shell stays at
+    /// Computes the change of the internal forces, N, as the natural states become others while the shells stay at
     /// the displacement that it was assembled at. They are linear in the free strain.
     pub(super) fn change_of_forces(
         &self,
         discretization: &Discretization,
         displacement: &[[f64; 3]],
-        natural: Option<NaturalState>,
+        natural: &[Option<NaturalState>],
     ) -> Vec<[f64; 3]> {
-        subtract(&discretization.shell.residual(displacement, natural), &self.residual)
+        subtract(&discretization.residual(displacement, natural), &self.residual)
     }
 
     fn add_terms(&mut self, discretization: &Discretization, displacement: &[[f64; 3]], parameter: f64, want: Want) {
@@ -73,22 +73,26 @@ impl Assembled {
         }
     }
 
-    /// Assembles energy, residual and stiffness of the shell, where `natural` is the state without forces.
-    pub(super) fn assemble_shell(
+    /// Assembles energy, residual and stiffness of the shells, where `natural` are their states without forces.
+    pub(super) fn assemble_shells(
         &mut self,
         discretization: &Discretization,
         displacement: &[[f64; 3]],
-        natural: Option<NaturalState>,
+        natural: &[Option<NaturalState>],
         want: Want,
     ) {
         self.residual.fill([0.0; 3]);
         if want == Want::Stiffness {
             self.stiffness.clear();
         }
-        let elements = discretization.shell.elements(natural);
-        let sums = elements.add(displacement, want, &mut self.residual, &mut self.stiffness);
-        self.energy = with_locked(sums.energy, natural);
-        self.element_forces = sums.squared_forces.sqrt();
+        let (mut energy, mut squared_forces) = (0.0, 0.0);
+        for (shell, natural) in discretization.shells.iter().zip(natural) {
+            let sums = shell.elements(*natural).add(displacement, want, &mut self.residual, &mut self.stiffness);
+            energy += with_locked(sums.energy, *natural);
+            squared_forces += sums.squared_forces;
+        }
+        self.energy = energy;
+        self.element_forces = squared_forces.sqrt();
     }
 
     /// Forces that are out of balance: the residual less the external forces, N.

@@ -95,7 +95,7 @@ impl<'w> Equations<'w> {
             (0..3).for_each(|c| rate[c] += skew[point][c] - loads[point][c]);
         }
         let mut of_shell = vec![[0.0; 3]; displacement.len()];
-        discretization.shell.add_rates(at, &mut of_shell);
+        discretization.shells.iter().for_each(|shell| shell.add_rates(at, &mut of_shell));
         force_rates.iter_mut().zip(of_shell).for_each(|(sum, rate)| *sum = sub(*sum, rate));
         let mut gradient_rate = placement.restrict(&force_rates);
         for (sum, turned) in gradient_rate.iter_mut().zip(placement.restrict_rate(&forces, &given_rates)) {

@@ -6,10 +6,10 @@
 //! |u|² = Σ_a m_a |u_a|²,  m_a = ∫N_a dξdη  (Σ m_a = 1),
 //!
 //! so that a length means nearly the same before and after knots are inserted (it falls towards the integral), on a whole
-//! shell and on its quarter.
+//! shell and on its quarter. The shells of a structure count alike.
 
 use crate::shell::dot;
-use crate::spline::Mesh;
+use crate::spline::{Mesh, Patch};
 
 /// Weights m_a of the control points of a mesh.
 #[derive(Clone, Debug)]
@@ -20,7 +20,9 @@ pub(super) struct Metric {
 impl Metric {
     /// Computes the weights of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
-        Self { weights: mesh.basis_integrals() }
+        let share = 1.0 / mesh.patches.len() as f64;
+        let of_patch = |patch: &Patch| patch.basis_integrals().into_iter().map(move |integral| share * integral);
+        Self { weights: mesh.patches.iter().flat_map(of_patch).collect() }
     }
 
     /// Inner product Σ m a·b of two motions.

@@ -122,8 +122,9 @@ impl<'a> Equilibrium<'a> {
         let stiff = assembled.multiply(discretization, &placement.velocity(&[], &motion));
         let more = discretization.external_forces(from.displacement, to);
         let mut change = subtract(&subtract(&stiff, &more), &negated(&assembled.external));
-        if let Some(natural) = discretization.shell.free_strains.at(to) {
-            let freed = assembled.change_of_forces(discretization, from.displacement, Some(natural));
+        let natural = discretization.natural_at(to);
+        if natural.iter().any(Option::is_some) {
+            let freed = assembled.change_of_forces(discretization, from.displacement, &natural);
             change.iter_mut().zip(freed).for_each(|(sum, force)| *sum = add(*sum, force));
         }
         let mut step = placement.restrict(&change);

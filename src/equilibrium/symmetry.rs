@@ -26,10 +26,10 @@ impl SymmetryError {
     /// Measures the errors at a state.
     pub fn at(work: &mut Workspace, at: Configuration) -> Self {
         let mut half = Assembled::new(&work.discretization);
-        let natural = work.discretization.shell.free_strains.at(at.parameter);
-        half.assemble_shell(&work.discretization, at.displacement, natural, Want::Stiffness);
-        measure(&work.discretization, at.displacement, &half, |point, u, hessian| {
-            natural.map_or(*point, |natural| point.under(&natural.strain)).hessian(u, hessian);
+        let natural = work.discretization.natural_at(at.parameter);
+        half.assemble_shells(&work.discretization, at.displacement, &natural, Want::Stiffness);
+        measure(&work.discretization, at.displacement, &half, |shell, point, u, hessian| {
+            natural[shell].map_or(*point, |natural| point.under(&natural.strain)).hessian(u, hessian);
         })
     }
 
@@ -47,17 +47,22 @@ fn measure(
     discretization: &Discretization,
     displacement: &[[f64; 3]],
     half: &Assembled,
-    hessian_of: impl Fn(&PointReference, &Derivatives, &mut Hessian),
+    hessian_of: impl Fn(usize, &PointReference, &Derivatives, &mut Hessian),
 ) -> SymmetryError {
     let count = displacement.len();
     let (x, y) = (field(count, 0.618_033_988_75), field(count, 0.414_213_562_37));
-    let tables = &discretization.shell.tables;
     let fields = [displacement, &x[..], &y[..]];
-    let [mut forward, mut backward] = forms(discretization, &tables.points, fields, &hessian_of);
-    if let Some(stretching) = &tables.stretching {
-        let [more_forward, more_backward] = forms(discretization, stretching, fields, &hessian_of);
-        forward += more_forward;
-        backward += more_backward;
+    let [mut forward, mut backward] = [0.0; 2];
+    for (index, shell) in discretization.shells.iter().enumerate() {
+        let tables = &shell.tables;
+        let of_shell =
+            |point: &PointReference, u: &Derivatives, hessian: &mut Hessian| hessian_of(index, point, u, hessian);
+        let mut add = |[more_forward, more_backward]: [f64; 2]| {
+            forward += more_forward;
+            backward += more_backward;
+        };
+        add(forms(tables, &tables.points, fields, &of_shell));
+        tables.stretching.iter().for_each(|stretching| add(forms(tables, stretching, fields, &of_shell)));
     }
     let stiff = half.multiply(discretization, &y);
     let stored: f64 = x.iter().zip(&stiff).map(|(a, b)| dot(*a, *b)).sum();
@@ -67,12 +72,12 @@ fn measure(
 
 /// Computes x·(K y) and y·(K x) of the points of a table, for the fields displacement, x, y.
 fn forms<Batch, const ROWS: usize>(
-    discretization: &Discretization,
+    tables: &Tables,
     table: &PointTable<Batch, ROWS>,
     [displacement, x, y]: [&[[f64; 3]]; 3],
     hessian_of: &impl Fn(&PointReference, &Derivatives, &mut Hessian),
 ) -> [f64; 2] {
-    let Tables { padded, ref connectivity, .. } = discretization.shell.tables;
+    let Tables { padded, ref connectivity, .. } = *tables;
     let mut hessian: Hessian = [[0.0; 16]; 15];
     let mut forms = [0.0; 2];
     for element in 0..connectivity.elements() {
@@ -125,7 +130,7 @@ mod tests {
     fn deformed() -> (Discretization, Vec<[f64; 3]>, Assembled) {
         let scene = parse(include_str!("../../pipelines/baseline.toml"), "baseline.toml").unwrap();
         let discretization = Discretization::new(&scene, &Arc::new(starting_mesh(&scene).unwrap())).unwrap();
-        let shape = field(discretization.mesh.control_points.len(), 0.732_050_807_57);
+        let shape = field(discretization.mesh.point_count(), 0.732_050_807_57);
         let mut half = Assembled::new(&discretization);
         half.assemble(&discretization, &shape, 0.0, Want::Stiffness);
         (discretization, shape, half)
@@ -134,7 +139,7 @@ mod tests {
     #[test]
     fn the_stiffness_is_symmetric_to_rounding() {
         let (discretization, shape, half) = deformed();
-        let error = measure(&discretization, &shape, &half, |point, u, hessian| {
+        let error = measure(&discretization, &shape, &half, |_, point, u, hessian| {
             point.hessian(u, hessian);
         });
         assert!(error.hessians < ROUNDING && error.assembled < ROUNDING, "{error:?}");
@@ -145,7 +150,7 @@ mod tests {
     fn a_hessian_that_is_not_symmetric_shows() {
         let (discretization, shape, half) = deformed();
         for (p, q) in [(0, 1), (3, 0), (6, 2), (14, 9), (5, 11)] {
-            let error = measure(&discretization, &shape, &half, |point, u, hessian| {
+            let error = measure(&discretization, &shape, &half, |_, point, u, hessian| {
                 point.hessian(u, hessian);
                 let largest = hessian.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
                 hessian[p][q] += 1e-4 * largest;
@@ -159,10 +164,10 @@ mod tests {
         let (discretization, shape, mut half) = deformed();
         let largest = half.stiffness.values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         // The block of a control point in the middle with itself.
-        let points = discretization.mesh.control_points.len();
+        let points = discretization.mesh.point_count();
         let own = discretization.blocks.start(points / 2);
         half.stiffness.block_mut(own)[0] += 1e-6 * largest;
-        let error = measure(&discretization, &shape, &half, |point, u, hessian| {
+        let error = measure(&discretization, &shape, &half, |_, point, u, hessian| {
             point.hessian(u, hessian);
         });
         assert!(error.hessians < ROUNDING && error.assembled > 100.0 * ROUNDING, "{error:?}");

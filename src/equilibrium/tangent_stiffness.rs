@@ -119,7 +119,7 @@ mod tests {
             Hash::from_bytes([0; 32])
         }
 
-        fn on(&self, _: &Scene, _: &Mesh, _: &Tables) -> Result<Box<dyn Term>, ModelError> {
+        fn on(&self, _: &Scene, _: &Mesh, _: &[Tables]) -> Result<Box<dyn Term>, ModelError> {
             Ok(Box::new(*self))
         }
     }
@@ -166,7 +166,7 @@ mod tests {
         let mut scene = parse(&bent, "column.toml").unwrap();
         scene.mesh.elements = [12, 4];
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
-        let grid = mesh.grid();
+        let grid = mesh.lone().grid();
         let points = [grid.index([3, 2]), grid.index([grid.counts[0] - 3, grid.counts[1] - 1])];
         let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Tie(points, STIFFNESS))];
         let work = Workspace::with_terms(&scene, &mesh, if tied { &own } else { &[] }).unwrap();
@@ -193,7 +193,7 @@ mod tests {
         for tied in [false, true] {
             let (_, work, points) = plate(tied);
             let discretization = work.discretization();
-            let still = vec![[0.0; 3]; discretization.mesh.control_points.len()];
+            let still = vec![[0.0; 3]; discretization.mesh.point_count()];
             let count = discretization.unknowns.count();
             let placement = discretization.unknowns.configure(&vec![0.0; count], 0.0);
             let mut assembled = Assembled::new(discretization);
@@ -231,7 +231,7 @@ mod tests {
             let (scene, mut work, points) = plate(tied);
             for tangent in of_both_kinds(&work.discretization) {
                 work.tangent = tangent;
-                let still = vec![[0.0; 3]; work.discretization.mesh.control_points.len()];
+                let still = vec![[0.0; 3]; work.discretization.mesh.point_count()];
                 let rest = Configuration { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
                 let solved = Equilibrium::new(&scene, &mut work).advance(rest, 0.5, &mut |_| false).unwrap();
                 let [one, other] = points.map(|point| solved.displacement[point][2]);

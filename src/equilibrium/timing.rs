@@ -4,7 +4,7 @@ use crate::energy::Want;
 use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::workspace::Workspace;
-use crate::model::PointTable;
+use crate::model::{PointTable, Tables};
 
 /// Operations and bytes of the parts of a Newton iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,19 +46,21 @@ impl<'a> KernelRun<'a> {
 
     /// Counts the operations and bytes of the parts.
     pub fn cost(&self) -> KernelCost {
-        let tables = &self.work.discretization.shell.tables;
-        let [p1, p2] = self.work.discretization.mesh.degree;
-        let functions = (p1 + 1) * (p2 + 1);
+        let all: Vec<&Tables> = self.work.discretization.shells.iter().map(|shell| &shell.tables).collect();
         // For each function a, with r derivatives: 9 r² products for P, and 9 r with each function b ≥ a.
-        let flops = |points: usize, rows: usize| -> f64 {
+        let flops = |functions: usize, points: usize, rows: usize| -> f64 {
             let of_function = |a: usize| 18 * rows * (rows + functions - a);
             (points * (0..functions).map(of_function).sum::<usize>()) as f64
         };
-        let stretching = tables.stretching.as_ref();
+        let assembly_flops = |tables: &&Tables| {
+            let (functions, stretching) = (tables.functions_per_element, tables.stretching.as_ref());
+            flops(functions, tables.points.references.len(), 5)
+                + stretching.map_or(0.0, |table| flops(functions, table.references.len(), 2))
+        };
+        let bytes = |tables: &&Tables| tables.points.bytes() + tables.stretching.as_ref().map_or(0, PointTable::bytes);
         KernelCost {
-            assembly_flops: flops(tables.points.references.len(), 5)
-                + stretching.map_or(0.0, |table| flops(table.references.len(), 2)),
-            table_bytes: (tables.points.bytes() + stretching.map_or(0, PointTable::bytes)) as f64,
+            assembly_flops: all.iter().map(assembly_flops).sum(),
+            table_bytes: all.iter().map(bytes).sum::<usize>() as f64,
             factor_flops: self.work.tangent.solver.flops(),
             factor_bytes: 8.0 * self.work.tangent.solver.factor_len() as f64,
             factor_threads: self.work.tangent.solver.most_threads(),

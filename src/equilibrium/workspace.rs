@@ -79,8 +79,8 @@ impl Workspace {
         if self.factored_at.as_ref().is_some_and(|known| known.is_at(&at)) {
             return self.assembled.forces();
         }
-        let Discretization { shell, .. } = &self.discretization;
-        let internal = shell.residual(at.displacement, shell.free_strains.at(at.parameter));
+        let natural = self.discretization.natural_at(at.parameter);
+        let internal = self.discretization.residual(at.displacement, &natural);
         subtract(&internal, &self.discretization.external_forces(at.displacement, at.parameter))
     }
 

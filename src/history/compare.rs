@@ -2,7 +2,7 @@
 //!
 //! Structs are taken apart by name, so that a field that is forgotten here does not compile.
 
-use crate::spline::Mesh;
+use crate::spline::{Mesh, Patch};
 use crate::state::{
     Course, CriticalAhead, DriveMemory, PathMemory, Previous, Refinement, Rejection, State, StepControl,
 };
@@ -113,24 +113,34 @@ impl Found<'_> {
     }
 
     /// Knots to insert, or to take out.
-    fn knots(&mut self, what: &'static str, a: &[Vec<f64>; 2], b: &[Vec<f64>; 2]) {
-        let [of_a, of_b] = [a, b].map(|knots| knots.each_ref().map(Vec::len));
+    fn knots(&mut self, what: &'static str, a: &[[Vec<f64>; 2]], b: &[[Vec<f64>; 2]]) {
+        let [of_a, of_b] = [a, b].map(|lists| lists.iter().flatten().map(Vec::len).collect::<Vec<usize>>());
         if of_a == of_b {
-            a.iter().zip(b).for_each(|(x, y)| self.list(what, x, y));
+            a.iter().flatten().zip(b.iter().flatten()).for_each(|(x, y)| self.list(what, x, y));
         } else {
             self.kinds.push(format!("{of_a:?} {what} against {of_b:?}"));
         }
     }
 
     fn meshes(&mut self, [knots_name, points_name]: [&'static str; 2], a: &Mesh, b: &Mesh) {
-        let Mesh { degree, knots, control_points } = a;
-        if *degree != b.degree || a.control_counts() != b.control_counts() {
-            let ([a1, a2], [b1, b2]) = (a.element_counts(), b.element_counts());
-            let degrees = if *degree == b.degree { String::new() } else { format!(" of degree {:?}", b.degree) };
-            return self.kinds.push(format!("a mesh of {a1} × {a2} elements against {b1} × {b2}{degrees}"));
+        let Mesh { patches } = a;
+        if patches.len() != b.patches.len() {
+            return self.kinds.push(format!("{} shells against {}", patches.len(), b.patches.len()));
         }
-        knots.iter().zip(&b.knots).for_each(|(x, y)| self.list(knots_name, x, y));
-        self.vectors(points_name, control_points, &b.control_points);
+        for (one, other) in patches.iter().zip(&b.patches) {
+            let Patch { degree, knots, control_points } = one;
+            if *degree != other.degree || one.control_counts() != other.control_counts() {
+                let degrees =
+                    if *degree == other.degree { String::new() } else { format!(" of degree {:?}", other.degree) };
+                return self.kinds.push(format!(
+                    "a mesh of {} elements against {}{degrees}",
+                    a.elements(),
+                    b.elements()
+                ));
+            }
+            knots.iter().zip(&other.knots).for_each(|(x, y)| self.list(knots_name, x, y));
+            self.vectors(points_name, control_points, &other.control_points);
+        }
     }
 
     fn courses(&mut self, a: &Course, b: &Course, parameter: f64) {
@@ -241,8 +251,8 @@ impl Found<'_> {
         }
         let Some((index, values, agreeing_bits)) = worst(a, b) else { return };
         // A finer mesh has more of them.
-        let is_on_mesh = a.len() == self.mesh.control_points.len();
-        let place = is_on_mesh.then(|| (self.mesh.grid().place(index), self.mesh.point(index)));
+        let is_on_mesh = a.len() == self.mesh.point_count();
+        let place = is_on_mesh.then(|| (self.mesh.grid_place(index), self.mesh.point(index)));
         self.numbers.push(Difference { field, place, values, agreeing_bits });
     }
 }
@@ -292,10 +302,10 @@ mod tests {
     fn state() -> State {
         let knots = vec![0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0];
         let control_points = (0..16).map(|i| [f64::from(i) + 1.0, 2.0, 3.0, 1.0]).collect();
-        let mesh = Arc::new(Mesh { degree: [2, 2], knots: [knots.clone(), knots], control_points });
+        let mesh = Arc::new(Mesh::from(Patch { degree: [2, 2], knots: [knots.clone(), knots], control_points }));
         State {
             displacement: vec![[1.0, 2.0, 3.0]; 16],
-            marked: [vec![0.25], vec![]],
+            marked: vec![[vec![0.25], vec![]]],
             refined: Some(mesh.clone()),
             step: 3,
             stage: Some(Stage::Solve),
@@ -323,7 +333,7 @@ mod tests {
                 expected_n_mm: Some(0.25),
                 ripple_n_mm: 0.125,
             }),
-            superfluous: [vec![], vec![0.5]],
+            superfluous: vec![[vec![], vec![0.5]]],
             estimate: Some(Estimate { step: 2, relative_error: 0.25, largest_indicator: [0.5, 0.125] }),
             mesh,
         }
@@ -351,15 +361,17 @@ mod tests {
     fn the_last_bit_of_every_number_is_told() {
         type Change = fn(&mut State, fn(&mut f64));
         let changes: [(&str, Change); 25] = [
-            ("knots", |s, f| f(&mut Arc::make_mut(&mut s.mesh).knots[1][3])),
-            ("control points", |s, f| f(&mut Arc::make_mut(&mut s.mesh).control_points[7][2])),
-            ("knots of the finer mesh", |s, f| f(&mut Arc::make_mut(s.refined.as_mut().unwrap()).knots[0][3])),
+            ("knots", |s, f| f(&mut Arc::make_mut(&mut s.mesh).patches[0].knots[1][3])),
+            ("control points", |s, f| f(&mut Arc::make_mut(&mut s.mesh).patches[0].control_points[7][2])),
+            ("knots of the finer mesh", |s, f| {
+                f(&mut Arc::make_mut(s.refined.as_mut().unwrap()).patches[0].knots[0][3])
+            }),
             ("control points of the finer mesh", |s, f| {
-                f(&mut Arc::make_mut(s.refined.as_mut().unwrap()).control_points[3][1])
+                f(&mut Arc::make_mut(s.refined.as_mut().unwrap()).patches[0].control_points[3][1])
             }),
             ("displacement", |s, f| f(&mut s.displacement[5][2])),
-            ("knot spans marked", |s, f| f(&mut s.marked[0][0])),
-            ("knots superfluous", |s, f| f(&mut s.superfluous[1][0])),
+            ("knot spans marked", |s, f| f(&mut s.marked[0][0][0])),
+            ("knots superfluous", |s, f| f(&mut s.superfluous[0][1][0])),
             ("estimated error", |s, f| f(&mut s.estimate.as_mut().unwrap().relative_error)),
             ("largest indicator", |s, f| f(&mut s.estimate.as_mut().unwrap().largest_indicator[1])),
             ("rotation or load factor", |s, f| f(&mut s.parameter)),
@@ -400,8 +412,8 @@ mod tests {
     fn what_is_of_another_kind_is_told_in_words() {
         type Change = fn(&mut State);
         let changes: [(&str, Change); 14] = [
-            ("[1, 0] knot spans marked against [1, 1]", |s| s.marked[1].push(0.75)),
-            ("[0, 1] knots superfluous against [0, 0]", |s| s.superfluous[1].clear()),
+            ("[1, 0] knot spans marked against [1, 1]", |s| s.marked[0][1].push(0.75)),
+            ("[0, 1] knots superfluous against [0, 0]", |s| s.superfluous[0][1].clear()),
             ("estimate of the error in the first only", |s| s.estimate = None),
             ("a finer mesh waiting in the first only", |s| s.refined = None),
             ("step 3 solve against step 4 solve", |s| s.step = 4),

@@ -27,13 +27,13 @@ pub(super) fn disagreement(report: &Report, state: &State) -> Option<Disagreemen
     let counted = state.refined.as_ref().filter(|_| report.stage == Stage::RefineKnots).unwrap_or(&state.mesh);
     let marked = match report.stage {
         Stage::RefineKnots => report.marked,
-        _ => [0, 1].map(|direction| state.marked[direction].len()),
+        _ => [0, 1].map(|direction| state.marked.iter().map(|marked| marked[direction].len()).sum()),
     };
     differs("parameter", report.parameter, state.parameter)
         .or_else(|| differs("moment_n_mm", report.moment_n_mm, state.moment_n_mm).filter(|_| turns))
         .or_else(|| differs("strain_energy_n_mm", report.strain_energy_n_mm, state.strain_energy_n_mm))
         .or_else(|| differ("negative_pivots", &report.negative_pivots, &state.negative_pivots))
-        .or_else(|| differ("elements", &report.elements, &counted.element_counts()))
+        .or_else(|| differ("elements", &report.elements, &counted.elements()))
         .or_else(|| differ("marked", &report.marked, &marked))
         .or_else(|| match (report.path_length_mm, state.drive.path()) {
             (Some(said), Some(path)) => differs("path_length_mm", said, path.travelled_mm),

@@ -14,9 +14,12 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 pub use self::bytes::{CODEC_VERSION, CodecError};
-use self::bytes::{decode, encode};
+use self::bytes::{ONE_PATCH_VERSION, decode, encode};
 use self::older::{Older, decode_older};
-use self::versions::{CourseV7, EstimateV8, FieldV1, MeshV1, RefinementV6, RejectionV1, StageV1, StateV7, StateV8};
+use self::versions::{
+    CourseV7, EstimateV8, FieldV1, MeshV1, MeshV2, RefinementV6, RejectionV1, StageV1, StateV7, StateV8, StateV9,
+    borrowed, owned,
+};
 use super::format::FIELDS_LIMIT;
 use super::soundness::{check_mesh, check_on_mesh, check_state};
 use crate::digest::extend_with_numbers;
@@ -38,7 +41,10 @@ fn encode_field(vectors: &[[f64; 3]]) -> Vec<u8> {
 /// Where the mesh is unsound or larger than a log can hold.
 pub fn encode_mesh(mesh: &Mesh) -> Result<Vec<u8>, CodecError> {
     check_mesh(mesh)?;
-    encode(1, &MeshV1::of(mesh))
+    match &mesh.patches[..] {
+        [patch] => encode(1, &MeshV1::of(patch)),
+        _ => encode(2, &MeshV2::of(mesh)),
+    }
 }
 
 /// Decodes a mesh, and checks that it is sound and that its content hash is `expected`.
@@ -46,8 +52,10 @@ pub fn encode_mesh(mesh: &Mesh) -> Result<Vec<u8>, CodecError> {
 /// # Errors
 /// Where the bytes are anything else.
 pub fn decode_mesh(bytes: &[u8], expected: Hash) -> Result<Mesh, CodecError> {
-    let stored: MeshV1 = decode(1, bytes)?;
-    let mesh = stored.into_mesh();
+    let mesh = match bytes.first() {
+        Some(2) => decode::<MeshV2>(2, bytes)?.into_mesh(),
+        _ => decode::<MeshV1>(1, bytes)?.into_patch().into(),
+    };
     let found = mesh.hash();
     if found != expected {
         return Err(CodecError::ContentHash { what: "mesh", expected, found });
@@ -113,14 +121,15 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField])
         refinement,
         estimate,
     } = state;
+    let is_one_patch = state.mesh.patches.len() == 1;
     let (course, field) = CourseV7::of(course);
     let fields = [Some(&displacement[..]), field].into_iter().flatten();
     let fields: Vec<EncodedField> = fields.map(|vectors| EncodedField::of(vectors, known)).collect();
     let base = StateV7 {
         mesh: *mesh.as_bytes(),
         fields: fields.iter().map(|field| *field.hash.as_bytes()).collect(),
-        marked: marked.each_ref().map(Cow::from),
-        refined: refined.as_deref().map(MeshV1::of),
+        marked: marked[0].each_ref().map(Cow::from),
+        refined: refined.as_deref().filter(|_| is_one_patch).map(|mesh| MeshV1::of(&mesh.patches[0])),
         step: *step,
         stage: stage.map(|stage| match stage {
             Stage::Solve => StageV1::Solve,
@@ -148,9 +157,17 @@ pub(super) fn encode_state_on(state: &State, mesh: Hash, known: &[EncodedField])
         largest_force_n: *largest_force_n,
         refinement: refinement.map(RefinementV6::of),
     };
-    let superfluous = superfluous.each_ref().map(Cow::from);
-    let stored = StateV8 { base, superfluous, estimate: estimate.map(EstimateV8::of) };
-    Ok(EncodedState { state: encode(CODEC_VERSION, &stored)?, fields })
+    let first = superfluous[0].each_ref().map(Cow::from);
+    let base = StateV8 { base, superfluous: first, estimate: estimate.map(EstimateV8::of) };
+    let state = match is_one_patch {
+        true => encode(ONE_PATCH_VERSION, &base)?,
+        false => {
+            let (marked, superfluous) = (borrowed(&marked[1..]), borrowed(&superfluous[1..]));
+            let refined = refined.as_deref().map(MeshV2::of);
+            encode(CODEC_VERSION, &StateV9 { base, marked, superfluous, refined })?
+        }
+    };
+    Ok(EncodedState { state, fields })
 }
 
 /// Decodes a state on `mesh` (whose content hash is `mesh_hash`), and checks that it is sound and that its content hash
@@ -165,10 +182,17 @@ pub fn decode_state<'a>(
     mesh_hash: Hash,
     expected: Hash,
 ) -> Result<State, CodecError> {
-    let Older { state: StateV8 { base: stored, superfluous, estimate }, heading } = match bytes.first() {
-        Some(&CODEC_VERSION) => Older { state: decode(CODEC_VERSION, bytes)?, heading: None },
-        _ => decode_older(bytes)?,
+    let (Older { state, heading }, more) = match bytes.first() {
+        Some(&CODEC_VERSION) => {
+            let StateV9 { base, marked, superfluous, refined } = decode(CODEC_VERSION, bytes)?;
+            (Older { state: base, heading: None }, Some((marked, superfluous, refined)))
+        }
+        Some(&ONE_PATCH_VERSION) => (Older { state: decode(ONE_PATCH_VERSION, bytes)?, heading: None }, None),
+        _ => (decode_older(bytes)?, None),
     };
+    let StateV8 { base: stored, superfluous, estimate } = state;
+    let is_of_one_patch = more.is_none();
+    let (more_marked, more_superfluous, finer) = more.unwrap_or_default();
     let found = Hash::from_bytes(stored.mesh);
     if found != mesh_hash {
         return Err(CodecError::OtherMesh { expected: mesh_hash, found });
@@ -191,9 +215,12 @@ pub fn decode_state<'a>(
     let state = State {
         mesh,
         displacement,
-        marked: stored.marked.map(Cow::into_owned),
-        superfluous: superfluous.map(Cow::into_owned),
-        refined: stored.refined.map(|mesh| Arc::new(mesh.into_mesh())),
+        marked: owned(stored.marked, more_marked),
+        superfluous: owned(superfluous, more_superfluous),
+        refined: match is_of_one_patch {
+            true => stored.refined.map(|mesh| Arc::new(mesh.into_patch().into())),
+            false => finer.map(|mesh| Arc::new(mesh.into_mesh())),
+        },
         step: stored.step,
         stage: stored.stage.map(|stage| match stage {
             StageV1::Solve => Stage::Solve,

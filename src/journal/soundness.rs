@@ -1,7 +1,7 @@
 //! What a mesh and a state must hold so that no later code can stumble over them, whoever wrote them.
 
 use crate::scene::{Drive, Scene, Stage};
-use crate::spline::{DEGREES, KnotFlaw, check_knots};
+use crate::spline::{DEGREES, KnotFlaw, Patch, check_knots};
 use crate::state::{
     Course, CriticalAhead, DriveMemory, Estimate, Mesh, PathMemory, Previous, Refinement, State, StepControl,
 };
@@ -119,14 +119,22 @@ fn finite(what: &'static str, values: impl IntoIterator<Item = f64, IntoIter: Cl
     }
 }
 
-/// Checks that a mesh is a tensor-product spline surface with finite numbers: open, nondecreasing knots, interior
-/// multiplicities up to the degree, and as many control points as the knots ask for.
+/// Checks that a mesh has patches, each a tensor-product spline surface with finite numbers.
 ///
 /// # Errors
 /// The first flaw.
 pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
+    match mesh.patches.is_empty() {
+        true => Err(Flaw::Length { what: "patches", expected: 1, found: 0 }),
+        false => mesh.patches.iter().try_for_each(check_patch),
+    }
+}
+
+/// Checks that a patch is a tensor-product spline surface with finite numbers: open, nondecreasing knots, interior
+/// multiplicities up to the degree, and as many control points as the knots ask for.
+fn check_patch(patch: &Patch) -> Result<(), Flaw> {
     for direction in 0..2 {
-        let (degree, knots) = (mesh.degree[direction], &mesh.knots[direction]);
+        let (degree, knots) = (patch.degree[direction], &patch.knots[direction]);
         if !DEGREES.contains(&degree) {
             return Err(Flaw::Degree { direction, degree });
         }
@@ -141,13 +149,13 @@ pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
             }
         })?;
     }
-    let expected = mesh.grid().len();
-    if mesh.control_points.len() != expected {
-        return Err(Flaw::Length { what: "control points", expected, found: mesh.control_points.len() });
+    let expected = patch.grid().len();
+    if patch.control_points.len() != expected {
+        return Err(Flaw::Length { what: "control points", expected, found: patch.control_points.len() });
     }
-    finite("control point coordinate", mesh.control_points.iter().flatten().copied())?;
-    match mesh.control_points.iter().position(|point| point[3] <= 0.0) {
-        Some(index) => Err(Flaw::Weight { index, value: mesh.control_points[index][3] }),
+    finite("control point coordinate", patch.control_points.iter().flatten().copied())?;
+    match patch.control_points.iter().position(|point| point[3] <= 0.0) {
+        Some(index) => Err(Flaw::Weight { index, value: patch.control_points[index][3] }),
         None => Ok(()),
     }
 }
@@ -159,6 +167,41 @@ pub fn check_mesh(mesh: &Mesh) -> Result<(), Flaw> {
 pub fn check_state(state: &State) -> Result<(), Flaw> {
     check_mesh(&state.mesh)?;
     check_on_mesh(state)
+}
+
+fn of_each_patch(what: &'static str, mesh: &Mesh, found: usize) -> Result<(), Flaw> {
+    let expected = mesh.patches.len();
+    if found == expected { Ok(()) } else { Err(Flaw::Length { what, expected, found }) }
+}
+
+/// Checks that a refined patch has every knot of the patch, and more.
+fn check_finer(patch: &Patch, refined: &Patch) -> Result<(), Flaw> {
+    for direction in 0..2 {
+        if refined.degree[direction] != patch.degree[direction] {
+            return Err(Flaw::Degree { direction, degree: refined.degree[direction] });
+        }
+        let mut finer = refined.knots[direction].iter();
+        if let Some(&value) = patch.knots[direction].iter().find(|&knot| !finer.any(|other| other == knot)) {
+            return Err(Flaw::ForeignKnot { what: "the mesh's", direction, value });
+        }
+    }
+    Ok(())
+}
+
+/// Checks that marked knots lie inside a patch, and that superfluous ones are its own.
+fn check_lists(patch: &Patch, marked: &[Vec<f64>; 2], superfluous: &[Vec<f64>; 2]) -> Result<(), Flaw> {
+    for direction in 0..2 {
+        let knots = &patch.knots[direction];
+        for &value in &marked[direction] {
+            if !(value > knots[0] && value < knots[knots.len() - 1]) {
+                return Err(Flaw::ForeignKnot { what: "marked", direction, value });
+            }
+        }
+        if let Some(&value) = superfluous[direction].iter().find(|value| !knots.contains(value)) {
+            return Err(Flaw::ForeignKnot { what: "superfluous", direction, value });
+        }
+    }
+    Ok(())
 }
 
 /// The same of a state whose mesh is sound.
@@ -183,29 +226,15 @@ pub(super) fn check_on_mesh(state: &State) -> Result<(), Flaw> {
     } = state;
     if let Some(refined) = refined {
         check_mesh(refined)?;
-        for direction in 0..2 {
-            if refined.degree[direction] != mesh.degree[direction] {
-                return Err(Flaw::Degree { direction, degree: refined.degree[direction] });
-            }
-            // The refined mesh has every knot of the mesh, and more.
-            let mut finer = refined.knots[direction].iter();
-            if let Some(&value) = mesh.knots[direction].iter().find(|&knot| !finer.any(|other| other == knot)) {
-                return Err(Flaw::ForeignKnot { what: "the mesh's", direction, value });
-            }
-        }
+        of_each_patch("refined patches", mesh, refined.patches.len())?;
+        mesh.patches.iter().zip(&refined.patches).try_for_each(|(patch, finer)| check_finer(patch, finer))?;
     }
-    for direction in 0..2 {
-        let knots = &mesh.knots[direction];
-        for &value in &marked[direction] {
-            if !(value > knots[0] && value < knots[knots.len() - 1]) {
-                return Err(Flaw::ForeignKnot { what: "marked", direction, value });
-            }
-        }
-        if let Some(&value) = superfluous[direction].iter().find(|value| !knots.contains(value)) {
-            return Err(Flaw::ForeignKnot { what: "superfluous", direction, value });
-        }
+    of_each_patch("lists of marked knots", mesh, marked.len())?;
+    of_each_patch("lists of superfluous knots", mesh, superfluous.len())?;
+    for (patch, (marked, superfluous)) in mesh.patches.iter().zip(marked.iter().zip(superfluous)) {
+        check_lists(patch, marked, superfluous)?;
     }
-    let expected = mesh.control_points.len();
+    let expected = mesh.point_count();
     let fits = |what, found| if found == expected { Ok(()) } else { Err(Flaw::Length { what, expected, found }) };
     fits("displacements", displacement.len())?;
     finite("displacement component", displacement.as_flattened().iter().copied())?;
@@ -273,9 +302,11 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
         estimate,
     } = state;
     let foreign = |what| Err(Flaw::Foreign { what });
-    for direction in 0..2 {
-        if mesh.degree[direction] != scene.mesh.degree[direction] {
-            return Err(Flaw::Degree { direction, degree: mesh.degree[direction] });
+    of_each_patch("shells of the scene", mesh, scene.shell_count())?;
+    for (shell, patch) in mesh.patches.iter().enumerate() {
+        let degree = scene.of_shell(shell).mesh.degree;
+        if let Some(direction) = (0..2).find(|direction| patch.degree[*direction] != degree[*direction]) {
+            return Err(Flaw::Degree { direction, degree: patch.degree[direction] });
         }
     }
     let follows_a_path = scenes.iter().any(|scene| Drive::of(scene).follows_path());
@@ -286,8 +317,10 @@ pub(super) fn check_made_by(state: &State, scenes: &[&Scene]) -> Result<(), Flaw
     };
     match stage {
         Some(stage) if !is_stage(stage) => return foreign("a stage of another pipeline"),
-        _ if !refines && marked.iter().any(|knots| !knots.is_empty()) => return foreign("marked knot spans"),
-        _ if !refines && superfluous.iter().any(|knots| !knots.is_empty()) => return foreign("superfluous knots"),
+        _ if !refines && marked.iter().flatten().any(|knots| !knots.is_empty()) => return foreign("marked knot spans"),
+        _ if !refines && superfluous.iter().flatten().any(|knots| !knots.is_empty()) => {
+            return foreign("superfluous knots");
+        }
         _ if !refines && estimate.is_some() => return foreign("an estimate of its error"),
         _ if !refines && refined.is_some() => return foreign("a refined mesh"),
         _ if !refines && refinement.is_some() => return foreign("a memory of refining"),

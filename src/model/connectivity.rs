@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::spline::{Grid, Mesh};
+use crate::spline::{Grid, Patch};
 
 /// Elements with their control points, and the order of sums over them.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +61,7 @@ impl Connectivity {
     /// Creates the connectivity of a tensor-product mesh, on a grid of elements whose first control index in each
     /// direction is `first`: a strand for each column of elements across the first direction. Columns that are p₁ + 1
     /// apart share no control point.
-    pub fn of_tensor_product(mesh: &Mesh, first: &[Vec<usize>; 2]) -> Self {
+    pub fn of_tensor_product(mesh: &Patch, first: &[Vec<usize>; 2]) -> Self {
         let elements = Grid::new(first.each_ref().map(Vec::len));
         let controls: Vec<Vec<usize>> = (0..elements.len())
             .map(|element| {
@@ -83,6 +83,16 @@ impl Connectivity {
         let elements: Vec<Vec<usize>> = (0..self.elements()).map(renumbered).collect();
         let lengths: Vec<usize> = self.strands.iter().map(|strand| strand.elements.len()).collect();
         Self::new(points, &elements, &lengths, self.colours.len())
+    }
+
+    /// Returns the same elements as a part of a structure of so many `points`, in which the first control point of this part
+    /// has the number `first`. The order of sums stays.
+    pub fn shifted(mut self, points: usize, first: usize) -> Self {
+        self.points = points;
+        self.controls.iter_mut().for_each(|control| *control += first);
+        let runs = self.strands.iter_mut().flat_map(|strand| &mut strand.runs);
+        runs.for_each(|run| *run = run.start + first..run.end + first);
+        self
     }
 
     /// Number of control points.

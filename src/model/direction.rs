@@ -1,6 +1,6 @@
 //! Directions that the undeformed surface defines at a point.
 
-use crate::scene::{Edge, Geometry, ParametricDirection, SurfaceDirection};
+use crate::scene::{Edge, ParametricDirection, Scene, SurfaceDirection};
 use crate::shell::{cross, dot, norm, scaled, sub};
 
 /// A point of the undeformed surface.
@@ -16,11 +16,11 @@ pub struct Site {
 
 /// Unit vector of a direction at a point; zero where there is none: on the axis, away from an edge, and where the
 /// surface collapses.
-pub fn direction_at(geometry: &Geometry, site: &Site, direction: SurfaceDirection) -> [f64; 3] {
+pub fn direction_at(scene: &Scene, site: &Site, direction: SurfaceDirection) -> [f64; 3] {
     let [a1, a2] = site.tangents;
     let vector = match direction {
         SurfaceDirection::Normal => cross(a1, a2),
-        SurfaceDirection::Radial => geometry.away_from_centre(site.position).unwrap_or_default(),
+        SurfaceDirection::Radial => scene.away_from_centre(site.position).unwrap_or_default(),
         SurfaceDirection::Outward => site.edge.map_or([0.0; 3], |edge| outward(site.tangents, edge)),
     };
     let length = norm(vector);

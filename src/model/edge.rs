@@ -3,8 +3,8 @@
 use crate::model::ModelError;
 use crate::model::gauss::span_points;
 use crate::scene::Edge;
-use crate::shell::{cross, dot, norm, scaled, sub};
-use crate::spline::{Mesh, SurfacePoint, mid_surface_point};
+use crate::shell::{add, cross, dot, norm, scaled, sub};
+use crate::spline::{Patch, SurfacePoint, mid_surface_point};
 
 /// Control points of an edge and of the row next to it, in the order of the growing parameter along it.
 #[derive(Clone, Debug)]
@@ -18,6 +18,27 @@ pub struct EdgeRows {
     pub normals: Vec<[f64; 3]>,
     /// Centroid of the undeformed edge, mm.
     pub centroid: [f64; 3],
+    /// Length of the undeformed edge, mm.
+    pub length: f64,
+}
+
+impl EdgeRows {
+    /// Renumbers control points as those of a structure in which the first of the patch has the number `first`.
+    pub fn shifted(mut self, first: usize) -> Self {
+        self.outer.iter_mut().chain(&mut self.inner).for_each(|point| *point += first);
+        self
+    }
+
+    /// Takes the rows of another edge in: both are one section.
+    pub fn join(&mut self, other: Self) {
+        let length = self.length + other.length;
+        let share = other.length / length;
+        self.centroid = add(scaled(1.0 - share, self.centroid), scaled(share, other.centroid));
+        self.length = length;
+        self.outer.extend(other.outer);
+        self.inner.extend(other.inner);
+        self.normals.extend(other.normals);
+    }
 }
 
 /// Largest number of Newton steps to the nearest point; they converge quadratically from a start within the span.
@@ -29,19 +50,20 @@ const CENTROID_POINTS: usize = 8;
 ///
 /// # Errors
 /// Where the surface has no normal on the edge.
-pub fn edge_rows(mesh: &Mesh, edge: Edge) -> Result<EdgeRows, ModelError> {
-    let [outer, inner] = rows_of(mesh, edge);
-    let normals = inner.iter().enumerate().map(|(j, control)| normal_beside(mesh, edge, j, *control));
-    Ok(EdgeRows { normals: normals.collect::<Result<_, _>>()?, centroid: centroid(mesh, edge), outer, inner })
+pub fn edge_rows(patch: &Patch, edge: Edge) -> Result<EdgeRows, ModelError> {
+    let [outer, inner] = rows_of(patch, edge);
+    let normals = inner.iter().enumerate().map(|(j, control)| normal_beside(patch, edge, j, *control));
+    let (centroid, length) = centroid(patch, edge);
+    Ok(EdgeRows { normals: normals.collect::<Result<_, _>>()?, centroid, length, outer, inner })
 }
 
 /// Control points of an edge, and of the row next to it.
-pub fn rows_of(mesh: &Mesh, edge: Edge) -> [Vec<usize>; 2] {
+pub fn rows_of(patch: &Patch, edge: Edge) -> [Vec<usize>; 2] {
     let (direction, at_end) = side(edge);
-    let count = mesh.control_counts()[direction];
+    let count = patch.control_counts()[direction];
     [0, 1].map(|k| {
         let along = if at_end { count - 1 - k } else { k };
-        mesh.grid().line(direction, along).collect()
+        patch.grid().line(direction, along).collect()
     })
 }
 
@@ -52,21 +74,21 @@ pub fn side(edge: Edge) -> (usize, bool) {
 }
 
 /// Evaluates the point of an edge at a parameter along it.
-pub fn on_edge(mesh: &Mesh, edge: Edge, parameter: f64) -> SurfacePoint {
+pub fn on_edge(patch: &Patch, edge: Edge, parameter: f64) -> SurfacePoint {
     let (direction, at_end) = side(edge);
     let end = if at_end { 1.0 } else { 0.0 };
-    mid_surface_point(mesh, &[], if direction == 0 { [end, parameter] } else { [parameter, end] })
+    mid_surface_point(patch, &[], if direction == 0 { [end, parameter] } else { [parameter, end] })
 }
 
 /// Finds the normal at the point of the edge from which the inner control point lies at right angles to the edge.
-fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f64; 3], ModelError> {
+fn normal_beside(patch: &Patch, edge: Edge, j: usize, control: usize) -> Result<[f64; 3], ModelError> {
     let (direction, _) = side(edge);
     let running = 1 - direction;
-    let target = mesh.point(control);
-    let degree = mesh.degree[running];
-    let mut parameter = mesh.knots[running][j + 1..j + 1 + degree].iter().sum::<f64>() / degree as f64;
+    let target = patch.point(control);
+    let degree = patch.degree[running];
+    let mut parameter = patch.knots[running][j + 1..j + 1 + degree].iter().sum::<f64>() / degree as f64;
     for _ in 0..NEWTON_STEPS {
-        let point = on_edge(mesh, edge, parameter);
+        let point = on_edge(patch, edge, parameter);
         let (tangent, second) = (point.derivatives[running], point.derivatives[2 + running]);
         let gap = sub(point.position, target);
         let slope = dot(tangent, tangent) + dot(gap, second);
@@ -76,7 +98,7 @@ fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f
             break;
         }
     }
-    let point = on_edge(mesh, edge, parameter);
+    let point = on_edge(patch, edge, parameter);
     let normal = cross(point.derivatives[0], point.derivatives[1]);
     let scale = norm(point.derivatives[0]) * norm(point.derivatives[1]);
     if norm(normal) <= 1e-12 * scale || scale == 0.0 {
@@ -85,32 +107,33 @@ fn normal_beside(mesh: &Mesh, edge: Edge, j: usize, control: usize) -> Result<[f
     Ok(scaled(1.0 / norm(normal), normal))
 }
 
-fn centroid(mesh: &Mesh, edge: Edge) -> [f64; 3] {
+/// Computes the centroid of an edge and its length, mm.
+fn centroid(patch: &Patch, edge: Edge) -> ([f64; 3], f64) {
     let (direction, _) = side(edge);
     let running = 1 - direction;
     let (mut length, mut moment) = (0.0, [0.0; 3]);
-    for [parameter, weight] in span_points(mesh, running, CENTROID_POINTS) {
-        let point = on_edge(mesh, edge, parameter);
+    for [parameter, weight] in span_points(patch, running, CENTROID_POINTS) {
+        let point = on_edge(patch, edge, parameter);
         let share = weight * norm(point.derivatives[running]);
         length += share;
         (0..3).for_each(|c| moment[c] += share * point.position[c]);
     }
-    scaled(1.0 / length, moment)
+    (scaled(1.0 / length, moment), length)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::starting_mesh;
+    use crate::model::starting_patch;
     use crate::scene::parse;
 
     #[test]
     fn the_end_of_a_tape_spring_has_radial_normals_and_the_centroid_of_an_arc() {
         let scene = parse(include_str!("../../pipelines/baseline.toml"), "baseline.toml").unwrap();
-        let mesh = starting_mesh(&scene).unwrap();
-        let rows = edge_rows(&mesh, Edge::UStart).unwrap();
+        let patch = starting_patch(&scene).unwrap();
+        let rows = edge_rows(&patch, Edge::UStart).unwrap();
         for (control, normal) in rows.inner.iter().zip(&rows.normals) {
-            let [_, y, z, _] = mesh.control_points[*control];
+            let [_, y, z, _] = patch.control_points[*control];
             let radius = y.hypot(z);
             assert!(
                 normal[0].abs() < 1e-12

@@ -1,6 +1,7 @@
 //! The errors of scenes that cannot be made discrete.
 
 use crate::model::limits::{MOST_CONTROL_POINTS, SMOOTH};
+use crate::spline::Elements;
 use crate::units::significant;
 
 impl ModelError {
@@ -266,6 +267,62 @@ pub enum ModelError {
         /// Distance up to which they count as coinciding, mm.
         tolerance_mm: String,
     },
+    /// A rigid section cannot take a load.
+    #[error(
+        "section \"{section}\": {what} cannot act on it; choose another axis or reference point, or load the shell itself"
+    )]
+    SectionWithoutExtent {
+        /// Name of the support.
+        section: String,
+        /// What cannot act, and why.
+        what: &'static str,
+    },
+    /// The edges of a joint do not meet.
+    #[error(
+        "joint \"{joint}\": its edges are {} mm apart at {at}, and edges that are at most {} mm apart are joined; move one of the \
+         shells, or name other edges",
+        significant(*distance, 3),
+        significant(*most, 3)
+    )]
+    EdgesApart {
+        /// Name of the joint.
+        joint: String,
+        /// Largest distance, mm.
+        distance: f64,
+        /// Where.
+        at: String,
+        /// Distance at which edges still meet, mm.
+        most: f64,
+    },
+    /// The faces of two shells that are to be glued lie together nowhere.
+    #[error(
+        "bond \"{bond}\": {}, and faces that are at most {} mm apart are glued; move one of the shells, or write a larger `gap_mm`",
+        match gap {
+            Some(gap) => format!("the faces of its shells are {} mm apart where they are nearest, at {at}", significant(*gap, 3)),
+            None => "the faces of its shells do not face each other".to_owned(),
+        },
+        significant(*most, 3)
+    )]
+    NothingGlued {
+        /// Name of the bond.
+        bond: String,
+        /// Smallest distance of faces that face each other, mm.
+        gap: Option<f64>,
+        /// Where.
+        at: String,
+        /// Distance at which faces are still glued, mm.
+        most: f64,
+    },
+    /// Shells that are to be glued cross each other.
+    #[error("bond \"{bond}\": its shells cross each other by {} mm at {at}; move them apart by the sum of half their thicknesses", significant(*by, 3))]
+    ShellsCross {
+        /// Name of the bond.
+        bond: String,
+        /// Depth, mm.
+        by: f64,
+        /// Where.
+        at: String,
+    },
     /// There are fewer elements than the surface has knot spans.
     #[error(
         "{asked} element(s) in {direction} are fewer than the {least} spans between the knots of the surface there: write at \
@@ -418,24 +475,20 @@ pub enum ModelError {
     },
     /// The supports hold every control point.
     #[error(
-        "the supports hold every control point of {} × {} elements: nothing is left to solve for; write more in mesh.elements, or hold less",
-        elements[0],
-        elements[1]
+        "the supports hold every control point of {elements} elements: nothing is left to solve for; write more in mesh.elements, or hold less"
     )]
     NothingFree {
         /// Number of elements of the model in each direction.
-        elements: [usize; 2],
+        elements: Elements,
     },
     /// The mesh has more control points than the program takes on.
     #[error(
-        "{} × {} elements have {count} control points, and this program takes at most {MOST_CONTROL_POINTS}: write fewer in \
-         mesh.elements, and let the mesh refine itself where it has to",
-        elements[0],
-        elements[1]
+        "{elements} elements have {count} control points, and this program takes at most {MOST_CONTROL_POINTS}: write fewer in \
+         mesh.elements, and let the mesh refine itself where it has to"
     )]
     TooManyControlPoints {
         /// Number of elements of the model in each direction.
-        elements: [usize; 2],
+        elements: Elements,
         /// Number of control points.
         count: usize,
     },

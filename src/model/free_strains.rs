@@ -3,7 +3,7 @@
 use crate::model::gauss::span_points;
 use crate::scene::{Action, ActionKind, History, Scene};
 use crate::shell::{FreeStrain, cross, norm, thermal_strain};
-use crate::spline::{Mesh, mid_surface_point};
+use crate::spline::{Patch, mid_surface_point};
 
 /// Free strain of the shell as a function of the scene's parameter.
 #[derive(Debug, Default)]
@@ -47,7 +47,7 @@ impl Source {
 
 impl FreeStrains {
     /// Computes the free strains of a scene's actions on a mesh.
-    pub fn new(scene: &Scene, mesh: &Mesh) -> Self {
+    pub fn new(scene: &Scene, mesh: &Patch) -> Self {
         let sources: Vec<Source> = scene.actions.iter().filter_map(Source::of).collect();
         // Reading the scene has checked that the material has expansions where the temperature changes.
         let thermal = thermal_strain(&scene.material).filter(|_| !sources.is_empty());
@@ -91,7 +91,7 @@ impl FreeStrains {
 }
 
 /// Area of the undeformed surface, mm².
-fn reference_area(mesh: &Mesh) -> f64 {
+fn reference_area(mesh: &Patch) -> f64 {
     let [along, across] = [0, 1].map(|direction| span_points(mesh, direction, mesh.degree[direction] + 1));
     let points = along.iter().flat_map(|one| across.iter().map(move |two| (one, two)));
     points

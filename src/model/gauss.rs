@@ -1,7 +1,7 @@
 //! Gauss points in the parameters of a mesh.
 
 use crate::shell::gauss_legendre;
-use crate::spline::{Mesh, Spans};
+use crate::spline::{Patch, Spans};
 
 /// Parameters and weights of `count` Gauss points on an interval.
 pub fn gauss_points([from, to]: [f64; 2], count: usize) -> impl Iterator<Item = [f64; 2]> {
@@ -10,7 +10,7 @@ pub fn gauss_points([from, to]: [f64; 2], count: usize) -> impl Iterator<Item = 
 }
 
 /// Parameters and weights of the Gauss points of all spans in a direction, `count` on each.
-pub fn span_points(mesh: &Mesh, direction: usize, count: usize) -> Vec<[f64; 2]> {
-    let spans = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
+pub fn span_points(patch: &Patch, direction: usize, count: usize) -> Vec<[f64; 2]> {
+    let spans = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
     spans.into_iter().flat_map(|span| gauss_points(span, count)).collect()
 }

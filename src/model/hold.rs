@@ -2,14 +2,17 @@
 
 use crate::model::ModelError;
 use crate::model::edge::{EdgeRows, edge_rows};
+use crate::model::edge_pair::edge_pairs;
+use crate::model::edge_ties::is_tied_smoothly;
 use crate::model::elimination::Expression;
-use crate::model::expressions::control_expressions;
+use crate::model::expressions::{control_expressions, shifted};
+use crate::model::member::{Member, members};
 use crate::model::mirror::Mirror;
 use crate::model::scene_supports::supports_of;
 use crate::model::supports::{Footprint, PrescribedMotion, Section, Supports};
 use crate::model::symmetric_line::Line;
 use crate::model::ties::Ties;
-use crate::scene::{Hold, Motion, Region, Scene, Support};
+use crate::scene::{Hold, Motion, Region, Scene, ShellEdge, Support};
 use crate::shell::{add, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
@@ -19,10 +22,9 @@ impl Supports {
     /// # Errors
     /// Where a support does not fit the surface, or two contradict each other.
     pub fn new(scene: &Scene, mesh: &Mesh) -> Result<Self, ModelError> {
-        let count = mesh.control_points.len();
         let mut supports = Self {
             sections: Vec::new(),
-            section_of: vec![None; count],
+            section_of: vec![None; mesh.point_count()],
             constraints: Vec::new(),
             displacements: Vec::new(),
             footprints: Vec::new(),
@@ -30,7 +32,14 @@ impl Supports {
             held_motions: None,
         };
         let all = supports_of(scene);
-        let ties = Ties::new(scene, mesh, &all)?;
+        let members = members(scene, mesh);
+        let pairs = edge_pairs(scene, &members)?;
+        let ties = members.iter().map(|member| {
+            let smooth = pairs.iter().filter(|pair| is_tied_smoothly(pair)).flat_map(|pair| pair.edges);
+            let own = smooth.filter(|edge| edge.at.shell == member.index).map(|edge| edge.at.edge);
+            Ties::new(&member.scene, member.patch, &member.supports(&all), own)
+        });
+        let ties = ties.collect::<Result<Vec<Ties>, _>>()?;
         let points: Vec<[f64; 3]> = mesh.points().collect();
         // Sections come first: other supports of their control points must know their frames.
         for (index, support) in all.iter().enumerate() {
@@ -43,33 +52,53 @@ impl Supports {
                 section: None,
             });
             if let (Hold::Rigid { .. }, Region::Edge(edge)) = (&support.hold, support.on) {
-                supports.hold_rigidly(index, support, &ties.rows(mesh, edge)?, &points)?;
+                let first = &members[support.shell];
+                let mut rows = ties[support.shell].rows(first.patch, edge)?.shifted(first.points.start);
+                for ShellEdge { shell, edge } in support.also.iter().copied() {
+                    let member = &members[shell];
+                    rows.join(ties[shell].rows(member.patch, edge)?.shifted(member.points.start));
+                }
+                supports.hold_rigidly(index, support, &rows, &points)?;
             }
         }
-        let mut mirrors = Mirror::all(scene, &all, mesh)?.into_iter();
-        for (index, support) in all.iter().enumerate() {
+        for member in &members {
+            supports.hold_member(member, &all, &points)?;
+        }
+        for (member, ties) in members.iter().zip(&ties) {
+            supports.tie(ties, member);
+        }
+        supports.tie_edges(&pairs, &members, &all);
+        // What the other supports leave free is known only at the end.
+        for (index, _) in all.iter().enumerate().filter(|(_, support)| support.hold == Hold::RigidMotions) {
+            supports.hold_rigid_motions(index, &members, &points)?;
+        }
+        supports.check_frames()?;
+        Ok(supports)
+    }
+
+    /// Holds one shell of a structure by its planes of symmetry and given displacements.
+    fn hold_member(&mut self, member: &Member, all: &[Support], points: &[[f64; 3]]) -> Result<(), ModelError> {
+        let Member { scene, patch, points: range, .. } = member;
+        let mut mirrors = Mirror::all(scene, &member.supports(all), patch)?.into_iter();
+        for (index, support) in all.iter().enumerate().filter(|(_, support)| support.shell == member.index) {
             match (&support.hold, support.on) {
                 (Hold::Rigid { .. } | Hold::RigidMotions, _) => {}
                 (Hold::Symmetric, on) => {
                     let Some(mirror) = mirrors.next() else { continue };
                     match on {
-                        Region::Edge(edge) => supports.mirror(index, &edge_rows(mesh, edge)?, &mirror)?,
-                        _ => supports.mirror_line(index, mesh, &mirror)?,
+                        Region::Edge(edge) => {
+                            self.mirror(index, &edge_rows(patch, edge)?.shifted(range.start), &mirror)?;
+                        }
+                        _ => self.mirror_line(index, member, &mirror)?,
                     }
                 }
                 (Hold::Displacement { displacement_mm }, on) => {
-                    let places = control_expressions(scene, mesh, on)?;
-                    supports.displace(index, support, *displacement_mm, &places, &points)?;
+                    let places = shifted(control_expressions(scene, patch, on)?, range.start);
+                    self.displace(index, support, *displacement_mm, &places, points)?;
                 }
             }
         }
-        supports.tie(&ties, mesh);
-        // What the other supports leave free is known only at the end.
-        for (index, _) in all.iter().enumerate().filter(|(_, support)| support.hold == Hold::RigidMotions) {
-            supports.hold_rigid_motions(index, scene, mesh, &points)?;
-        }
-        supports.check_frames()?;
-        Ok(supports)
+        Ok(())
     }
 
     /// Holds a clamped edge, or a rigid section with motions of its own.
@@ -148,22 +177,24 @@ impl Supports {
     }
 
     /// Holds a line inside in a plane of symmetry: no displacement across it, and slopes that are even on both sides.
-    fn mirror_line(&mut self, index: usize, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
-        let line = Line::new(mesh, mirror.direction, mirror.parameter).map_err(|reason| {
+    fn mirror_line(&mut self, index: usize, member: &Member, mirror: &Mirror) -> Result<(), ModelError> {
+        let line = Line::new(member.patch, mirror.direction, mirror.parameter).map_err(|reason| {
             ModelError::NotASymmetryPlane { support: mirror.support.clone(), reason: reason.to_string() }
         })?;
-        let points: Vec<usize> = line.places.iter().chain(&line.slopes).flatten().map(|(point, _)| *point).collect();
+        let first = member.points.start;
+        let [places, slopes] = [&line.places, &line.slopes].map(|sums| shifted(sums.clone(), first));
+        let points: Vec<usize> = places.iter().chain(&slopes).flatten().map(|(point, _)| *point).collect();
         self.check_sections_keep(&points, mirror)?;
         let directed = |sum: &[(usize, f64)], direction: [f64; 3]| -> Expression {
             let of_point = |(point, factor): &(usize, f64)| along(*point, scaled(*factor, direction));
             sum.iter().flat_map(of_point).collect()
         };
-        for (place, slope) in line.places.iter().zip(&line.slopes) {
+        for (place, slope) in places.iter().zip(&slopes) {
             self.push(Some(index), directed(place, mirror.normal));
             let tangents = in_plane(mirror.normal);
             tangents.into_iter().for_each(|direction| self.push(Some(index), directed(slope, direction)));
         }
-        let curve = line.points(mesh);
+        let curve = line.points(member.patch);
         let share = 1.0 / curve.len() as f64;
         let middle = curve.iter().fold([0.0; 3], |sum, x| add(sum, scaled(share, *x)));
         let footprint = &mut self.footprints[index];
@@ -216,15 +247,15 @@ impl Supports {
     }
 
     /// Adds the constraints of C¹ joints of segments, and of seams.
-    fn tie(&mut self, ties: &Ties, mesh: &Mesh) {
-        let grid = mesh.grid();
+    fn tie(&mut self, ties: &Ties, member: &Member) {
+        let (grid, first) = (member.patch.grid(), member.points.start);
         let counts = grid.counts;
         for direction in 0..2 {
             for across in 0..counts[1 - direction] {
                 for joint in ties.joints[direction].iter().chain(&ties.seam[direction]) {
                     let total = joint.before_weight + joint.after_weight;
                     for c in 0..3 {
-                        let component = |along: usize| 3 * grid.index_along(direction, along, across) + c;
+                        let component = |along: usize| 3 * (first + grid.index_along(direction, along, across)) + c;
                         self.push(
                             None,
                             vec![
@@ -238,7 +269,7 @@ impl Supports {
                 if !ties.seam[direction].is_empty() {
                     let last = counts[direction] - 1;
                     for c in 0..3 {
-                        let component = |along: usize| 3 * grid.index_along(direction, along, across) + c;
+                        let component = |along: usize| 3 * (first + grid.index_along(direction, along, across)) + c;
                         self.push(None, vec![(component(last), 1.0), (component(0), -1.0)]);
                     }
                 }

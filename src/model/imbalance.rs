@@ -17,7 +17,7 @@
 //! their moment over l.
 
 use crate::shell::{add, cross, dot, gauss_legendre, norm, scaled, sub};
-use crate::spline::{Mesh, Spans, basis_derivatives, basis_derivatives_len, cartesian, find_span};
+use crate::spline::{Patch, Spans, basis_derivatives, basis_derivatives_len, cartesian, find_span};
 
 /// Number of points beyond the degree at which the forces are exact.
 const EXACT_MORE: usize = 6;
@@ -26,8 +26,8 @@ const SECTIONS: [f64; 3] = [0.02, 0.5, 0.98];
 
 /// Computes the imbalance of `counts` Gauss points on the elements of one direction; dimensionless.
 /// `stretching_over_bending` is A/D, 1/mm².
-pub(super) fn imbalance(mesh: &Mesh, direction: usize, counts: &[usize], stretching_over_bending: f64) -> f64 {
-    let sections = SECTIONS.iter().map(|share| Section::new(mesh, direction, *share));
+pub(super) fn imbalance(patch: &Patch, direction: usize, counts: &[usize], stretching_over_bending: f64) -> f64 {
+    let sections = SECTIONS.iter().map(|share| Section::new(patch, direction, *share));
     sections.map(|section| section.imbalance(counts, stretching_over_bending)).fold(0.0, largest)
 }
 
@@ -47,29 +47,29 @@ struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// Creates the section along `direction` at a share of the other direction's range.
-    fn new(mesh: &'a Mesh, direction: usize, share: f64) -> Self {
+    fn new(patch: &'a Patch, direction: usize, share: f64) -> Self {
         let other = 1 - direction;
-        let (knots, degree) = (&mesh.knots[other], mesh.degree[other]);
+        let (knots, degree) = (&patch.knots[other], patch.degree[other]);
         let (from, to) = (knots[0], knots[knots.len() - 1]);
         let parameter = from + share * (to - from);
         let span = find_span(knots, degree, parameter);
         let mut basis = vec![0.0; basis_derivatives_len(degree)];
         basis_derivatives(knots, degree, span, parameter, &mut basis);
-        let grid = mesh.grid();
+        let grid = patch.grid();
         let combined = |functions: &[f64]| -> Vec<[f64; 4]> {
             let at = |i: usize| {
                 let of_row = functions.iter().enumerate().map(|(a, share)| {
                     let row = span - degree + a;
-                    mesh.control_points[grid.index_along(direction, i, row)].map(|number| share * number)
+                    patch.control_points[grid.index_along(direction, i, row)].map(|number| share * number)
                 });
                 of_row.fold([0.0; 4], |sum, term| [0, 1, 2, 3].map(|c| sum[c] + term[c]))
             };
             (0..grid.counts[direction]).map(at).collect()
         };
         Self {
-            degree: mesh.degree[direction],
-            knots: &mesh.knots[direction],
-            spans: Spans::of(&mesh.knots[direction], mesh.degree[direction]),
+            degree: patch.degree[direction],
+            knots: &patch.knots[direction],
+            spans: Spans::of(&patch.knots[direction], patch.degree[direction]),
             line: combined(&basis[..=degree]),
             beside: combined(&basis[degree + 1..2 * (degree + 1)]),
         }

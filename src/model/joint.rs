@@ -9,7 +9,7 @@
 use crate::model::ModelError;
 use crate::model::limits::SMOOTH;
 use crate::shell::{add, cross, dot, norm, scaled, sub};
-use crate::spline::Mesh;
+use crate::spline::{Patch, cartesian};
 
 /// Three neighbouring lines of control points of which the middle one follows from the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,10 +30,10 @@ pub struct Joint {
 ///
 /// # Errors
 /// Where the geometry is not smooth there.
-pub fn joints(mesh: &Mesh, direction: usize) -> Result<Vec<Joint>, ModelError> {
-    let degree = mesh.degree[direction];
-    let knots = &mesh.knots[direction];
-    let count = mesh.control_counts()[direction];
+pub fn joints(patch: &Patch, direction: usize) -> Result<Vec<Joint>, ModelError> {
+    let degree = patch.degree[direction];
+    let knots = &patch.knots[direction];
+    let count = patch.control_counts()[direction];
     (degree + 1..count)
         .filter(|k| knots[*k] < knots[k + 1] && knots[k + 1 - degree] == knots[*k])
         .map(|last| {
@@ -41,7 +41,7 @@ pub fn joints(mesh: &Mesh, direction: usize) -> Result<Vec<Joint>, ModelError> {
             let index = last - degree;
             let (before, after) = (index - 1, index + 1);
             let spans = [knots[last] - knots[last - degree], knots[last + 1] - knots[last]];
-            smooth(mesh, direction, Joint { index, before, after, before_weight: 0.0, after_weight: 0.0 }, spans)
+            smooth(patch, direction, Joint { index, before, after, before_weight: 0.0, after_weight: 0.0 }, spans)
         })
         .collect()
 }
@@ -50,13 +50,13 @@ pub fn joints(mesh: &Mesh, direction: usize) -> Result<Vec<Joint>, ModelError> {
 ///
 /// # Errors
 /// Where the geometry is not smooth there. The edges must coincide.
-pub fn seam(mesh: &Mesh, direction: usize) -> Result<Joint, ModelError> {
-    let degree = mesh.degree[direction];
-    let knots = &mesh.knots[direction];
-    let last = mesh.control_counts()[direction] - 1;
+pub fn seam(patch: &Patch, direction: usize) -> Result<Joint, ModelError> {
+    let degree = patch.degree[direction];
+    let knots = &patch.knots[direction];
+    let last = patch.control_counts()[direction] - 1;
     let spans = [knots[last + 1] - knots[last], knots[degree + 1] - knots[degree]];
     let joint = Joint { index: 0, before: last - 1, after: 1, before_weight: 0.0, after_weight: 0.0 };
-    smooth(mesh, direction, joint, spans)
+    smooth(patch, direction, joint, spans)
 }
 
 /// Moves the middle line of every joint, and of the seam where the surface is `closed`, on to the straight line between
@@ -65,66 +65,66 @@ pub fn seam(mesh: &Mesh, direction: usize) -> Result<Joint, ModelError> {
 ///
 /// # Errors
 /// Where the surface is not smooth.
-pub fn smoothed(mut mesh: Mesh, closed: [bool; 2]) -> Result<Mesh, ModelError> {
+pub fn smoothed(mut patch: Patch, closed: [bool; 2]) -> Result<Patch, ModelError> {
     for direction in 0..2 {
-        let last = mesh.control_counts()[direction] - 1;
+        let last = patch.control_counts()[direction] - 1;
         if closed[direction] {
-            copy_line(&mut mesh, direction, 0, last);
+            copy_line(&mut patch, direction, 0, last);
         }
-        for joint in joints(&mesh, direction)? {
-            straighten(&mut mesh, direction, joint);
+        for joint in joints(&patch, direction)? {
+            straighten(&mut patch, direction, joint);
         }
         if closed[direction] {
-            let joint = seam(&mesh, direction)?;
-            straighten(&mut mesh, direction, joint);
-            copy_line(&mut mesh, direction, 0, last);
+            let joint = seam(&patch, direction)?;
+            straighten(&mut patch, direction, joint);
+            copy_line(&mut patch, direction, 0, last);
         }
     }
-    Ok(mesh)
+    Ok(patch)
 }
 
-fn straighten(mesh: &mut Mesh, direction: usize, joint: Joint) {
+fn straighten(patch: &mut Patch, direction: usize, joint: Joint) {
     let Joint { index, before, after, before_weight, after_weight } = joint;
     let shares = [before_weight, after_weight].map(|weight| weight / (before_weight + after_weight));
-    for across in 0..mesh.control_counts()[1 - direction] {
-        let [one, other] = [before, after].map(|along| place_of(mesh, direction, along, across));
-        move_to(mesh, direction, [index, across], add(scaled(shares[0], one), scaled(shares[1], other)));
+    for across in 0..patch.control_counts()[1 - direction] {
+        let [one, other] = [before, after].map(|along| place_of(patch, direction, along, across));
+        move_to(patch, direction, [index, across], add(scaled(shares[0], one), scaled(shares[1], other)));
     }
 }
 
-fn copy_line(mesh: &mut Mesh, direction: usize, from: usize, to: usize) {
-    for across in 0..mesh.control_counts()[1 - direction] {
-        let place = place_of(mesh, direction, from, across);
-        move_to(mesh, direction, [to, across], place);
+fn copy_line(patch: &mut Patch, direction: usize, from: usize, to: usize) {
+    for across in 0..patch.control_counts()[1 - direction] {
+        let place = place_of(patch, direction, from, across);
+        move_to(patch, direction, [to, across], place);
     }
 }
 
-fn move_to(mesh: &mut Mesh, direction: usize, [along, across]: [usize; 2], [x, y, z]: [f64; 3]) {
-    let index = mesh.grid().index_along(direction, along, across);
-    let weight = mesh.control_points[index][3];
-    mesh.control_points[index] = [x * weight, y * weight, z * weight, weight];
+fn move_to(patch: &mut Patch, direction: usize, [along, across]: [usize; 2], [x, y, z]: [f64; 3]) {
+    let index = patch.grid().index_along(direction, along, across);
+    let weight = patch.control_points[index][3];
+    patch.control_points[index] = [x * weight, y * weight, z * weight, weight];
 }
 
-fn weight_of(mesh: &Mesh, direction: usize, along: usize, across: usize) -> f64 {
-    mesh.control_points[mesh.grid().index_along(direction, along, across)][3]
+fn weight_of(patch: &Patch, direction: usize, along: usize, across: usize) -> f64 {
+    patch.control_points[patch.grid().index_along(direction, along, across)][3]
 }
 
-fn place_of(mesh: &Mesh, direction: usize, along: usize, across: usize) -> [f64; 3] {
-    mesh.point(mesh.grid().index_along(direction, along, across))
+fn place_of(patch: &Patch, direction: usize, along: usize, across: usize) -> [f64; 3] {
+    patch.point(patch.grid().index_along(direction, along, across))
 }
 
 /// Finds the weights of a joint, and checks them on every line across it.
-fn smooth(mesh: &Mesh, direction: usize, joint: Joint, spans: [f64; 2]) -> Result<Joint, ModelError> {
-    let across = 0..mesh.control_counts()[1 - direction];
+fn smooth(patch: &Patch, direction: usize, joint: Joint, spans: [f64; 2]) -> Result<Joint, ModelError> {
+    let across = 0..patch.control_counts()[1 - direction];
     let legs: Vec<[[f64; 3]; 2]> = across
         .clone()
         .map(|across| {
             let [before, middle, after] =
-                [joint.before, joint.index, joint.after].map(|along| place_of(mesh, direction, along, across));
+                [joint.before, joint.index, joint.after].map(|along| place_of(patch, direction, along, across));
             [sub(middle, before), sub(after, middle)]
         })
         .collect();
-    let at = |across: usize| crate::units::place(place_of(mesh, direction, joint.index, across));
+    let at = |across: usize| crate::units::place(place_of(patch, direction, joint.index, across));
     for (across, [before, after]) in legs.iter().enumerate() {
         let angle = norm(cross(*before, *after)).atan2(dot(*before, *after));
         if angle > SMOOTH {
@@ -132,11 +132,12 @@ fn smooth(mesh: &Mesh, direction: usize, joint: Joint, spans: [f64; 2]) -> Resul
         }
     }
     let uneven = |along: usize| {
-        let ratio =
-            |across: usize| weight_of(mesh, direction, along, across) / weight_of(mesh, direction, joint.index, across);
+        let ratio = |across: usize| {
+            weight_of(patch, direction, along, across) / weight_of(patch, direction, joint.index, across)
+        };
         across.clone().find(|across| (ratio(*across) / ratio(0) - 1.0).abs() > SMOOTH)
     };
-    let knot = || crate::units::significant(knot_of(mesh, direction, joint.index), 6);
+    let knot = || crate::units::significant(knot_of(patch, direction, joint.index), 6);
     let name = ["u", "v"][direction];
     if let Some(across) = uneven(joint.before).or_else(|| uneven(joint.after)) {
         return Err(ModelError::UnevenJoint { direction: name, knot: knot(), at: at(across), what: "weights" });
@@ -149,7 +150,7 @@ fn smooth(mesh: &Mesh, direction: usize, joint: Joint, spans: [f64; 2]) -> Resul
         });
         off.fold((0, 0.0), |worst, one| if one.1 > worst.1 { one } else { worst })
     };
-    let by_parameter = [joint.before, joint.after].map(|along| weight_of(mesh, direction, along, 0));
+    let by_parameter = [joint.before, joint.after].map(|along| weight_of(patch, direction, along, 0));
     let by_parameter = [by_parameter[0] / spans[0], by_parameter[1] / spans[1]];
     let by_length = [0, 1].map(|side| 1.0 / legs.iter().map(|leg| norm(leg[side])).sum::<f64>());
     let shares = [by_parameter, by_length].into_iter().find(|shares| misfit(*shares).1 <= SMOOTH);
@@ -160,7 +161,38 @@ fn smooth(mesh: &Mesh, direction: usize, joint: Joint, spans: [f64; 2]) -> Resul
     Ok(Joint { before_weight, after_weight, ..joint })
 }
 
+/// Shares of the neighbours in the middle points of lines of three control points (homogeneous) that cross a joint of two patches,
+/// where `spans` are the parameters' steps to them, over the degree; `None` where the surface is not smooth there, or where the lines do
+/// not go on in one ratio.
+pub(super) fn shares_across(lines: &[[[f64; 4]; 3]], spans: [f64; 2]) -> Option<[f64; 2]> {
+    let legs: Vec<[[f64; 3]; 2]> = lines
+        .iter()
+        .map(|line| {
+            let [before, middle, after] = line.map(cartesian);
+            [sub(middle, before), sub(after, middle)]
+        })
+        .collect();
+    let is_straight =
+        |[before, after]: &[[f64; 3]; 2]| norm(cross(*before, *after)).atan2(dot(*before, *after)) <= SMOOTH;
+    let ratio = |line: &[[f64; 4]; 3], at: usize| line[at][3] / line[1][3];
+    let is_even =
+        |line: &[[f64; 4]; 3]| [0, 2].iter().all(|at| (ratio(line, *at) / ratio(&lines[0], *at) - 1.0).abs() <= SMOOTH);
+    if !legs.iter().all(is_straight) || !lines.iter().all(is_even) {
+        return None;
+    }
+    let misfit = |[before, after]: [f64; 2]| {
+        let off = legs.iter().map(|[one, other]| {
+            let step = norm(sub(scaled(after, *other), scaled(before, *one)));
+            step / ((before + after) * norm(add(*one, *other)))
+        });
+        off.fold(0.0, f64::max)
+    };
+    let by_parameter = [lines[0][0][3] / spans[0], lines[0][2][3] / spans[1]];
+    let by_length = [0, 1].map(|side| 1.0 / legs.iter().map(|leg| norm(leg[side])).sum::<f64>());
+    [by_parameter, by_length].into_iter().find(|shares| misfit(*shares) <= SMOOTH)
+}
+
 /// Knot at which the function of a line is 1; for a seam, the first knot.
-fn knot_of(mesh: &Mesh, direction: usize, line: usize) -> f64 {
-    mesh.knots[direction][line + 1]
+fn knot_of(patch: &Patch, direction: usize, line: usize) -> f64 {
+    patch.knots[direction][line + 1]
 }

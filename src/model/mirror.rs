@@ -8,7 +8,7 @@ use crate::model::symmetric_line::Line;
 use crate::model::symmetry_plane::{NoPlane, square_to, symmetry_plane};
 use crate::scene::{Edge, Hold, Region, Scene, Support};
 use crate::shell::{dot, norm, sub};
-use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
+use crate::spline::{Patch, Spans, SurfacePoint, mid_surface_point};
 
 /// An edge, or a line inside, in a plane of symmetry.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ impl Mirror {
     ///
     /// # Errors
     /// Where an edge does not lie in a plane that the surface crosses at right angles.
-    pub fn all(scene: &Scene, supports: &[Support], mesh: &Mesh) -> Result<Vec<Self>, ModelError> {
+    pub fn all(scene: &Scene, supports: &[Support], patch: &Patch) -> Result<Vec<Self>, ModelError> {
         let mut mirrors: Vec<Self> = Vec::new();
         for support in supports.iter().filter(|support| support.hold == Hold::Symmetric) {
             let (edge, direction, parameter) = match support.on {
@@ -48,9 +48,8 @@ impl Mirror {
                     return Err(ModelError::NotAnEdge { support: support.name.clone() });
                 }
             };
-            let plane = plane_of(mesh, edge, direction, parameter).map_err(|reason| ModelError::NotASymmetryPlane {
-                support: support.name.clone(),
-                reason: reason.to_string(),
+            let plane = plane_of(patch, edge, direction, parameter).map_err(|reason| {
+                ModelError::NotASymmetryPlane { support: support.name.clone(), reason: reason.to_string() }
             })?;
             let normal = mirrors.iter().fold(plane, |normal, other| square_to(normal, other.normal));
             mirrors.push(Self { support: support.name.clone(), edge, direction, parameter, normal });
@@ -59,17 +58,17 @@ impl Mirror {
     }
 
     /// Evaluates the point of the surface at a parameter along the edge or line.
-    pub(super) fn point(&self, mesh: &Mesh, parameter: f64) -> SurfacePoint {
+    pub(super) fn point(&self, patch: &Patch, parameter: f64) -> SurfacePoint {
         let at = if self.direction == 0 { [self.parameter, parameter] } else { [parameter, self.parameter] };
-        mid_surface_point(mesh, &[], at)
+        mid_surface_point(patch, &[], at)
     }
 
     /// Samples the edge or line at the ends and in the middle of each span.
-    pub(super) fn samples(&self, mesh: &Mesh) -> Vec<SurfacePoint> {
+    pub(super) fn samples(&self, patch: &Patch) -> Vec<SurfacePoint> {
         let running = 1 - self.direction;
-        let spans = Spans::of(&mesh.knots[running], mesh.degree[running]).bounds;
+        let spans = Spans::of(&patch.knots[running], patch.degree[running]).bounds;
         let parameters = spans.into_iter().flat_map(|[from, to]| [from, 0.5 * (from + to), to]);
-        parameters.map(|parameter| self.point(mesh, parameter)).collect()
+        parameters.map(|parameter| self.point(patch, parameter)).collect()
     }
 
     /// Component of a vector across the plane, where that is more than rounding.
@@ -85,13 +84,13 @@ impl Mirror {
 }
 
 /// Finds the unit normal of the plane of symmetry that an edge, or a line inside, can lie in.
-fn plane_of(mesh: &Mesh, edge: Option<Edge>, direction: usize, parameter: f64) -> Result<[f64; 3], NoPlane> {
+fn plane_of(patch: &Patch, edge: Option<Edge>, direction: usize, parameter: f64) -> Result<[f64; 3], NoPlane> {
     let Some(edge) = edge else {
-        let line = Line::new(mesh, direction, parameter)?;
-        return symmetry_plane(&line.points(mesh), &line.steps(mesh));
+        let line = Line::new(patch, direction, parameter)?;
+        return symmetry_plane(&line.points(patch), &line.steps(patch));
     };
-    let [points, beside] = rows_of(mesh, edge).map(|row| {
-        let point = |control: usize| mesh.point(control);
+    let [points, beside] = rows_of(patch, edge).map(|row| {
+        let point = |control: usize| patch.point(control);
         row.into_iter().map(point).collect::<Vec<_>>()
     });
     let steps: Vec<[f64; 3]> = beside.iter().zip(&points).map(|(beside, point)| sub(*beside, *point)).collect();
@@ -101,15 +100,15 @@ fn plane_of(mesh: &Mesh, edge: Option<Edge>, direction: usize, parameter: f64) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::starting_mesh;
+    use crate::model::starting_patch;
     use crate::scene::parse;
 
     #[test]
     fn edges_of_a_tape_spring_lie_in_planes_of_symmetry() {
         let scene = parse(include_str!("../../pipelines/baseline.toml"), "baseline.toml").unwrap();
-        let mesh = starting_mesh(&scene).unwrap();
-        assert_eq!(plane_of(&mesh, Some(Edge::UEnd), 0, 1.0).map(|normal| normal.map(f64::abs)), Ok([1.0, 0.0, 0.0]));
+        let patch = starting_patch(&scene).unwrap();
+        assert_eq!(plane_of(&patch, Some(Edge::UEnd), 0, 1.0).map(|normal| normal.map(f64::abs)), Ok([1.0, 0.0, 0.0]));
         // The free edge of a cylinder lies in its own radial plane.
-        assert!(plane_of(&mesh, Some(Edge::VStart), 1, 0.0).is_ok());
+        assert!(plane_of(&patch, Some(Edge::VStart), 1, 0.0).is_ok());
     }
 }

@@ -14,14 +14,14 @@ use crate::model::scene_supports::supports_of;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{ActionKind, ForceVector, Material, Region, Scene, SurfaceDirection};
 use crate::shell::{cross, dot, shell_stiffness, thermal_strain};
-use crate::spline::Mesh;
+use crate::spline::Patch;
 use crate::units::{place, significant};
 
 /// Refuses material and loads that are not their own mirror images at the planes of symmetry that a scene asks for.
 ///
 /// # Errors
 /// Where material or loads are not, or an edge lies in no plane of symmetry.
-pub fn check_mirror_images(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
+pub fn check_mirror_images(scene: &Scene, mesh: &Patch) -> Result<(), ModelError> {
     for mirror in Mirror::all(scene, &supports_of(scene), mesh)? {
         check_material(&scene.material, mesh, &mirror)?;
         check_loads(scene, &mirror)?;
@@ -33,7 +33,7 @@ pub fn check_mirror_images(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError>
     Ok(())
 }
 
-fn check_material(material: &Material, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
+fn check_material(material: &Material, mesh: &Patch, mirror: &Mirror) -> Result<(), ModelError> {
     if matches!(material, Material::Isotropic { .. }) {
         return Ok(());
     }
@@ -53,7 +53,7 @@ fn check_material(material: &Material, mesh: &Mesh, mirror: &Mirror) -> Result<(
 }
 
 /// Refuses free strains with shear in axes along and across the plane, which a mirror image turns round.
-fn check_natural_states(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
+fn check_natural_states(scene: &Scene, mesh: &Patch, mirror: &Mirror) -> Result<(), ModelError> {
     let points = mirror.samples(mesh);
     for action in &scene.actions {
         let strains = match action.kind {

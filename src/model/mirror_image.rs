@@ -18,7 +18,7 @@ use crate::scene::{
     Action, ActionKind, ForceVector, History, Hold, Motion, ParametricDirection, Region, Scene, Seam, Support,
 };
 use crate::shell::{dot, norm, scaled, sub};
-use crate::spline::{Mesh, mid_surface_point};
+use crate::spline::{Patch, mid_surface_point};
 use crate::units::{place, significant};
 
 /// A vector whose components are given or free.
@@ -56,7 +56,7 @@ struct SupportOrAction {
 ///
 /// # Errors
 /// Where the line is not in the middle of the shell, or a surface point, a support or an action has no image.
-pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Result<(), ModelError> {
+pub(super) fn check_own_image(scene: &Scene, mesh: &Patch, mirror: &Mirror) -> Result<(), ModelError> {
     let refused = |what: String| Err(ModelError::NotItsOwnImage { support: mirror.support.clone(), what });
     if (mirror.parameter - 0.5).abs() > SAME_PARAMETER {
         return refused("the line does not lie in its middle, at 0.5".into());
@@ -88,7 +88,7 @@ pub(super) fn check_own_image(scene: &Scene, mesh: &Mesh, mirror: &Mirror) -> Re
 }
 
 /// Points of the surface, two in every span in each direction, each with the opposite one.
-fn samples(mesh: &Mesh, direction: usize) -> Vec<[[f64; 3]; 2]> {
+fn samples(mesh: &Patch, direction: usize) -> Vec<[[f64; 3]; 2]> {
     let [us, vs] = [0, 1].map(|direction| sample_parameters(mesh, direction));
     let pair = |at: [f64; 2]| {
         let mut opposite = at;
@@ -99,7 +99,7 @@ fn samples(mesh: &Mesh, direction: usize) -> Vec<[[f64; 3]; 2]> {
 }
 
 /// Points that distinguish a place from others.
-fn points_of(scene: &Scene, mesh: &Mesh, on: Region) -> Vec<[f64; 3]> {
+fn points_of(scene: &Scene, mesh: &Patch, on: Region) -> Vec<[f64; 3]> {
     let along = |direction: usize, fraction: f64| {
         [0.0, 0.5, 1.0].map(|along| if direction == 0 { [fraction, along] } else { [along, fraction] }).to_vec()
     };
@@ -130,7 +130,7 @@ fn side_of(scene: &Scene, on: Region, across: usize) -> f64 {
 }
 
 impl SupportOrAction {
-    fn of_support(scene: &Scene, mesh: &Mesh, support: &Support, across: usize, origin: [f64; 3]) -> Self {
+    fn of_support(scene: &Scene, mesh: &Patch, support: &Support, across: usize, origin: [f64; 3]) -> Self {
         let (kind, vectors, turns) = match &support.hold {
             Hold::Symmetric => ("symmetric", vec![], vec![]),
             Hold::RigidMotions => ("rigid motions", vec![], vec![]),
@@ -158,15 +158,24 @@ impl SupportOrAction {
     }
 
     /// Creates the description of an action; `None` for one on the whole surface.
-    fn of_action(scene: &Scene, mesh: &Mesh, action: &Action, across: usize) -> Option<Self> {
+    fn of_action(scene: &Scene, mesh: &Patch, action: &Action, across: usize) -> Option<Self> {
         let forced = |kind: &str, force: ForceVector| match force {
             ForceVector::Components(force) => (kind.to_owned(), vec![force.map(Some)], vec![]),
             ForceVector::Along(size, direction) => (format!("{kind} of {size:?} {direction:?}"), vec![], vec![]),
         };
-        let (on, (kind, vectors, turns)) = match action.kind {
-            ActionKind::Force { on, force_n } => (Region::Point(on), forced("force", force_n)),
-            ActionKind::LineForce { on, force_n_per_mm } => (on, forced("line force", force_n_per_mm)),
-            ActionKind::EdgeMoment { on, moment_n } => {
+        let place_of = |section: &str| Some(scene.supports.iter().find(|support| support.name == section)?.on);
+        let (on, (kind, vectors, turns)) = match &action.kind {
+            ActionKind::Force { on, force_n } => (Region::Point(*on), forced("force", *force_n)),
+            ActionKind::LineForce { on, force_n_per_mm } => (*on, forced("line force", *force_n_per_mm)),
+            ActionKind::SectionForce { section, force_n } => {
+                (place_of(section)?, forced("section force", ForceVector::Components(*force_n)))
+            }
+            ActionKind::SectionMoment { section, moment_n_mm, about, .. } => {
+                let mut turn = [0.0; 3];
+                turn[*about as usize] = *moment_n_mm;
+                (place_of(section)?, ("section moment".into(), vec![], vec![turn.map(Some)]))
+            }
+            &ActionKind::EdgeMoment { on, moment_n } => {
                 let (direction, _) = side(on);
                 let along = unit(on_edge(mesh, on, 0.5).derivatives[1 - direction]);
                 (Region::Edge(on), ("edge moment".into(), vec![], vec![scaled(moment_n, along).map(Some)]))

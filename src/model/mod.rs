@@ -15,7 +15,9 @@
 //! | `mirror_check`, `mirror_image` | whether loads, material and shell are their own mirror images |
 //! | `symmetric_shell` | in which lines they would be |
 //! | `scene_supports` | the supports of a scene |
+//! | `member` | the shells of a structure one by one |
 //! | `ties` | joints, seams and planes that tie rows |
+//! | `edge_pair`, `edge_ties` | edges of several shells that a joint joins, and their ties |
 //! | `body` | a rigid body and its motions |
 //! | `supports` | the constraints of supports on a mesh |
 //! | `hold`, `rigid_support` | the constraints that each kind makes |
@@ -37,6 +39,8 @@ mod body;
 mod connectivity;
 mod direction;
 mod edge;
+mod edge_pair;
+mod edge_ties;
 mod elimination;
 mod error;
 mod expressions;
@@ -46,6 +50,7 @@ mod hold;
 mod imbalance;
 mod joint;
 mod limits;
+mod member;
 mod mirror;
 mod mirror_check;
 mod mirror_image;
@@ -79,12 +84,16 @@ pub use blocks::Blocks;
 pub(crate) use body::{Body, FreeMotions};
 pub use connectivity::{Connectivity, Strand};
 pub(crate) use direction::{Site, direction_at};
+pub(crate) use edge::{EdgeRows, edge_rows};
+pub(crate) use edge_pair::{EdgePair, PairedEdge, edge_pairs, pass_on};
+pub(crate) use edge_ties::is_tied_smoothly;
 pub use error::ModelError;
 pub(crate) use expressions::control_expressions;
 pub use free_strains::{FreeStrains, NaturalState};
 pub(crate) use gauss::gauss_points;
 pub use limits::MOST_CONTROL_POINTS;
 pub(crate) use limits::ROUNDING;
+pub(crate) use member::{Member, members};
 pub(crate) use mirror::Mirror;
 pub use oddity::{is_driven_by_loads, odd_motion, oddities};
 pub(crate) use parametrize::{line_place, parameters_of};
@@ -94,7 +103,7 @@ pub use reactions::{Exerted, PointForces};
 pub(crate) use rigid_motion::{HELD, free_motions};
 pub(crate) use scene_supports::supports_of;
 pub use size::Size;
-pub use start::starting_mesh;
+pub use start::{starting_mesh, starting_patch};
 pub use supports::Supports;
 pub use symmetric_shell::symmetric_lines;
 pub(crate) use tables::{BATCH, LANES};

@@ -7,14 +7,14 @@ use crate::model::parametrize::sample_parameters;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{ActionKind, ForceVector, LoadedArea, Scene};
 use crate::shell::{cross, dot, norm};
-use crate::spline::{Mesh, mid_surface_point};
+use crate::spline::{Patch, mid_surface_point};
 use crate::units::place;
 
 /// Refuses forces by the projected area that meet both sides of the surface.
 ///
 /// # Errors
 /// Where a force does, by more than rounding.
-pub(super) fn check_overhangs(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
+pub(super) fn check_overhangs(scene: &Scene, patch: &Patch) -> Result<(), ModelError> {
     for action in &scene.actions {
         let ActionKind::AreaForce { force_n_per_mm2: ForceVector::Components(force), per: LoadedArea::Projected } =
             action.kind
@@ -24,8 +24,8 @@ pub(super) fn check_overhangs(scene: &Scene, mesh: &Mesh) -> Result<(), ModelErr
         if norm(force) == 0.0 {
             continue;
         }
-        let [us, vs] = [0, 1].map(|direction| sample_parameters(mesh, direction));
-        let points = us.iter().flat_map(|u| vs.iter().map(|v| mid_surface_point(mesh, &[], [*u, *v])));
+        let [us, vs] = [0, 1].map(|direction| sample_parameters(patch, direction));
+        let points = us.iter().flat_map(|u| vs.iter().map(|v| mid_surface_point(patch, &[], [*u, *v])));
         let facing = points.map(|point| {
             let normal = unit(cross(point.derivatives[0], point.derivatives[1]));
             (dot(normal, unit(force)), point.position)

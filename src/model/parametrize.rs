@@ -4,7 +4,7 @@
 //! the weights (1, cos(s/2), 1), the half-angle tangent about its middle is linear in t.
 
 use crate::scene::{Geometry, Region, Scene};
-use crate::spline::{Mesh, Spans, segment_count};
+use crate::spline::{Patch, Spans, segment_count};
 
 /// Finds the parameters of a point at fractions of the length or the angle in u and v.
 pub fn parameters_of(geometry: &Geometry, fractions: [f64; 2]) -> [f64; 2] {
@@ -33,8 +33,8 @@ fn on_arc(arc_deg: f64, fraction: f64) -> f64 {
 }
 
 /// Lists sample parameters of a direction: the ends and the middles of its spans.
-pub(super) fn sample_parameters(mesh: &Mesh, direction: usize) -> Vec<f64> {
-    let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
+pub(super) fn sample_parameters(patch: &Patch, direction: usize) -> Vec<f64> {
+    let bounds = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
     bounds.iter().flat_map(|[from, to]| [*from, 0.5 * (from + to)]).chain([1.0]).collect()
 }
 
@@ -50,13 +50,13 @@ pub struct LinePlace {
 }
 
 /// Finds where a line or an edge lies; `None` for other places.
-pub fn line_place(scene: &Scene, mesh: &Mesh, on: Region) -> Option<LinePlace> {
+pub fn line_place(scene: &Scene, patch: &Patch, on: Region) -> Option<LinePlace> {
     let Region::Line(direction, fraction) = on else { return None };
     let direction = direction.index();
     let parameter = parameters_of(&scene.geometry, [fraction; 2])[direction];
-    let degree = mesh.degree[direction];
-    let greville = |k: usize| mesh.knots[direction][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;
-    let count = mesh.control_counts()[direction];
+    let degree = patch.degree[direction];
+    let greville = |k: usize| patch.knots[direction][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;
+    let count = patch.control_counts()[direction];
     let first_beyond = (0..count).find(|k| greville(*k) > parameter).unwrap_or(count);
     Some(LinePlace { direction, parameter, first_beyond })
 }

@@ -3,7 +3,7 @@
 //! Reduced integration that knows where splines are smooth (Adam, Hughes, Bouabdallah, Zarroug & Maitournam 2015,
 //! *Selective and reduced numerical integrations for NURBS-based isogeometric analysis*) takes p − 1 points where a
 //! spline is C^(p−1) across both ends of an element, and p next to the ends of the patch and to knots of higher
-//! multiplicity ([`patch`]). The counts are empirical, held by eigenvalues (`tests/verification/quadrature.rs`): with p
+//! multiplicity ([`smooth`]). The counts are empirical, held by eigenvalues (`tests/verification/quadrature.rs`): with p
 //! points in each direction a single element has a field without energy in addition to the rigid motions, in every
 //! degree, and degree 2 with one point inside is four times too soft on graded meshes.
 //!
@@ -18,7 +18,7 @@
 use crate::model::imbalance::imbalance;
 use crate::scene::{Quadrature, Scene};
 use crate::shell::{ShellStiffness, cross, dot, norm, shell_stiffness};
-use crate::spline::{Mesh, Spans, mid_surface_point};
+use crate::spline::{Patch, Spans, mid_surface_point};
 
 /// Largest imbalance that stretching may be left with: the error of a displacement, relative to that of the membrane
 /// alone.
@@ -48,26 +48,27 @@ pub(crate) struct PointCounts {
 
 impl PointCounts {
     /// Chooses the points on the elements of `mesh` by the scene's rule.
-    pub fn of(scene: &Scene, mesh: &Mesh) -> Self {
+    pub fn of(scene: &Scene, patch: &Patch) -> Self {
         let both = |count: &dyn Fn(usize) -> Vec<usize>| [count(0), count(1)];
         let common = |bending: Counts| Self { bending, stretching: None };
         match scene.mesh.quadrature {
-            Quadrature::Full => common(both(&|direction| everywhere(mesh, direction, mesh.degree[direction] + 1))),
+            Quadrature::Full => common(both(&|direction| everywhere(patch, direction, patch.degree[direction] + 1))),
             Quadrature::FullPlusOne => {
-                common(both(&|direction| everywhere(mesh, direction, mesh.degree[direction] + 2)))
+                common(both(&|direction| everywhere(patch, direction, patch.degree[direction] + 2)))
             }
             Quadrature::FullPlusTwo => {
-                common(both(&|direction| everywhere(mesh, direction, mesh.degree[direction] + 3)))
+                common(both(&|direction| everywhere(patch, direction, patch.degree[direction] + 3)))
             }
-            Quadrature::Reduced => common(both(&|direction| reduced(mesh, direction))),
-            Quadrature::Patch => common(both(&|direction| patch(mesh, direction))),
+            Quadrature::Reduced => common(both(&|direction| reduced(patch, direction))),
+            Quadrature::Patch => common(both(&|direction| smooth(patch, direction))),
             Quadrature::Balanced => {
                 let stiffness = shell_stiffness(&scene.material, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
                 let ratio = stretching_over_bending(&stiffness);
-                let is_developable = !is_curved_both_ways(mesh);
-                let full = |direction: usize| everywhere(mesh, direction, mesh.degree[direction] + 1);
-                let bending = both(&|direction| if is_developable { patch(mesh, direction) } else { full(direction) });
-                let stretching = both(&|direction| balanced(mesh, direction, &bending[direction], ratio));
+                let is_developable = !is_curved_both_ways(patch);
+                let full = |direction: usize| everywhere(patch, direction, patch.degree[direction] + 1);
+                let bending =
+                    both(&|direction| if is_developable { smooth(patch, direction) } else { full(direction) });
+                let stretching = both(&|direction| balanced(patch, direction, &bending[direction], ratio));
                 match stretching == bending {
                     true => common(bending),
                     false if stiffness.coupling.is_some() => common(stretching),
@@ -83,20 +84,20 @@ impl PointCounts {
     }
 }
 
-fn everywhere(mesh: &Mesh, direction: usize, count: usize) -> Vec<usize> {
-    vec![count; mesh.element_counts()[direction]]
+fn everywhere(patch: &Patch, direction: usize, count: usize) -> Vec<usize> {
+    vec![count; patch.element_counts()[direction]]
 }
 
 /// Counts degree points; degree + 1 on a single element.
-fn reduced(mesh: &Mesh, direction: usize) -> Vec<usize> {
-    let single = usize::from(mesh.element_counts()[direction] == 1);
-    everywhere(mesh, direction, mesh.degree[direction] + single)
+fn reduced(patch: &Patch, direction: usize) -> Vec<usize> {
+    let single = usize::from(patch.element_counts()[direction] == 1);
+    everywhere(patch, direction, patch.degree[direction] + single)
 }
 
 /// Counts degree − 1 points (at least 2) where the spline is smooth, degree next to the ends and to repeated knots;
 /// degree + 1 on a single element.
-fn patch(mesh: &Mesh, direction: usize) -> Vec<usize> {
-    let (degree, knots) = (mesh.degree[direction], &mesh.knots[direction]);
+fn smooth(patch: &Patch, direction: usize) -> Vec<usize> {
+    let (degree, knots) = (patch.degree[direction], &patch.knots[direction]);
     let bounds = Spans::of(knots, degree).bounds;
     let is_smooth = |knot: f64| {
         let first = knots.partition_point(|other| *other < knot);
@@ -111,25 +112,25 @@ fn patch(mesh: &Mesh, direction: usize) -> Vec<usize> {
 }
 
 /// Finds the cheapest of `least` and degree, degree + 1, … points that leaves constant membrane forces in balance.
-fn balanced(mesh: &Mesh, direction: usize, least: &[usize], stretching_over_bending: f64) -> Vec<usize> {
-    let degree = mesh.degree[direction];
+fn balanced(patch: &Patch, direction: usize, least: &[usize], stretching_over_bending: f64) -> Vec<usize> {
+    let degree = patch.degree[direction];
     let at_least = |count: usize| -> Vec<usize> { least.iter().map(|least| count.max(*least)).collect() };
     let candidates = std::iter::once(least.to_vec()).chain((0..MOST_MORE).map(|more| at_least(degree + more)));
     let mut candidates =
-        candidates.filter(|counts| imbalance(mesh, direction, counts, stretching_over_bending) <= MOST_IMBALANCE);
+        candidates.filter(|counts| imbalance(patch, direction, counts, stretching_over_bending) <= MOST_IMBALANCE);
     candidates.next().unwrap_or_else(|| at_least(degree + MOST_MORE))
 }
 
 /// Whether the undeformed surface is doubly curved, so that it cannot be unrolled.
-fn is_curved_both_ways(mesh: &Mesh) -> bool {
+fn is_curved_both_ways(patch: &Patch) -> bool {
     let parameter = |direction: usize, k: usize| {
-        let (knots, degree) = (&mesh.knots[direction], mesh.degree[direction]);
+        let (knots, degree) = (&patch.knots[direction], patch.degree[direction]);
         let (from, to) = (knots[degree], knots[knots.len() - 1 - degree]);
         from + (to - from) * (k as f64 + 0.5) / SAMPLES as f64
     };
     let (mut gauss, mut normal) = (0.0_f64, 0.0_f64);
     for k in 0..SAMPLES * SAMPLES {
-        let point = mid_surface_point(mesh, &[], [parameter(0, k / SAMPLES), parameter(1, k % SAMPLES)]);
+        let point = mid_surface_point(patch, &[], [parameter(0, k / SAMPLES), parameter(1, k % SAMPLES)]);
         let [a1, a2, a11, a22, a12] = point.derivatives;
         let cross = cross(a1, a2);
         let [b11, b22, b12] = [a11, a22, a12].map(|second| dot(second, cross) / norm(cross));

@@ -11,13 +11,14 @@
 use crate::model::ModelError;
 use crate::model::body::{Body, HeldMotions};
 use crate::model::elimination::Expression;
-use crate::model::expressions::control_expressions;
+use crate::model::expressions::{control_expressions, shifted};
+use crate::model::member::Member;
 use crate::model::parametrize::parameters_of;
 use crate::model::rigid_motion::free_motions;
 use crate::model::supports::Supports;
-use crate::scene::{Region, Scene};
+use crate::scene::Region;
 use crate::shell::{cross, dot, norm, sub};
-use crate::spline::{Mesh, mid_surface_point};
+use crate::spline::mid_surface_point;
 
 /// Fractions in u and v at which the points lie. Three remain on a closed turn, evenly spaced and never on one line; so
 /// few that they couple few control points.
@@ -36,11 +37,10 @@ impl Supports {
     pub(super) fn hold_rigid_motions(
         &mut self,
         index: usize,
-        scene: &Scene,
-        mesh: &Mesh,
+        members: &[Member],
         points: &[[f64; 3]],
     ) -> Result<(), ModelError> {
-        let spread = self.spread_points(scene, mesh)?;
+        let spread = self.spread_points(members)?;
         let positions: Vec<[f64; 3]> = spread.iter().map(|point| point.position).collect();
         if on_one_line(&positions) {
             let support = self.footprints[index].name.clone();
@@ -71,13 +71,16 @@ impl Supports {
     }
 
     /// Finds the points that no moving section carries, each once.
-    fn spread_points(&self, scene: &Scene, mesh: &Mesh) -> Result<Vec<Point>, ModelError> {
+    fn spread_points(&self, members: &[Member]) -> Result<Vec<Point>, ModelError> {
         let mut spread: Vec<Point> = Vec::new();
-        for fractions in FRACTIONS.iter().flat_map(|u| FRACTIONS.map(|v| [*u, v])) {
-            let position = mid_surface_point(mesh, &[], parameters_of(&scene.geometry, fractions)).position;
-            let sum = control_expressions(scene, mesh, Region::Point(fractions))?.swap_remove(0);
-            if sum.iter().all(|(control, _)| self.section_of[*control].is_none()) {
-                spread.push(Point { position, sum });
+        for Member { scene, patch, points, .. } in members {
+            for fractions in FRACTIONS.iter().flat_map(|u| FRACTIONS.map(|v| [*u, v])) {
+                let position = mid_surface_point(patch, &[], parameters_of(&scene.geometry, fractions)).position;
+                let sums = control_expressions(scene, patch, Region::Point(fractions))?;
+                let sum = shifted(sums, points.start).swap_remove(0);
+                if sum.iter().all(|(control, _)| self.section_of[*control].is_none()) {
+                    spread.push(Point { position, sum });
+                }
             }
         }
         let distance = |one: &Point, other: &Point| norm(sub(one.position, other.position));

@@ -21,6 +21,8 @@ pub fn supports_of(scene: &Scene) -> Vec<Support> {
     let end = |name: &str, edge: Edge, x: f64, slide: Motion, sign: f64| Support {
         name: name.into(),
         on: Region::Edge(edge),
+        shell: 0,
+        also: Vec::new(),
         hold: Hold::Rigid {
             motions: [slide, zero, zero, zero, Motion::Given(sign), zero],
             reference_mm: Some([x, 0.0, height]),
@@ -31,6 +33,8 @@ pub fn supports_of(scene: &Scene) -> Vec<Support> {
     let mirror = |name: &str, edge: Edge| Support {
         name: name.into(),
         on: Region::Edge(edge),
+        shell: 0,
+        also: Vec::new(),
         hold: Hold::Symmetric,
         history: History::default(),
     };

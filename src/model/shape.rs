@@ -7,14 +7,14 @@ use crate::model::joint::smoothed;
 use crate::model::soundness::{check_normals, check_seam, closed_directions};
 use crate::scene::{Geometry, NurbsPatch, Scene, Seam};
 use crate::spline::{
-    Grid, HomogeneousCurve, Mesh, basis_derivatives, basis_derivatives_len, circular_arc, control_count, find_span,
+    Grid, HomogeneousCurve, Patch, basis_derivatives, basis_derivatives_len, circular_arc, control_count, find_span,
     straight_line,
 };
 
 /// A surface, and the number of elements that the scene asks for.
 pub(super) struct Shape {
     /// Exact surface in its fewest elements, with the degree of the scene's mesh.
-    pub mesh: Mesh,
+    pub mesh: Patch,
     /// Number of elements of the model in each direction.
     pub elements: [usize; 2],
 }
@@ -80,19 +80,19 @@ fn tape_spring(scene: &Scene, length_mm: f64, radius_mm: f64, arc_deg: f64) -> S
 }
 
 /// Builds the cylinder over `across` (in the y–z plane) along `along` (x).
-fn translated(along: &HomogeneousCurve, across: &HomogeneousCurve) -> Mesh {
+fn translated(along: &HomogeneousCurve, across: &HomogeneousCurve) -> Patch {
     product(along, across, |[x, _, _], [y, z, w]| [x * w, *y, *z, *w])
 }
 
 /// Combines the control points of two curves, u slow.
-fn product(u: &HomogeneousCurve, v: &HomogeneousCurve, point: impl Fn(&[f64; 3], &[f64; 3]) -> [f64; 4]) -> Mesh {
+fn product(u: &HomogeneousCurve, v: &HomogeneousCurve, point: impl Fn(&[f64; 3], &[f64; 3]) -> [f64; 4]) -> Patch {
     let control_points =
         u.points.iter().flat_map(|a| v.points.iter().map(|b| point(a, b)).collect::<Vec<_>>()).collect();
-    Mesh { degree: [u.degree, v.degree], knots: [u.knots.clone(), v.knots.clone()], control_points }
+    Patch { degree: [u.degree, v.degree], knots: [u.knots.clone(), v.knots.clone()], control_points }
 }
 
 /// Builds the user's patch on [0, 1]², raised to the degree of the mesh and smooth up to rounding.
-fn nurbs(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
+fn nurbs(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Patch, ModelError> {
     let mesh = sound(patch, degree).map_err(|fault| match fault {
         ModelError::DegreeTooLow { .. } => fault,
         _ if sound(&listed_the_other_way(patch), degree).is_ok() => {
@@ -105,7 +105,7 @@ fn nurbs(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
 }
 
 /// Builds the surface of a patch, where a shell can have it.
-fn sound(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
+fn sound(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Patch, ModelError> {
     let mesh = raised_to(patch, degree)?;
     let closed = closed_directions(&mesh).map(|closed| closed && patch.seam == Some(Seam::Smooth));
     let mesh = smoothed(mesh, closed)?;
@@ -125,13 +125,13 @@ fn listed_the_other_way(patch: &NurbsPatch) -> NurbsPatch {
     }
 }
 
-fn raised_to(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError> {
+fn raised_to(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Patch, ModelError> {
     let unit = |knots: &[f64]| {
         let (first, last) = (knots[0], knots[knots.len() - 1]);
         knots.iter().map(|knot| (knot - first) / (last - first)).collect::<Vec<f64>>()
     };
     let weighted = patch.control_points_mm.iter().zip(&patch.weights).map(|([x, y, z], w)| [x * w, y * w, z * w, *w]);
-    let mut mesh = Mesh {
+    let mut mesh = Patch {
         degree: patch.degrees,
         knots: [unit(&patch.knots_u), unit(&patch.knots_v)],
         control_points: weighted.collect(),
@@ -149,7 +149,7 @@ fn raised_to(patch: &NurbsPatch, degree: [usize; 2]) -> Result<Mesh, ModelError>
 
 /// Raises the degree of a surface in one direction by one: the space in which every distinct knot has one more
 /// multiplicity contains it, so interpolating at the Greville points is exact.
-fn raised(mesh: &Mesh, direction: usize) -> Mesh {
+fn raised(mesh: &Patch, direction: usize) -> Patch {
     let old = &mesh.knots[direction];
     let mut knots = Vec::with_capacity(2 * old.len());
     for (index, knot) in old.iter().enumerate() {
@@ -192,7 +192,7 @@ fn raised(mesh: &Mesh, direction: usize) -> Mesh {
             }
         }
     }
-    let mut raised = Mesh { degree: mesh.degree, knots: mesh.knots.clone(), control_points };
+    let mut raised = Patch { degree: mesh.degree, knots: mesh.knots.clone(), control_points };
     raised.degree[direction] = degree;
     raised.knots[direction] = knots;
     raised
@@ -201,21 +201,21 @@ fn raised(mesh: &Mesh, direction: usize) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::starting_mesh;
+    use crate::model::starting_patch;
     use crate::scene::parse;
     use crate::shell::{cross, dot, norm};
     use crate::spline::mid_surface_point;
 
-    fn meshed(geometry: Geometry, degree: [usize; 2]) -> Mesh {
+    fn meshed(geometry: Geometry, degree: [usize; 2]) -> Patch {
         let mut scene = parse(include_str!("../../pipelines/verification/rolled-cantilever.toml"), "x.toml").unwrap();
         scene.geometry = geometry;
         scene.mesh.degree = degree;
         scene.mesh.elements = [3, 5];
-        starting_mesh(&scene).unwrap()
+        starting_patch(&scene).unwrap()
     }
 
     /// Every sampled point is on the surface, and the normal points where it should.
-    fn check(mesh: &Mesh, on_surface: impl Fn([f64; 3]) -> f64, normal: impl Fn([f64; 3]) -> [f64; 3]) {
+    fn check(mesh: &Patch, on_surface: impl Fn([f64; 3]) -> f64, normal: impl Fn([f64; 3]) -> [f64; 3]) {
         for sample in 0..100 {
             let at = [(sample % 10) as f64 / 9.0, (sample / 10) as f64 / 9.0];
             let point = mid_surface_point(mesh, &[], at);

@@ -3,10 +3,10 @@
 use std::fmt::{self, Display, Formatter};
 
 use crate::model::ModelError;
-use crate::model::start::starting_mesh;
+use crate::model::start::starting_patch;
 use crate::model::thinness::{Extent, side_mm};
 use crate::scene::{Material, OrthotropicLaw, Scene, Symmetry};
-use crate::spline::{Mesh, Spans, mid_surface_point};
+use crate::spline::{Patch, Spans, mid_surface_point};
 use crate::units::significant;
 
 /// Samples of each span for the box.
@@ -33,7 +33,7 @@ impl Size {
     /// # Errors
     /// Where the scene has no starting mesh.
     pub fn of(scene: &Scene) -> Result<Self, ModelError> {
-        let mesh = starting_mesh(&Scene { symmetry: Symmetry::None, ..scene.clone() })?;
+        let mesh = starting_patch(&Scene { symmetry: Symmetry::None, ..scene.clone() })?;
         let Extent { radius_mm, .. } = Extent::of(&mesh, &scene.material);
         let sides_mm = [0, 1].map(|direction| side_mm(&mesh, direction));
         let longest = sides_mm[0].max(sides_mm[1]);
@@ -99,7 +99,7 @@ pub(super) fn laws(material: &Material) -> Vec<(String, Vec<f64>)> {
 }
 
 /// Extents of a surface along the axes, mm, from samples of each span and its ends.
-fn box_mm(mesh: &Mesh) -> [f64; 3] {
+fn box_mm(mesh: &Patch) -> [f64; 3] {
     let [us, vs] = [0, 1].map(|direction| {
         let spans = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
         let within = |[from, to]: [f64; 2]| (0..=SAMPLES).map(move |k| from + (to - from) * k as f64 / SAMPLES as f64);

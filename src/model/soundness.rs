@@ -10,7 +10,7 @@ use crate::model::ModelError;
 use crate::model::limits::POSITION;
 use crate::scene::Seam;
 use crate::shell::{cross, dot, norm, scaled, sub};
-use crate::spline::{Mesh, Spans, SurfacePoint, mid_surface_point};
+use crate::spline::{Patch, Spans, SurfacePoint, mid_surface_point};
 use crate::units::{place, significant};
 
 /// Area of a parameter square, relative to the largest, below which there is none.
@@ -32,13 +32,13 @@ struct Sample {
 }
 
 impl Sample {
-    fn new(mesh: &Mesh, at: [f64; 2]) -> Self {
-        let SurfacePoint { position, derivatives } = mid_surface_point(mesh, &[], at);
+    fn new(patch: &Patch, at: [f64; 2]) -> Self {
+        let SurfacePoint { position, derivatives } = mid_surface_point(patch, &[], at);
         Self { at, position, area: cross(derivatives[0], derivatives[1]) }
     }
 
-    fn between(mesh: &Mesh, one: &Sample, other: &Sample, share: f64) -> Self {
-        Self::new(mesh, [0, 1].map(|direction| one.at[direction] + share * (other.at[direction] - one.at[direction])))
+    fn between(patch: &Patch, one: &Sample, other: &Sample, share: f64) -> Self {
+        Self::new(patch, [0, 1].map(|direction| one.at[direction] + share * (other.at[direction] - one.at[direction])))
     }
 }
 
@@ -46,10 +46,10 @@ impl Sample {
 ///
 /// # Errors
 /// Where the surface does.
-pub fn check_normals(mesh: &Mesh) -> Result<(), ModelError> {
-    let [along, across] = [0, 1].map(|direction| parameters(mesh, direction));
+pub fn check_normals(patch: &Patch) -> Result<(), ModelError> {
+    let [along, across] = [0, 1].map(|direction| parameters(patch, direction));
     let grid: Vec<Vec<Sample>> =
-        along.iter().map(|u| across.iter().map(|v| Sample::new(mesh, [*u, *v])).collect()).collect();
+        along.iter().map(|u| across.iter().map(|v| Sample::new(patch, [*u, *v])).collect()).collect();
     let largest = grid.iter().flatten().map(|sample| norm(sample.area)).fold(0.0, f64::max);
     let least = NO_AREA * largest;
     let columns = (0..across.len()).map(|j| grid.iter().map(|row| row[j]).collect::<Vec<Sample>>());
@@ -57,40 +57,40 @@ pub fn check_normals(mesh: &Mesh) -> Result<(), ModelError> {
     // Where there is no area there is no normal either, which is reported for the point itself.
     let has_area = |pair: &&[Sample]| pair.iter().all(|sample| norm(sample.area) > least);
     let mut pairs = lines.iter().flat_map(|line| line.windows(2)).filter(has_area);
-    if let Some(pair) = pairs.find(|pair| turns_over(mesh, &pair[0], &pair[1], HALVINGS)) {
+    if let Some(pair) = pairs.find(|pair| turns_over(patch, &pair[0], &pair[1], HALVINGS)) {
         return Err(folds(&pair[0], &pair[1]));
     }
     if let Some(point) = grid.iter().flatten().find(|sample| norm(sample.area) <= least) {
         return Err(ModelError::Collapsed { at: place(point.position) });
     }
     let mut threes = lines.iter().flat_map(|line| line.windows(3));
-    threes.try_for_each(|three| check_area(mesh, [&three[0], &three[1], &three[2]], least))
+    threes.try_for_each(|three| check_area(patch, [&three[0], &three[1], &three[2]], least))
 }
 
 /// Lists the parameters of the grid: both ends of every span, and more points in between than a polynomial area has
 /// turning points.
-fn parameters(mesh: &Mesh, direction: usize) -> Vec<f64> {
-    let steps = 2 * mesh.degree[direction] + 1;
-    let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
+fn parameters(patch: &Patch, direction: usize) -> Vec<f64> {
+    let steps = 2 * patch.degree[direction] + 1;
+    let bounds = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
     let inside = |[from, to]: [f64; 2]| (0..steps).map(move |k| from + (to - from) * k as f64 / steps as f64);
     bounds.into_iter().flat_map(inside).chain([1.0]).collect()
 }
 
 /// Whether the normal turns over between two points, however near each other they are.
-fn turns_over(mesh: &Mesh, one: &Sample, other: &Sample, halvings: usize) -> bool {
+fn turns_over(patch: &Patch, one: &Sample, other: &Sample, halvings: usize) -> bool {
     if dot(one.area, other.area) > 0.0 {
         return false;
     }
     if halvings == 0 {
         return true;
     }
-    let middle = Sample::between(mesh, one, other, 0.5);
-    turns_over(mesh, one, &middle, halvings - 1) || turns_over(mesh, &middle, other, halvings - 1)
+    let middle = Sample::between(patch, one, other, 0.5);
+    turns_over(patch, one, &middle, halvings - 1) || turns_over(patch, &middle, other, halvings - 1)
 }
 
 /// Checks the area where the middle of three points has the least: follows it to the least one between the outer two,
 /// projected on the normal of the middle.
-fn check_area(mesh: &Mesh, [before, middle, after]: [&Sample; 3], least: f64) -> Result<(), ModelError> {
+fn check_area(patch: &Patch, [before, middle, after]: [&Sample; 3], least: f64) -> Result<(), ModelError> {
     let size = norm(middle.area);
     let beside = [before, after].map(|sample| norm(sample.area));
     if size > beside[0].min(beside[1]) || size > DIP * beside[0].max(beside[1]) {
@@ -100,7 +100,7 @@ fn check_area(mesh: &Mesh, [before, middle, after]: [&Sample; 3], least: f64) ->
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..LEAST_AREA_STEPS {
         let [one, other] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
-        let [first, second] = [one, other].map(|share| Sample::between(mesh, before, after, share));
+        let [first, second] = [one, other].map(|share| Sample::between(patch, before, after, share));
         if let Some(found) = [&first, &second].into_iter().find(|sample| dot(sample.area, normal) <= least) {
             return Err(match dot(found.area, normal) < -least {
                 true => folds(middle, found),
@@ -128,24 +128,24 @@ struct Gaps {
 }
 
 impl Gaps {
-    fn new(mesh: &Mesh) -> Self {
-        let corner = mesh.point(0);
-        let arms = mesh.points().map(|point| sub(point, corner));
+    fn new(patch: &Patch) -> Self {
+        let corner = patch.point(0);
+        let arms = patch.points().map(|point| sub(point, corner));
         let tolerance = POSITION * arms.map(norm).fold(0.0, f64::max);
         let gap = |direction: usize, reversed: bool| {
             let on = |end: f64, at: f64| {
-                mid_surface_point(mesh, &[], if direction == 0 { [end, at] } else { [at, end] }).position
+                mid_surface_point(patch, &[], if direction == 0 { [end, at] } else { [at, end] }).position
             };
             let distance = |at: f64| norm(sub(on(0.0, at), on(1.0, if reversed { 1.0 - at } else { at })));
-            parameters(mesh, 1 - direction).into_iter().map(distance).fold(0.0, f64::max)
+            parameters(patch, 1 - direction).into_iter().map(distance).fold(0.0, f64::max)
         };
         Self { same: [gap(0, false), gap(1, false)], reversed: [gap(0, true), gap(1, true)], tolerance }
     }
 }
 
 /// Finds the directions in which the surface closes: the edge at the end is that at the start.
-pub fn closed_directions(mesh: &Mesh) -> [bool; 2] {
-    let gaps = Gaps::new(mesh);
+pub fn closed_directions(patch: &Patch) -> [bool; 2] {
+    let gaps = Gaps::new(patch);
     gaps.same.map(|gap| gap <= gaps.tolerance)
 }
 
@@ -153,9 +153,9 @@ pub fn closed_directions(mesh: &Mesh) -> [bool; 2] {
 ///
 /// # Errors
 /// Where opposite edges coincide and no seam is given, or the other way round.
-pub fn check_seam(mesh: &Mesh, seam: Option<Seam>) -> Result<(), ModelError> {
+pub fn check_seam(patch: &Patch, seam: Option<Seam>) -> Result<(), ModelError> {
     const EDGES: [&str; 2] = ["u-start and u-end", "v-start and v-end"];
-    let gaps = Gaps::new(mesh);
+    let gaps = Gaps::new(patch);
     let shown = |gap: f64| significant(gap, 3);
     let meeting = (0..2).find(|direction| gaps.same[*direction] <= gaps.tolerance);
     let reversed = (0..2).find(|direction| gaps.reversed[*direction] <= gaps.tolerance);

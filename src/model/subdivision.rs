@@ -2,7 +2,7 @@
 
 use crate::model::ModelError;
 use crate::shell::norm;
-use crate::spline::{Mesh, Spans, mid_surface_point};
+use crate::spline::{Patch, Spans, mid_surface_point};
 
 /// Number of steps in which the length of a span is summed up.
 const STEPS: usize = 64;
@@ -15,13 +15,13 @@ const EVEN_SPEED: f64 = 1.7;
 ///
 /// # Errors
 /// Where fewer elements are asked for than the surface has spans.
-pub fn subdivide(mesh: Mesh, elements: [usize; 2]) -> Result<Mesh, ModelError> {
+pub fn subdivide(patch: Patch, elements: [usize; 2]) -> Result<Patch, ModelError> {
     let mut new: [Vec<f64>; 2] = Default::default();
     for direction in 0..2 {
-        let spans: Vec<Span> = Spans::of(&mesh.knots[direction], mesh.degree[direction])
+        let spans: Vec<Span> = Spans::of(&patch.knots[direction], patch.degree[direction])
             .bounds
             .into_iter()
-            .map(|bounds| Span::measured(&mesh, direction, bounds))
+            .map(|bounds| Span::measured(&patch, direction, bounds))
             .collect();
         if elements[direction] < spans.len() {
             let name = ["u", "v"][direction];
@@ -41,7 +41,7 @@ pub fn subdivide(mesh: Mesh, elements: [usize; 2]) -> Result<Mesh, ModelError> {
             }));
         }
     }
-    Ok(mesh.with_knots(&new))
+    Ok(patch.with_knots(&new))
 }
 
 /// A span between two knots, on the middle line of the other direction.
@@ -52,14 +52,14 @@ struct Span {
 }
 
 impl Span {
-    fn measured(mesh: &Mesh, direction: usize, bounds: [f64; 2]) -> Self {
+    fn measured(patch: &Patch, direction: usize, bounds: [f64; 2]) -> Self {
         let [from, to] = bounds;
         let step = (to - from) / STEPS as f64;
         let mut length = 0.0;
         let sum = |k: usize| {
             let parameter = from + (k as f64 + 0.5) * step;
             let at = if direction == 0 { [parameter, 0.5] } else { [0.5, parameter] };
-            length += step * norm(mid_surface_point(mesh, &[], at).derivatives[direction]);
+            length += step * norm(mid_surface_point(patch, &[], at).derivatives[direction]);
             length
         };
         Self { bounds, lengths: (0..STEPS).map(sum).collect() }

@@ -12,7 +12,7 @@
 use crate::model::expressions::{Sum, line_terms, nonzero, shares};
 use crate::model::symmetry_plane::NoPlane;
 use crate::shell::{add, scaled};
-use crate::spline::Mesh;
+use crate::spline::Patch;
 
 /// Difference of shares of weights along a line below which it is rounding.
 const EVEN: f64 = 1e-9;
@@ -31,10 +31,10 @@ impl Line {
     ///
     /// # Errors
     /// Where no spline can keep its slope there.
-    pub(super) fn new(mesh: &Mesh, direction: usize, parameter: f64) -> Result<Self, NoPlane> {
+    pub(super) fn new(patch: &Patch, direction: usize, parameter: f64) -> Result<Self, NoPlane> {
         let mut line = Self { places: Vec::new(), slopes: Vec::new() };
         let mut rate = None;
-        for [value, slope] in line_terms(mesh, direction, parameter) {
+        for [value, slope] in line_terms(patch, direction, parameter) {
             let sum = |terms: &Sum| terms.iter().map(|(_, factor)| factor).sum::<f64>();
             let steepest = slope.iter().map(|(_, factor)| factor.abs()).fold(0.0, f64::max);
             let total = sum(&value);
@@ -52,21 +52,21 @@ impl Line {
     }
 
     /// Control points of the line as a curve, mm.
-    pub(super) fn points(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
-        sums_of(mesh, &self.places)
+    pub(super) fn points(&self, patch: &Patch) -> Vec<[f64; 3]> {
+        sums_of(patch, &self.places)
     }
 
     /// Steps across the line from each of its control points, relative to the largest weight.
-    pub(super) fn steps(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
-        sums_of(mesh, &self.slopes)
+    pub(super) fn steps(&self, patch: &Patch) -> Vec<[f64; 3]> {
+        sums_of(patch, &self.slopes)
     }
 }
 
 /// Evaluates weighted sums of the control points, mm.
-fn sums_of(mesh: &Mesh, sums: &[Sum]) -> Vec<[f64; 3]> {
+fn sums_of(patch: &Patch, sums: &[Sum]) -> Vec<[f64; 3]> {
     let of_sum = |sum: &Sum| {
         sum.iter().fold([0.0; 3], |to, (point, factor)| {
-            let [x, y, z, w] = mesh.control_points[*point];
+            let [x, y, z, w] = patch.control_points[*point];
             add(to, scaled(factor / w, [x, y, z]))
         })
     };

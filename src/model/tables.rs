@@ -3,11 +3,13 @@
 use rayon::prelude::*;
 
 use crate::model::connectivity::{Connectivity, starts};
+use crate::model::member::{Member, members};
 use crate::model::quadrature::{Counts, PointCounts};
 use crate::scene::{Material, Scene};
 use crate::shell::{PointBatch, PointReference, StretchingBatch, gauss_legendre};
 use crate::spline::{
-    Grid, Mesh, Spans, basis_derivatives, basis_derivatives_len, find_span, quotient_derivatives, tensor_derivatives,
+    Grid, Mesh, Patch, Spans, basis_derivatives, basis_derivatives_len, find_span, quotient_derivatives,
+    tensor_derivatives,
 };
 
 /// Multiple that numbers of basis functions are padded to, so that kernels work on whole vectors of any width.
@@ -131,14 +133,28 @@ impl<Batch, const ROWS: usize> PointTable<Batch, ROWS> {
 
 impl Tables {
     /// Builds the tables for the scene's quadrature and material on a mesh.
-    pub fn new(scene: &Scene, mesh: &Mesh) -> Self {
+    pub fn new(scene: &Scene, mesh: &Patch) -> Self {
         Self::on_elements_of(scene, mesh, mesh)
+    }
+
+    /// Builds the tables of each shell of a structure.
+    pub fn of_structure(scene: &Scene, mesh: &Mesh) -> Vec<Self> {
+        let points = mesh.point_count();
+        members(scene, mesh).iter().map(|member| Self::of_member(member, member.patch, points)).collect()
+    }
+
+    /// Builds the tables of a shell of a structure, on the numbers that control points have in the structure, where `finer` is
+    /// the shell's patch or has knots inserted ([`Self::on_elements_of`]); `points` is the number of all control points.
+    pub(crate) fn of_member(member: &Member, finer: &Patch, points: usize) -> Self {
+        let mut tables = Self::on_elements_of(&member.scene, member.patch, finer);
+        tables.connectivity = tables.connectivity.shifted(points, member.points.start);
+        tables
     }
 
     /// Builds the tables of the functions of `mesh` at the quadrature points of the elements of `finer`, which is
     /// `mesh` with knots inserted. They give the energy of a displacement on `mesh` integrated over the elements of
     /// `finer`.
-    pub fn on_elements_of(scene: &Scene, mesh: &Mesh, finer: &Mesh) -> Self {
+    pub fn on_elements_of(scene: &Scene, mesh: &Patch, finer: &Patch) -> Self {
         let geometry = Geometry::new(scene, mesh, finer);
         let counts = PointCounts::of(scene, finer);
         let bending_alone = counts.stretching.is_some();
@@ -165,13 +181,13 @@ impl Tables {
 /// The functions of a mesh on elements that may be finer than its own, from which points are made.
 struct Geometry<'a> {
     material: &'a Material,
-    mesh: &'a Mesh,
+    mesh: &'a Patch,
     /// Elements in each direction, with the knot spans of `mesh` that they lie in.
     spans: [Spans; 2],
 }
 
 impl<'a> Geometry<'a> {
-    fn new(scene: &'a Scene, mesh: &'a Mesh, finer: &Mesh) -> Self {
+    fn new(scene: &'a Scene, mesh: &'a Patch, finer: &Patch) -> Self {
         let spans = [0, 1].map(|direction| {
             let mut spans = Spans::of(&finer.knots[direction], mesh.degree[direction]);
             for (index, [from, to]) in spans.index.iter_mut().zip(&spans.bounds) {
@@ -207,7 +223,7 @@ struct Direction {
 }
 
 impl Direction {
-    fn new(mesh: &Mesh, direction: usize, spans: &Spans, counts: &[usize]) -> Self {
+    fn new(mesh: &Patch, direction: usize, spans: &Spans, counts: &[usize]) -> Self {
         let degree = mesh.degree[direction];
         let knots = &mesh.knots[direction];
         let rules: Vec<Vec<[f64; 2]>> = counts.iter().map(|count| gauss_legendre(*count)).collect();

@@ -5,7 +5,7 @@ use crate::model::ModelError;
 use crate::model::gauss::span_points;
 use crate::scene::{Material, Scene};
 use crate::shell::{PointReference, cross, norm};
-use crate::spline::{Mesh, SurfacePoint, mid_surface_point};
+use crate::spline::{Patch, SurfacePoint, mid_surface_point};
 use crate::units::place;
 
 /// Share of a radius or a side from which on the thickness causes a remark: plates so thick bend by shear too, by about
@@ -41,10 +41,10 @@ struct Sample {
 
 impl Extent {
     /// Measures the surface of a mesh, which has a normal everywhere.
-    pub fn of(mesh: &Mesh, material: &Material) -> Self {
-        let [us, vs] = [0, 1].map(|direction| span_points(mesh, direction, POINTS));
+    pub fn of(patch: &Patch, material: &Material) -> Self {
+        let [us, vs] = [0, 1].map(|direction| span_points(patch, direction, POINTS));
         let sample = |[u, along]: [f64; 2], [v, across]: [f64; 2]| {
-            let SurfacePoint { position, derivatives } = mid_surface_point(mesh, &[], [u, v]);
+            let SurfacePoint { position, derivatives } = mid_surface_point(patch, &[], [u, v]);
             let curvature = PointReference::new(derivatives, material, 1.0).largest_curvature();
             Sample { curvature, position, area: along * across * norm(cross(derivatives[0], derivatives[1])) }
         };
@@ -56,14 +56,14 @@ impl Extent {
             left < 0.0
         });
         let (curvature, at) = sharpest.map_or((0.0, [0.0; 3]), |sample| (sample.curvature, sample.position));
-        Self { radius_mm: 1.0 / curvature, at, side_mm: side_mm(mesh, 0).min(side_mm(mesh, 1)) }
+        Self { radius_mm: 1.0 / curvature, at, side_mm: side_mm(patch, 0).min(side_mm(patch, 1)) }
     }
 }
 
 /// Computes the length of the line through the middle that runs in a direction, mm.
-pub(super) fn side_mm(mesh: &Mesh, direction: usize) -> f64 {
-    let point = |at: f64| mid_surface_point(mesh, &[], if direction == 0 { [at, 0.5] } else { [0.5, at] });
-    span_points(mesh, direction, POINTS)
+pub(super) fn side_mm(patch: &Patch, direction: usize) -> f64 {
+    let point = |at: f64| mid_surface_point(patch, &[], if direction == 0 { [at, 0.5] } else { [0.5, at] });
+    span_points(patch, direction, POINTS)
         .into_iter()
         .map(|[at, weight]| weight * norm(point(at).derivatives[direction]))
         .sum()
@@ -74,8 +74,8 @@ pub(super) fn side_mm(mesh: &Mesh, direction: usize) -> f64 {
 /// # Errors
 /// Where the thickness reaches the smallest radius of curvature or the shorter side, or the offset is a larger share of
 /// a radius than the theory allows.
-pub fn check_thinness(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
-    let Extent { radius_mm, at, side_mm } = Extent::of(mesh, &scene.material);
+pub fn check_thinness(scene: &Scene, patch: &Patch) -> Result<(), ModelError> {
+    let Extent { radius_mm, at, side_mm } = Extent::of(patch, &scene.material);
     let (thickness_mm, offset_mm) = (scene.material.thickness_mm(), scene.material.offset_mm());
     if thickness_mm >= radius_mm {
         return Err(ModelError::ThickerThanRadius { thickness_mm, radius_mm, at: place(at) });

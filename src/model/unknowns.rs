@@ -22,7 +22,7 @@ use crate::model::elimination::{Expression, eliminate};
 use crate::model::supports::{PrescribedMotion, Section, Supports};
 
 use crate::scene::Scene;
-use crate::spline::{Grid, Mesh};
+use crate::spline::Mesh;
 
 /// The share of one coordinate in the displacement of one control point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,7 +95,7 @@ impl Unknowns {
             points,
             home: Vec::new(),
         };
-        unknowns.number(&eliminated, mesh.grid());
+        unknowns.number(&eliminated, &in_turn(mesh));
         Ok(unknowns)
     }
 
@@ -158,16 +158,13 @@ impl Unknowns {
             })
     }
 
-    /// Numbers the free motions of sections and the components that were not eliminated, line of control points after
-    /// line along the direction that has more of them, so that unknowns that meet are near each other; and lists each
-    /// control point's entries.
-    fn number(&mut self, eliminated: &BTreeMap<usize, Expression>, grid: Grid) {
+    /// Numbers the free motions of sections and the components that were not eliminated, with control points in this order,
+    /// so that unknowns that meet are near each other; and lists each control point's entries.
+    fn number(&mut self, eliminated: &BTreeMap<usize, Expression>, in_turn: &[usize]) {
         let components = 3 * self.points.len();
         let mut of_component = BTreeMap::new();
         self.motions = vec![[usize::MAX; 6]; self.supports.sections.len()];
-        let [n1, n2] = grid.counts;
-        let in_turn: Vec<usize> = if n1 >= n2 { (0..grid.len()).collect() } else { grid.first_fastest().collect() };
-        for point in in_turn {
+        for point in in_turn.iter().copied() {
             self.number_motions_at(point);
             for c in (0..3).filter(|c| !eliminated.contains_key(&(3 * point + c))) {
                 of_component.insert(3 * point + c, self.home.len());
@@ -238,6 +235,26 @@ impl Unknowns {
         self.entries.extend(all);
         self.start.push(self.entries.len());
     }
+}
+
+/// Lists control points so that those that meet are near each other: of one patch line after line along the direction that
+/// has more of them, of several by their positions along the longest side of the structure.
+fn in_turn(mesh: &Mesh) -> Vec<usize> {
+    if let [patch] = &mesh.patches[..] {
+        let grid = patch.grid();
+        let [n1, n2] = grid.counts;
+        return if n1 >= n2 { (0..grid.len()).collect() } else { grid.first_fastest().collect() };
+    }
+    let points: Vec<[f64; 3]> = mesh.points().collect();
+    let extent = |c: usize| {
+        let [low, high] =
+            points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x[c]), high.max(x[c])]);
+        high - low
+    };
+    let longest = [1, 2].into_iter().fold(0, |best, c| if extent(c) > extent(best) { c } else { best });
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|one, other| points[*one][longest].total_cmp(&points[*other][longest]));
+    order
 }
 
 pub(super) fn unit(c: usize) -> [f64; 3] {

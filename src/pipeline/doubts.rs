@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use crate::adapt::{Halved, evaluate_indicators, largest_strain};
-use crate::energy::TermSource;
+use crate::energy::{Discretization, Shell, TermSource};
 use crate::equilibrium::{Configuration, Equilibrium, LinearBuckling, Solved, Workspace};
+use crate::model::{Member, members};
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step_control::next_stage;
 use crate::record::{LARGE, Reading, Report, Warning};
@@ -78,7 +79,12 @@ impl Doubts<'_> {
 
     fn large_strains(&self) -> Option<Warning> {
         let Self { scene, work, state, .. } = self;
-        let (strain, at) = largest_strain(work.discretization(), &state.displacement, scene.material.thickness_mm());
+        let Discretization { mesh, shells, .. } = work.discretization();
+        let of_shell = |(member, shell): (Member, &Shell)| {
+            largest_strain((member.patch, shell), &state.displacement, member.scene.material.thickness_mm())
+        };
+        let all = members(scene, mesh).into_iter().zip(shells).map(of_shell);
+        let (strain, at) = all.reduce(|one, other| if other.0 > one.0 { other } else { one })?;
         (strain > LARGE_STRAIN).then_some(Warning::LargeStrains { parameter: state.parameter, strain, at })
     }
 
@@ -90,7 +96,7 @@ impl Doubts<'_> {
         let state = self.state;
         let mut halved = Halved::of(self.scene, self.own, state)?;
         let halving = halved.halving();
-        let (parameter, elements) = (state.parameter, state.mesh.element_counts());
+        let (parameter, elements) = (state.parameter, state.mesh.elements());
         let energy_share = halving.energy_share();
         if energy_share.is_finite() && energy_share > LARGE {
             return (!halving.is_still()).then_some(Warning::CoarseElements { parameter, elements, energy_share });
@@ -141,7 +147,7 @@ impl Doubts<'_> {
         let (worst, finer) = off.first()?;
         Some(Warning::ProbeOff {
             parameter: state.parameter,
-            elements: state.mesh.element_counts(),
+            elements: state.mesh.elements(),
             probe: worst.name.clone(),
             value: worst.value,
             halved: finer.value,
@@ -158,7 +164,7 @@ impl Doubts<'_> {
             return false;
         };
         let indicators = evaluate_indicators(scene, adapt, work.discretization(), &state.displacement);
-        indicators.marked.iter().all(Vec::is_empty) && indicators.blocked.is_none()
+        indicators.marked.iter().flatten().all(Vec::is_empty) && indicators.blocked.is_none()
     }
 }
 

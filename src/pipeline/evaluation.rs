@@ -8,12 +8,12 @@ use crate::adapt::{
 };
 use crate::energy::TermSource;
 use crate::equilibrium::{Configuration, Workspace, WorkspaceError};
-use crate::model::starting_mesh;
+use crate::model::{pass_on, starting_mesh};
 use crate::pipeline::current_mesh::CurrentMesh;
 use crate::pipeline::measured::Measured;
 use crate::record::{Report, Warning};
 use crate::scene::{Adapt, Indicator, Scene, Stage};
-use crate::state::{Estimate, State};
+use crate::state::{Estimate, KnotLists, State};
 
 /// What halving the spans of either direction would change, and the relative errors that are in it.
 type Errors = ([DirectionalError; 2], [f64; 2]);
@@ -40,12 +40,13 @@ impl Evaluation<'_> {
             largest_indicator: indicators.largest,
             ..Report::of(scene, state, work.discretization().unknowns.count())
         };
-        let next = State { marked: indicators.marked, superfluous: Default::default(), ..state.clone() };
+        let marked = pass_on(scene, &state.mesh, indicators.marked)?;
+        let next = State { marked, superfluous: state.mesh.no_knots(), ..state.clone() };
         let (next, mut report) = match adapt.indicator {
             Indicator::BendingStrain(_) => (next, report),
             Indicator::Error(tolerance) => self.by_error(tolerance, next, report)?,
         };
-        report.marked = next.marked.each_ref().map(Vec::len);
+        report.marked = counts(&next.marked);
         let blocked = indicators.blocked.filter(|_| report.marked == [0, 0]);
         report.warnings.extend(blocked.map(|blocked| Warning::of_blocked(state, blocked)));
         Ok((next, report))
@@ -61,12 +62,13 @@ impl Evaluation<'_> {
         let Some((errors, relative)) = self.errors()? else { return Ok((State { estimate: None, ..next }, report)) };
         let Self { scene, adapt, state, .. } = *self;
         let discretization = self.current.workspace(scene, self.own, &state.mesh)?.discretization();
+        let shell = &discretization.shells[0];
         let judged = JudgedMesh {
-            mesh: &state.mesh,
+            mesh: state.mesh.lone(),
             errors: &errors,
             relative,
-            lengths: &span_lengths(discretization),
-            limit: length_limit(scene, discretization, adapt.length_limit),
+            lengths: &span_lengths(shell),
+            limit: length_limit(scene, shell, adapt.length_limit),
             tolerance,
         };
         let marked = judged.marked();
@@ -80,7 +82,7 @@ impl Evaluation<'_> {
         let superfluous = match room > 0.0 {
             true => {
                 let work = self.current.workspace(scene, self.own, &state.mesh)?;
-                superfluous(scene, work, state, &starting_mesh(scene)?, room).unwrap_or_default()
+                superfluous(scene, work, state, starting_mesh(scene)?.lone(), room).unwrap_or_default()
             }
             false => Default::default(),
         };
@@ -90,6 +92,7 @@ impl Evaluation<'_> {
         let warning = Warning::ToleranceNotMet { parameter: state.parameter, estimated: relative_error, tolerance };
         let warnings = is_out_of_reach.then_some(warning).into_iter().collect();
         let report = Report { estimated_error: Some(relative), warnings, ..report };
+        let (marked, superfluous) = (vec![marked], vec![superfluous]);
         Ok((State { marked, superfluous, estimate, ..next }, report))
     }
 
@@ -115,4 +118,9 @@ impl Evaluation<'_> {
         let relative = errors.each_ref().map(|error| measured.relative_error(scene, state, here, slope, error, stored));
         Ok(Some((errors, relative)))
     }
+}
+
+/// Number of knots of all patches, each way.
+pub(super) fn counts(lists: &KnotLists) -> [usize; 2] {
+    [0, 1].map(|direction| lists.iter().map(|knots| knots[direction].len()).sum())
 }

@@ -3,12 +3,12 @@
 use std::cell::OnceCell;
 
 use crate::adapt::largest_bending_strain;
-use crate::energy::{At, Discretization};
+use crate::energy::{At, ConnectionState, Discretization};
 use crate::equilibrium::{Configuration, Coordinates, Workspace};
 use crate::model::{
-    Exerted, ModelError, Placement, Site, control_expressions, direction_at, line_place, parameters_of,
+    Exerted, Member, ModelError, Placement, Site, control_expressions, direction_at, line_place, members, parameters_of,
 };
-use crate::record::Reading;
+use crate::record::{ConnectionReading, Reading};
 use crate::scene::{Axis, Component, Probe, ProbeKind, Reaction, Region, Scene, SurfaceDirection};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::mid_surface_point;
@@ -53,12 +53,27 @@ fn read(
     let forces = work.forces(at);
     let discretization = work.discretization();
     let Coordinates { placement, .. } = Coordinates::of(&discretization.unknowns, at);
-    let reader = Reader { scene, discretization, at, placement, forces: &forces, exerted: OnceCell::new(), energy };
+    let members = members(scene, &discretization.mesh);
+    let reader =
+        Reader { scene, members, discretization, at, placement, forces: &forces, exerted: OnceCell::new(), energy };
     probes.iter().map(|probe| reader.read(probe)).collect()
+}
+
+/// Reads the joints and bonds of a structure at an equilibrium.
+pub(super) fn read_connections(work: &Workspace, at: Configuration) -> Vec<ConnectionReading> {
+    let Discretization { mesh, connections, .. } = work.discretization();
+    let stored = work.energy(at.displacement, at.parameter);
+    let states = connections.states(At { mesh, displacement: at.displacement, parameter: at.parameter });
+    let reading = |ConnectionState { name, energy_n_mm, opened_deg }| {
+        let energy_share = if stored > 0.0 { energy_n_mm / stored } else { 0.0 };
+        ConnectionReading { name, energy_share, opened_deg }
+    };
+    states.into_iter().map(reading).collect()
 }
 
 struct Reader<'a> {
     scene: &'a Scene,
+    members: Vec<Member<'a>>,
     discretization: &'a Discretization,
     at: Configuration<'a>,
     placement: Placement<'a>,
@@ -70,14 +85,16 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn read(&self, Probe { name, kind }: &Probe) -> Result<Reading, ModelError> {
+    fn read(&self, Probe { name, shell, kind }: &Probe) -> Result<Reading, ModelError> {
+        let member = &self.members[*shell];
         let (value, unit, at) = match kind {
-            ProbeKind::Displacement { on, component } => (self.displacement(*on, *component), "mm", None),
+            ProbeKind::Displacement { on, component } => (self.displacement(member, *on, *component), "mm", None),
             ProbeKind::Reaction { support, component } => self.reaction(support, *component)?,
             ProbeKind::SectionMoment { on, component } => (self.section_moment(name, *on, *component)?, "N·mm", None),
             ProbeKind::Energy => (self.energy, "N·mm", None),
             ProbeKind::BendingStrain => {
-                let (value, at) = largest_bending_strain(self.discretization, self.at.displacement);
+                let on = (member.patch, &self.discretization.shells[*shell]);
+                let (value, at) = largest_bending_strain(on, self.at.displacement);
                 (value, "1/mm", Some(at))
             }
         };
@@ -88,15 +105,15 @@ impl Reader<'_> {
         self.exerted.get_or_init(|| self.placement.exerted(self.forces))
     }
 
-    fn displacement(&self, on: [f64; 2], component: Component) -> f64 {
-        let mesh = &self.discretization.mesh;
-        let place = parameters_of(&self.scene.geometry, on);
-        let [after, before] = [self.at.displacement, &[]].map(|u| mid_surface_point(mesh, u, place));
+    fn displacement(&self, member: &Member, on: [f64; 2], component: Component) -> f64 {
+        let place = parameters_of(&member.scene.geometry, on);
+        let moved = &self.at.displacement[member.points.clone()];
+        let [after, before] = [moved, &[]].map(|u| mid_surface_point(member.patch, u, place));
         let moved = sub(after.position, before.position);
         let along = |direction: SurfaceDirection| {
             let tangents = [before.derivatives[0], before.derivatives[1]];
             let site = Site { position: before.position, tangents, edge: None };
-            dot(moved, direction_at(&self.scene.geometry, &site, direction))
+            dot(moved, direction_at(&member.scene, &site, direction))
         };
         match component {
             Component::X => moved[0],
@@ -149,22 +166,26 @@ impl Reader<'_> {
     /// one element of the line, their forces are shared out between the sides as the functions of the control points
     /// are.
     fn section_moment(&self, probe: &str, on: Region, component: Axis) -> Result<f64, ModelError> {
-        let Discretization { mesh, shell, terms, .. } = self.discretization;
-        let Some(line) = line_place(self.scene, mesh, on) else {
+        let Discretization { mesh, shells, terms, .. } = self.discretization;
+        let [shell] = &shells[..] else {
+            return Err(ModelError::NotASection { probe: probe.to_owned() });
+        };
+        let patch = mesh.lone();
+        let Some(line) = line_place(self.scene, patch, on) else {
             return Err(ModelError::NotASection { probe: probe.to_owned() });
         };
         let mut limits = [f64::INFINITY; 2];
         limits[line.direction] = line.parameter;
-        let terms = terms.below(self.scene, mesh, &shell.tables, limits)?;
+        let terms = terms.below(self.scene, mesh, std::slice::from_ref(&shell.tables), limits)?;
         let at = At { mesh, displacement: self.at.displacement, parameter: self.at.parameter };
         let acting = terms.forces(at);
-        let places = control_expressions(self.scene, mesh, on)?;
+        let places = control_expressions(self.scene, patch, on)?;
         let count = places.len() as f64;
         let middle = places
             .iter()
             .flatten()
             .fold([0.0; 3], |sum, (point, factor)| add(sum, scaled(factor / count, self.position(*point))));
-        let grid = mesh.grid();
+        let grid = patch.grid();
         let side = (0..grid.len()).filter(|point| grid.place(*point)[line.direction] < line.first_beyond);
         let Exerted { by_joints, .. } = self.exerted();
         // A joint across the line acts on control points of both sides: its forces on this side are not external.

@@ -3,6 +3,7 @@
 use crate::equilibrium::{FactorError, SolveError};
 use crate::model::{MOST_CONTROL_POINTS, ModelError};
 use crate::scene::Stage;
+use crate::spline::Elements;
 
 /// Reasons why a stage could not be run to its end. The state before it remains valid.
 #[derive(Debug, thiserror::Error)]
@@ -58,10 +59,8 @@ pub enum StageError {
     },
     /// The refined mesh has no equilibrium at the load.
     #[error(
-        "step {step}, re-equilibrate at {reached} on {} × {} elements: {cause}; raise solver.max_iterations (by arc length: lower continuation.longest_step), or adapt.threshold to \
-         refine less at once, and continue with `foldline run SCENE --resume`",
-        elements[0],
-        elements[1]
+        "step {step}, re-equilibrate at {reached} on {elements} elements: {cause}; raise solver.max_iterations (by arc length: lower continuation.longest_step), or adapt.threshold to \
+         refine less at once, and continue with `foldline run SCENE --resume`"
     )]
     NotReEquilibrated {
         /// Number of the load step.
@@ -69,7 +68,7 @@ pub enum StageError {
         /// Parameter of the state, with its unit.
         reached: String,
         /// Number of elements in each direction.
-        elements: [usize; 2],
+        elements: Elements,
         /// Reason why the solve failed.
         cause: Box<SolveError>,
     },
@@ -135,14 +134,14 @@ pub enum StageError {
         negative_pivots: u64,
     },
     /// The equations do not fit in memory.
-    #[error("step {step}, {stage} on {elements:?} elements: {cause}")]
+    #[error("step {step}, {stage} on {elements} elements: {cause}")]
     TooLarge {
         /// Number of the load step.
         step: u64,
         /// Stage that failed.
         stage: Stage,
         /// Number of elements in each direction.
-        elements: [usize; 2],
+        elements: Elements,
         /// Error of the sparse solver.
         cause: FactorError,
     },
@@ -158,16 +157,14 @@ pub enum StageError {
     },
     /// Refinement asks for more than memory holds.
     #[error(
-        "step {step}, refine-knots: {} × {} elements would have {count} control points, and the most is {MOST_CONTROL_POINTS}; raise \
-         adapt.threshold or adapt.length_limit_mm",
-        elements[0],
-        elements[1]
+        "step {step}, refine-knots: {elements} elements would have {count} control points, and the most is {MOST_CONTROL_POINTS}; raise \
+         adapt.threshold or adapt.length_limit_mm"
     )]
     RefinedTooFar {
         /// Number of the load step.
         step: u64,
         /// Number of elements in each direction that were asked for.
-        elements: [usize; 2],
+        elements: Elements,
         /// Number of control points of that mesh.
         count: usize,
     },

@@ -6,18 +6,18 @@ use crate::adapt::{Coarsened, Finest, project_displacements};
 use crate::digest::Hash;
 use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_energy};
 use crate::equilibrium::{Configuration, Iterate, Workspace, WorkspaceError};
-use crate::model::{FreeStrains, MOST_CONTROL_POINTS, ModelError, Tables, starting_mesh};
+use crate::model::{FreeStrains, MOST_CONTROL_POINTS, Member, ModelError, Tables, members, starting_mesh};
 use crate::pipeline::StageError;
 use crate::pipeline::current_mesh::CurrentMesh;
 use crate::pipeline::doubts::{Doubts, ReadAt, doubtful};
-use crate::pipeline::evaluation::Evaluation;
+use crate::pipeline::evaluation::{Evaluation, counts};
 use crate::pipeline::load_drive::LoadDrive;
 use crate::pipeline::path_drive::PathDrive;
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step::{Drives, Step, out_of_order};
 use crate::record::{Reading, Report, Warning, run_hash};
 use crate::scene::{Drive, Indicator, Scene, Stage};
-use crate::spline::Mesh;
+use crate::spline::{Mesh, Patch};
 use crate::state::{DriveMemory, Refinement, State};
 
 /// Runner of the stages of one scene. It keeps buffers of the current mesh, which new ones would fill with the same
@@ -68,7 +68,7 @@ impl Stages {
         check_held(&self.scene, mesh, unknowns, &self.own)?;
         check_balance(&self.scene, mesh, unknowns, &self.own)?;
         if unknowns.count() == 0 {
-            return Err(ModelError::NothingFree { elements: mesh.element_counts() });
+            return Err(ModelError::NothingFree { elements: mesh.elements() });
         }
         if unknowns.turns_are_unknown() {
             state.turns = vec![[0.0; 3]; unknowns.sections().len()];
@@ -183,12 +183,12 @@ impl Stages {
 
     /// Takes superfluous knots out. What the approximation of the displacements costs shows in the energy of the report.
     fn coarsen(&mut self, state: &State) -> Result<(State, Report), StageError> {
-        if state.superfluous.iter().all(Vec::is_empty) {
+        if state.superfluous.iter().flatten().all(Vec::is_empty) {
             return Err(out_of_order(state, Stage::CoarsenKnots, "no knot is superfluous"));
         }
         let failed = |cause| StageError::Model { step: state.step, stage: Stage::CoarsenKnots, cause };
         let start = starting_mesh(&self.scene).map_err(failed)?;
-        let Some(coarsened) = Coarsened::new(&state.mesh, &state.superfluous, &start) else {
+        let Some(coarsened) = Coarsened::new(state.mesh.lone(), &state.superfluous[0], start.lone()) else {
             return Err(out_of_order(
                 state,
                 Stage::CoarsenKnots,
@@ -196,12 +196,13 @@ impl Stages {
             ));
         };
         let displacement = coarsened.approximated(&state.displacement);
-        let (scene, work) = self.workspace(&coarsened.mesh, state.step, Stage::CoarsenKnots)?;
+        let coarser = Arc::new(coarsened.patch.clone().into());
+        let (scene, work) = self.workspace(&coarser, state.step, Stage::CoarsenKnots)?;
         let at = Configuration { displacement: &displacement, ..Configuration::of(state) };
         let (displacement, turns) = work.allowed(at);
         let next = State {
-            mesh: coarsened.mesh.clone(),
-            superfluous: Default::default(),
+            mesh: coarser,
+            superfluous: state.mesh.no_knots(),
             turns,
             strain_energy_n_mm: scene.symmetry.copies() as f64 * work.energy(&displacement, state.parameter),
             displacement,
@@ -218,31 +219,29 @@ impl Stages {
     }
 
     fn refine(&mut self, state: &State) -> Result<(State, Report), StageError> {
-        if state.marked.iter().all(Vec::is_empty) {
+        if state.marked.iter().flatten().all(Vec::is_empty) {
             return Err(out_of_order(state, Stage::RefineKnots, "no knot span is marked"));
         }
         let finer = Arc::new(state.mesh.with_knots(&state.marked));
-        if finer.control_points.len() > MOST_CONTROL_POINTS {
-            let (step, elements, count) = (state.step, finer.element_counts(), finer.control_points.len());
+        if finer.point_count() > MOST_CONTROL_POINTS {
+            let (step, elements, count) = (state.step, finer.elements(), finer.point_count());
             return Err(StageError::RefinedTooFar { step, elements, count });
         }
         // The energy is integrated on the finer elements: its change here is the error of the coarser quadrature, and
         // projecting then changes nothing.
-        let tables = Tables::on_elements_of(&self.scene, &state.mesh, &finer);
-        let natural = FreeStrains::new(&self.scene, &state.mesh).at(state.parameter);
         let parts = self.scene.symmetry.copies() as f64;
-        let energy = parts * (strain_energy(&tables, &state.displacement, natural) + self.stored_by_terms(state)?);
+        let energy = parts * (self.strain_energy_on(state, &finer) + self.stored_by_terms(state)?);
         let unknowns = match self.current.unknowns(&self.scene, &finer) {
             Ok(unknowns) => unknowns.count(),
             Err(cause) => return Err(StageError::Model { step: state.step, stage: Stage::RefineKnots, cause }),
         };
         let report = Report {
-            marked: state.marked.each_ref().map(Vec::len),
-            elements: finer.element_counts(),
+            marked: counts(&state.marked),
+            elements: finer.elements(),
             strain_energy_n_mm: energy,
             ..Report::of(&self.scene, state, unknowns)
         };
-        let [before, after] = [&state.mesh, &finer].map(|mesh| mesh.element_counts().iter().product::<usize>() as f64);
+        let [before, after] = [&state.mesh, &finer].map(|mesh| mesh.elements().count() as f64);
         // Along a path every critical point is located: the change by refining is not needed.
         let refinement = (!Drive::of(&self.scene).follows_path()).then(|| Refinement {
             changed_n_mm: (energy - state.strain_energy_n_mm).abs(),
@@ -251,13 +250,24 @@ impl Stages {
             ripple_n_mm: state.refinement.map_or(0.0, |last| last.ripple_n_mm),
         });
         let next = State {
+            marked: finer.no_knots(),
             refined: Some(finer),
-            marked: Default::default(),
             strain_energy_n_mm: energy,
             refinement,
             ..state.clone()
         };
         Ok((next, report))
+    }
+
+    /// Computes the strain energy of the shells at a state, integrated on the elements of a finer mesh, N·mm.
+    fn strain_energy_on(&self, state: &State, finer: &Mesh) -> f64 {
+        let points = state.mesh.point_count();
+        let of_member = |(member, finer): (Member, &Patch)| {
+            let tables = Tables::of_member(&member, finer, points);
+            let natural = FreeStrains::new(&member.scene, member.patch).at(state.parameter);
+            strain_energy(&tables, &state.displacement, natural)
+        };
+        members(&self.scene, &state.mesh).into_iter().zip(&finer.patches).map(of_member).sum()
     }
 
     /// Computes the energy that terms of the caller's own store in the model, N·mm.
@@ -310,7 +320,7 @@ impl Stages {
             drive: DriveMemory { control: *control, course: course.projected(project) },
             largest_force_n: *largest_force_n,
             refinement: *refinement,
-            superfluous: Default::default(),
+            superfluous: finer.no_knots(),
             estimate: None,
         };
         let report = Report::of(scene, &next, work.discretization().unknowns.count());
@@ -322,7 +332,8 @@ impl Stages {
         // Where a tolerance rules, the estimate says what meshes before were off by.
         let by_error = self.scene.adapt.as_ref().is_some_and(|adapt| matches!(adapt.indicator, Indicator::Error(_)));
         let refined = !by_error && matches!(report.stage, Stage::RefineKnots | Stage::ReEquilibrate);
-        report.warnings.extend(refined.then(|| Warning::of_refining(before, after, report.elements)).flatten());
+        let elements = report.elements.clone();
+        report.warnings.extend(refined.then(|| Warning::of_refining(before, after, elements)).flatten());
         for (state, read_at) in doubtful(&self.scene, before, after, report) {
             let work = self.current.workspace(&self.scene, &self.own, &state.mesh);
             let work = work.map_err(|cause| no_workspace(cause, &state.mesh, report.step, report.stage))?;
@@ -346,7 +357,7 @@ impl Stages {
 /// The error of a stage whose mesh the scene does not fit, or that does not fit in memory.
 fn no_workspace(cause: WorkspaceError, mesh: &Mesh, step: u64, stage: Stage) -> StageError {
     match cause {
-        WorkspaceError::Factor(cause) => StageError::TooLarge { step, stage, elements: mesh.element_counts(), cause },
+        WorkspaceError::Factor(cause) => StageError::TooLarge { step, stage, elements: mesh.elements(), cause },
         WorkspaceError::Model(cause) => StageError::Model { step, stage, cause },
     }
 }

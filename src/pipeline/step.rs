@@ -2,9 +2,9 @@
 
 use crate::equilibrium::{Configuration, Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
 use crate::pipeline::StageError;
-use crate::pipeline::probes::read_probes;
+use crate::pipeline::probes::{read_connections, read_probes};
 use crate::pipeline::step_control::{Attempt, energy_released, is_jump_on_refinement, known_release};
-use crate::record::{Outcome, Report};
+use crate::record::{Outcome, Report, Warning};
 use crate::scene::{Parameter, Scene, Stage};
 use crate::state::{Course, DriveMemory, State, StepControl};
 
@@ -42,8 +42,8 @@ impl Step<'_> {
     pub fn stay(&self, control: StepControl, course: Course) -> State {
         State {
             drive: DriveMemory { control, course },
-            marked: Default::default(),
-            superfluous: Default::default(),
+            marked: self.state.mesh.no_knots(),
+            superfluous: self.state.mesh.no_knots(),
             ..self.state.clone()
         }
     }
@@ -71,7 +71,11 @@ impl Step<'_> {
         let Self { stage, scene, work, .. } = self;
         let probes = read_probes(scene, work, Configuration::of(next), next.strain_energy_n_mm)
             .map_err(|cause| StageError::Model { step: next.step, stage: *stage, cause })?;
+        let connections = read_connections(work, Configuration::of(next));
+        let warnings = connections.iter().filter_map(|connection| Warning::of_connection(next.parameter, connection));
         Ok(Report {
+            warnings: warnings.collect(),
+            connections,
             iterations: solved.effort.iterations,
             factorizations: solved.effort.factorizations,
             residual: solved.residual,
@@ -145,7 +149,7 @@ impl Step<'_> {
         StageError::NotReEquilibrated {
             step: self.state.step,
             reached: self.shown(self.state.parameter),
-            elements: self.state.mesh.element_counts(),
+            elements: self.state.mesh.elements(),
             cause: Box::new(cause),
         }
     }
@@ -156,8 +160,8 @@ pub(super) fn settle(state: &State, solved: &Solved) -> State {
     State {
         displacement: solved.displacement.clone(),
         turns: solved.turns.clone(),
-        marked: Default::default(),
-        superfluous: Default::default(),
+        marked: state.mesh.no_knots(),
+        superfluous: state.mesh.no_knots(),
         moment_n_mm: solved.moment,
         strain_energy_n_mm: solved.balance.stored,
         largest_force_n: solved.largest_force,

@@ -193,7 +193,7 @@ pub fn is_jump_on_refinement(state: &State, released: f64) -> bool {
 mod tests {
     use super::*;
     use crate::scene::{EndRotation, Load, parse};
-    use crate::spline::Mesh;
+    use crate::spline::Patch;
     use crate::state::{Course, DriveMemory};
 
     fn scene(increment: f64, rotation_deg: f64) -> Scene {
@@ -211,7 +211,7 @@ mod tests {
     }
 
     fn at(parameter: f64, control: StepControl) -> State {
-        let mesh = Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] };
+        let mesh = Patch { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] };
         let drive = DriveMemory { control, course: Course::Unknown };
         State { step: 1, stage: Some(Stage::Solve), parameter, drive, ..State::undeformed(mesh) }
     }

@@ -24,7 +24,7 @@ pub use critical_point::CriticalPoint;
 pub(crate) use fields::as_number;
 pub use fields::fields_of;
 pub(crate) use report::released_in_words;
-pub use report::{Outcome, Reading, Report, WrittenReport};
+pub use report::{ConnectionReading, Outcome, Reading, Report, WrittenReport};
 pub use revision::NUMERICS_REVISION;
 pub use run_hash::run_hash;
 pub use sink::{MemorySink, Sink, SinkError};

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::record::{CriticalPoint, Warning};
 use crate::scene::{Parameter, Scene, Stage};
+use crate::spline::Elements;
 use crate::state::State;
 use crate::units::figure;
 
@@ -37,8 +38,8 @@ pub struct Report {
     /// Energy that these changes would have put in, had the shell stayed before or after, whichever is more, N·mm; 0 where there
     /// are none.
     pub put_in_n_mm: f64,
-    /// Elements (along u, along v) of the model.
-    pub elements: [usize; 2],
+    /// Elements (along u, along v) of the model; of several shells those of each.
+    pub elements: Elements,
     /// Free unknowns of the model.
     pub unknowns: usize,
     /// Newton iterations.
@@ -65,6 +66,8 @@ pub struct Report {
     pub estimated_error: Option<[f64; 2]>,
     /// The scene's probes at a new equilibrium; empty after other stages.
     pub probes: Vec<Reading>,
+    /// The joints and bonds of a structure that store energy, at a new equilibrium; empty after other stages.
+    pub connections: Vec<ConnectionReading>,
     /// Arc length: length of the path so far, mm.
     pub path_length_mm: Option<f64>,
     /// Arc length: what the step passed, where it is located.
@@ -93,7 +96,7 @@ impl Report {
             strain_energy_n_mm: state.strain_energy_n_mm,
             work_n_mm: 0.0,
             put_in_n_mm: 0.0,
-            elements: state.mesh.element_counts(),
+            elements: state.mesh.elements(),
             unknowns,
             iterations: 0,
             factorizations: 0,
@@ -106,6 +109,7 @@ impl Report {
             largest_indicator: [0.0; 2],
             estimated_error: None,
             probes: Vec::new(),
+            connections: Vec::new(),
             path_length_mm: state.drive.path().map(|path| path.travelled_mm),
             critical_point: None,
             warnings: Vec::new(),
@@ -134,6 +138,18 @@ pub struct Reading {
     /// Where it is, as parameters (u, v) in [0, 1], for a largest value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 2]>,
+}
+
+/// A joint or a bond at an equilibrium.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ConnectionReading {
+    /// Its name in the scene.
+    pub name: String,
+    /// Its share of the energy that the structure stores.
+    pub energy_share: f64,
+    /// Of a joint that keeps an angle, the largest angle by which it has opened, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub opened_deg: Option<f64>,
 }
 
 fn is_nothing(energy: &f64) -> bool {
@@ -181,7 +197,7 @@ pub struct WrittenReport {
     #[serde(default, skip_serializing_if = "is_nothing")]
     put_in_n_mm: f64,
     /// Elements (along u, along v) of the model.
-    elements: [usize; 2],
+    elements: Elements,
     /// Free unknowns of the model.
     unknowns: usize,
     /// Newton iterations.
@@ -214,6 +230,9 @@ pub struct WrittenReport {
     /// The scene's probes at a new equilibrium.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     probes: Vec<Reading>,
+    /// The joints and bonds of a structure that store energy, at a new equilibrium.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    connections: Vec<ConnectionReading>,
     /// Continuation by arc length: length of the path so far (root mean square displacements), mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "f64")]
@@ -254,6 +273,7 @@ impl From<WrittenReport> for Report {
             largest_indicator: written.largest_indicator,
             estimated_error: written.estimated_error,
             probes: written.probes,
+            connections: written.connections,
             path_length_mm: written.path_length_mm,
             critical_point: written.critical_point,
             warnings: written.warnings,
@@ -290,6 +310,7 @@ impl From<Report> for WrittenReport {
             largest_indicator: report.largest_indicator,
             estimated_error: report.estimated_error,
             probes: report.probes,
+            connections: report.connections,
             path_length_mm: report.path_length_mm,
             critical_point: report.critical_point,
             warnings: report.warnings,

@@ -13,6 +13,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::adapt::Blocked;
+use crate::record::report::ConnectionReading;
+use crate::spline::Elements;
 use crate::state::State;
 use crate::units::{count, signed, significant};
 
@@ -29,7 +31,7 @@ pub enum Warning {
         /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// Elements each way of the model there.
-        elements: [usize; 2],
+        elements: Elements,
         /// What halving them would change of the strain energy, relative to it ([`crate::adapt::Halving::energy_share`]).
         energy_share: f64,
     },
@@ -38,7 +40,7 @@ pub enum Warning {
         /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// Elements each way of the model there.
-        elements: [usize; 2],
+        elements: Elements,
         /// The probe that is off the most, relative to its value.
         probe: String,
         /// The reading of the probe.
@@ -55,7 +57,7 @@ pub enum Warning {
         /// The scene's parameter at the equilibrium concerned.
         parameter: f64,
         /// Elements each way of the model there.
-        elements: [usize; 2],
+        elements: Elements,
         /// The parameter at which the halved mesh buckles, to first order.
         halved: f64,
     },
@@ -93,20 +95,41 @@ pub enum Warning {
         /// The scene's parameter.
         parameter: f64,
         /// Elements each way of the model, after refining.
-        elements: [usize; 2],
+        elements: Elements,
         /// Change of the strain energy, relative to it.
         energy_change: f64,
     },
+    /// A joint or a bond stores more of the energy than one that holds does.
+    SoftConnection {
+        /// The scene's parameter.
+        parameter: f64,
+        /// Name of the joint or bond.
+        connection: String,
+        /// Its share of the energy.
+        energy_share: f64,
+    },
 }
+
+/// Share of the energy from which on a connection is said to be soft: in a right model a joint has about h/(1300 L).
+const SOFT: f64 = 1e-3;
 
 impl Warning {
     /// What refining at the same load did to the energy, where that is much.
-    pub(crate) fn of_refining(before: &State, after: &State, elements: [usize; 2]) -> Option<Self> {
+    pub(crate) fn of_refining(before: &State, after: &State, elements: Elements) -> Option<Self> {
         let energy_change = after.strain_energy_n_mm / before.strain_energy_n_mm - 1.0;
         let is_large = energy_change.is_finite() && energy_change.abs() > LARGE;
         // Behind a jump there is no equilibrium before: the fold only forms, and refining is to change it.
         let is_said = is_large && before.drive.previous().is_some();
         is_said.then_some(Self::EnergyChangedByRefining { parameter: before.parameter, elements, energy_change })
+    }
+
+    /// A connection that gives way.
+    pub(crate) fn of_connection(parameter: f64, connection: &ConnectionReading) -> Option<Self> {
+        (connection.energy_share > SOFT).then(|| Self::SoftConnection {
+            parameter,
+            connection: connection.name.clone(),
+            energy_share: connection.energy_share,
+        })
     }
 
     /// Spans that are kept too long.
@@ -125,6 +148,7 @@ impl Warning {
             Self::RefinementBlocked { .. } => "refinement blocked",
             Self::ToleranceNotMet { .. } => "tolerance not met",
             Self::EnergyChangedByRefining { .. } => "energy changed",
+            Self::SoftConnection { .. } => "soft connection",
         }
     }
 
@@ -137,7 +161,8 @@ impl Warning {
             | Self::LargeStrains { parameter, .. }
             | Self::RefinementBlocked { parameter, .. }
             | Self::ToleranceNotMet { parameter, .. }
-            | Self::EnergyChangedByRefining { parameter, .. } => parameter,
+            | Self::EnergyChangedByRefining { parameter, .. }
+            | Self::SoftConnection { parameter, .. } => parameter,
         }
     }
 
@@ -149,34 +174,34 @@ impl Warning {
     /// Describes the warning in a sentence, with its numbers and what to do.
     pub fn in_words(&self) -> String {
         match self {
-            &Self::CoarseElements { elements: [n1, n2], energy_share, .. } => {
-                let change = if energy_share > 1.0 {
+            Self::CoarseElements { elements, energy_share, .. } => {
+                let change = if *energy_share > 1.0 {
                     "more than all".to_owned()
                 } else {
                     format!("some {:.0} %", 100.0 * energy_share)
                 };
                 format!(
-                    "{n1} × {n2} elements cannot show this shape: halving each would change {change} of the strain energy; \
+                    "{elements} elements cannot show this shape: halving each would change {change} of the strain energy; \
                      write more elements or a higher degree in [mesh], or a lower adapt.threshold or adapt.tolerance"
                 )
             }
-            Self::ProbeOff { elements: [n1, n2], probe, value, halved, unit, others, .. } => {
+            Self::ProbeOff { elements, probe, value, halved, unit, others, .. } => {
                 let others = match others {
                     0 => String::new(),
                     _ => format!("; {} off as well", count(*others, "other probe")),
                 };
                 format!(
-                    "probe \"{probe}\" reads {} {unit} on {n1} × {n2} elements and {} {unit} with each of them \
+                    "probe \"{probe}\" reads {} {unit} on {elements} elements and {} {unit} with each of them \
                      halved{others}; write more elements or a higher degree in [mesh], or a lower adapt.threshold or adapt.tolerance",
                     significant(*value, 3),
                     significant(*halved, 3)
                 )
             }
-            &Self::LateBuckling { parameter, elements: [n1, n2], halved } => format!(
-                "{n1} × {n2} elements are too stiff against buckling: with each of them halved the shell is unstable at {}, \
+            Self::LateBuckling { parameter, elements, halved } => format!(
+                "{elements} elements are too stiff against buckling: with each of them halved the shell is unstable at {}, \
                  and buckles at some {}; write more elements or a higher degree in [mesh]",
-                significant(parameter, 3),
-                significant(halved, 3)
+                significant(*parameter, 3),
+                significant(*halved, 3)
             ),
             &Self::LargeStrains { strain, at: [u, v], .. } => format!(
                 "strains reach {} %, at u = {}, v = {}: the law of the material (stress in proportion to strain) and the theory \
@@ -202,8 +227,14 @@ impl Warning {
                     kept.join(" and ")
                 )
             }
-            &Self::EnergyChangedByRefining { elements: [n1, n2], energy_change, .. } => format!(
-                "refining to {n1} × {n2} elements changed the strain energy at the same load by {} %, and what was read before \
+            Self::SoftConnection { connection, energy_share, .. } => format!(
+                "\"{connection}\" stores {} % of the energy, and a connection that holds stores less than {} %: write shorter elements \
+                 beside it, or a larger `stiffness`",
+                significant(100.0 * energy_share, 2),
+                100.0 * SOFT
+            ),
+            Self::EnergyChangedByRefining { elements, energy_change, .. } => format!(
+                "refining to {elements} elements changed the strain energy at the same load by {} %, and what was read before \
                  is as far off; start from a finer mesh, or lower adapt.threshold or adapt.tolerance",
                 signed(100.0 * energy_change, 1)
             ),

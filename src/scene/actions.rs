@@ -2,14 +2,18 @@
 
 use serde_json::{Value, json};
 
-use super::data::{Action, ActionKind, ForceVector, Geometry, Material, Region, SurfaceDirection};
+use super::data::{Action, ActionKind, ForceVector, Geometry, Hold, Material, Region, Support, SurfaceDirection};
 use super::fault::Checked;
 use super::histories::history;
+use super::shells::{ReadShell, Shells};
 use super::table::{Table, data};
 
 /// One `[[action]]`.
-pub(super) fn action(table: &Table, shell: (&Geometry, &Material)) -> Checked<Action> {
-    let (geometry, material) = shell;
+pub(super) fn action(table: &Table, shells: &Shells, supports: &[Support]) -> Checked<Action> {
+    let acts_on_all =
+        ["gravity", "temperature", "natural-curvature", "section-force", "section-moment"].contains(&table.kind());
+    let shell = shells.named_in(table, acts_on_all)?;
+    let ReadShell { geometry, material, .. } = &shells.all[shell.unwrap_or(0)];
     let mut values = table.values.clone();
     for name in ["force_n", "force_n_per_mm", "force_n_per_mm2"] {
         if let Some(force) = values.get_mut(name) {
@@ -21,7 +25,30 @@ pub(super) fn action(table: &Table, shell: (&Geometry, &Material)) -> Checked<Ac
     }
     let kind = data(&table.title, values);
     check(table, &kind, material)?;
-    Ok(Action { name: table.name(), kind, history: history(table)? })
+    check_section(table, &kind, supports)?;
+    // The only shell is not named.
+    let shell = shell.filter(|_| shells.are_named);
+    Ok(Action { name: table.name(), kind, shell, history: history(table)? })
+}
+
+/// Refuses a load on a section that no support is, or that does not move.
+fn check_section(table: &Table, kind: &ActionKind, supports: &[Support]) -> Checked<()> {
+    let (ActionKind::SectionForce { section, .. } | ActionKind::SectionMoment { section, .. }) = kind else {
+        return Ok(());
+    };
+    let is_rigid = |support: &&Support| matches!(support.hold, Hold::Rigid { .. });
+    let names: Vec<&str> = supports.iter().filter(is_rigid).map(|support| &*support.name).collect();
+    if names.contains(&&**section) {
+        return Ok(());
+    }
+    let remedy = match names.is_empty() {
+        true => "add a [[support]] of kind = \"rigid\" with motions that are \"free\"".to_owned(),
+        false => format!(
+            "the rigid sections are {}",
+            names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+        ),
+    };
+    Err(table.wrong_at("section", format!("no rigid section is called \"{section}\""), remedy))
 }
 
 /// A force by its components, or by a number and `along`.

@@ -2,17 +2,19 @@
 
 use std::path::Path;
 
-use super::data::{ArcLength, EndRotation, Geometry, Load, LoadSteps, Material, Scene, Solver};
+use super::connections::connections;
+use super::data::{ArcLength, EndRotation, Geometry, Load, LoadSteps, Material, Scene, Solver, Symmetry};
 use super::document::Document;
 use super::error::SceneError;
 use super::fault::{Checked, CheckedWhole, Faults, Source};
-use super::geometries::TAPE_SPRING;
 use super::key_table::SECTIONS;
+use super::meshes::Refinable;
 use super::problem::Problem;
+use super::shells::{ReadShell, Shells, check_structure};
 use super::structure::structure;
 use super::table::{Table, between};
 use super::tables::Tables;
-use super::{geometries, materials, meshes};
+use super::{materials, meshes};
 use crate::units::significant;
 
 /// Length of the layer in which a cylinder feels its held end, in units of sqrt(R t): pi decay lengths of
@@ -36,40 +38,69 @@ pub fn parse(text: &str, file_name: &str) -> Result<Scene, SceneError> {
 pub fn parse_with_settings<S: AsRef<str>>(text: &str, file_name: &str, settings: &[S]) -> Result<Scene, SceneError> {
     let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
     let document = Document::read(text, settings, SECTIONS).map_err(|fault| vec![*fault]);
-    document.and_then(|document| scene(&Tables::read(&document)?, folder)).map_err(|faults| {
+    document.and_then(|document| scene(&document, folder)).map_err(|faults| {
         let file = Source { name: file_name.into(), text: text.into() };
         let settings = settings.iter().map(|text| Source { name: "--set".into(), text: text.as_ref().into() });
         SceneError::new(faults, std::iter::once(file).chain(settings).collect())
     })
 }
 
-fn scene(tables: &Tables, folder: &Path) -> CheckedWhole<Scene> {
-    let mut faults = Faults::default();
-    let geometry = faults.keep(geometries::geometry(tables.one("geometry"), folder));
-    let material = faults.keep(material(tables));
-    let mesh = faults.keep(meshes::mesh(tables));
-    let load = faults.keep(load(tables));
-    let stages = faults.keep(meshes::stages(tables));
-    let pipeline = stages.and_then(|stages| Some((faults.keep(meshes::adapt(tables, &stages))?, stages)));
-    let (Some(geometry), Some(material), Some((mesh, symmetry)), Some(load), Some((adapt, pipeline))) =
-        (geometry, material, mesh, load, pipeline)
-    else {
+fn scene(document: &Document<'_>, folder: &Path) -> CheckedWhole<Scene> {
+    match document.of_shells.is_empty() {
+        true => {
+            let tables = Tables::read(document)?;
+            let mut faults = Faults::default();
+            let shells = Shells::of_one(&tables, folder, &mut faults);
+            let chooses_mesh = meshes::chooses_mesh(&tables);
+            with_shells(&tables, shells, chooses_mesh, faults)
+        }
+        false => {
+            let tables = Tables::read(&document.of_structure())?;
+            let shells = Shells::of_structure(document, &tables, folder)?;
+            with_shells(&tables, Some(shells), false, Faults::default())
+        }
+    }
+}
+
+/// Reads the rest of a scene, whose shells are known where nothing is wrong with them.
+fn with_shells(tables: &Tables, shells: Option<Shells>, chooses_mesh: bool, mut faults: Faults) -> CheckedWhole<Scene> {
+    let load = faults.keep(load(tables, shells.as_ref()));
+    let kinds = shells.iter().flat_map(|shells| &shells.all).map(|shell| shell.geometry.word()).collect();
+    let is_structure = shells.as_ref().is_some_and(|shells| shells.are_named);
+    let refinable = Refinable { tables, chooses_mesh, kinds, is_structure };
+    let stages = faults.keep(meshes::stages(&refinable));
+    let pipeline = stages.and_then(|stages| Some((faults.keep(meshes::adapt(&refinable, &stages))?, stages)));
+    let symmetry = match is_structure {
+        true => Some(Symmetry::None),
+        false => faults.keep(meshes::symmetry(tables)),
+    };
+    let (Some(shells), Some(load), Some(symmetry), Some((adapt, pipeline))) = (shells, load, symmetry, pipeline) else {
         return Err(faults.0);
     };
-    faults.keep(check_length(tables.one("geometry"), &geometry, &material, &load));
+    faults.keep(check_structure(&shells, tables, &load));
     let solver = faults.keep(solver(tables, &load));
     let continuation = faults.keep(continuation(tables, &load));
-    let structure = structure(tables, &load, (&geometry, &material), &mut faults);
-    let (Some(solver), Some(continuation), Some((supports, actions, probes))) = (solver, continuation, structure)
+    let connections = connections(tables, &shells, &mut faults);
+    let structure = structure(tables, &load, &shells, &mut faults);
+    let (Some(solver), Some(continuation), Some((joints, bonds)), Some((supports, actions, probes))) =
+        (solver, continuation, connections, structure)
     else {
         return Err(faults.0);
     };
     let output = tables.one("output").data();
     let expect = Some(tables.one("expect")).filter(|table| table.is_given).map(Table::data);
+    let named = shells.named();
+    let Some(ReadShell { geometry, material, mesh, pose, .. }) = shells.all.into_iter().next() else {
+        unreachable!("a scene has a shell")
+    };
     faults.or(Scene {
         geometry,
         material,
         mesh,
+        pose,
+        shells: named,
+        joints,
+        bonds,
         symmetry,
         load,
         supports,
@@ -85,7 +116,7 @@ fn scene(tables: &Tables, folder: &Path) -> CheckedWhole<Scene> {
 }
 
 /// Refuses a spring that the boundary layers of its two ends fill: between rigid ends so near to each other no fold forms.
-fn check_length(table: &Table, geometry: &Geometry, material: &Material, load: &Load) -> Checked<()> {
+pub(super) fn check_length(table: &Table, geometry: &Geometry, material: &Material, load: &Load) -> Checked<()> {
     let (Geometry::TapeSpring { length_mm, radius_mm, .. }, Load::EndRotation(_)) = (geometry, load) else {
         return Ok(());
     };
@@ -104,7 +135,8 @@ fn check_length(table: &Table, geometry: &Geometry, material: &Material, load: &
     Err(table.wrong_at("length_mm", problem, remedy))
 }
 
-fn material(tables: &Tables) -> Checked<Material> {
+/// The material of a shell, which is thin.
+pub(super) fn material(tables: &Tables) -> Checked<Material> {
     let table = tables.one("material");
     let material = materials::material(table, tables.all("ply").collect())?;
     let thickness_mm = material.thickness_mm();
@@ -128,12 +160,14 @@ fn material(tables: &Tables) -> Checked<Material> {
     Ok(material)
 }
 
-fn load(tables: &Tables) -> Checked<Load> {
+fn load(tables: &Tables, shells: Option<&Shells>) -> Checked<Load> {
     let table = tables.one("load");
     if table.kind() == "steps" {
         return steps(table).map(Load::Steps);
     }
-    if tables.one("geometry").kind() != TAPE_SPRING {
+    let is_spring =
+        |shells: &Shells| matches!(shells.all[..], [ReadShell { geometry: Geometry::TapeSpring { .. }, .. }]);
+    if shells.is_some_and(|shells| !shells.are_named && !is_spring(shells)) {
         return Err(table.wrong_at(
             "kind",
             "only a tape spring has ends that turn",

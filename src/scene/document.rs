@@ -7,17 +7,24 @@ use toml::de::{DeTable, DeValue};
 
 use super::entry::Entry;
 use super::fault::{Checked, Fault, TextSpan};
+use super::key_table::OF_A_SHELL;
 use super::keys::Section;
 use super::problem::Problem;
 use super::{meant, syntax};
 use crate::printable::one_line;
 
+/// Name of the tables that each describe a shell of a structure.
+const SHELL: &str = "shell";
+
 /// The content of a scene file, with settings applied.
+#[derive(Clone)]
 pub(super) struct Document<'t> {
     /// The descriptions of the tables that are allowed.
     pub sections: &'static [Section],
     /// The tables, in the order of the text; those that settings add come last.
     pub tables: Vec<Written<'t>>,
+    /// The tables below each `[[shell]]`, in the order of these.
+    pub of_shells: Vec<Vec<Written<'t>>>,
     /// Keys and values in front of all tables, and tables of the wrong form.
     pub strays: Vec<Entry<'t>>,
     /// Behind the last text of the file.
@@ -27,11 +34,14 @@ pub(super) struct Document<'t> {
 }
 
 /// A table as it is written.
+#[derive(Clone)]
 pub(super) struct Written<'t> {
     /// Its name, without the brackets.
     pub name: String,
     /// Its number, from 1, where it is an item of an array of tables.
     pub number: Option<usize>,
+    /// The title of the `[[shell]]` that it stands below, if it does.
+    pub below: Option<String>,
     pub place: TextSpan,
     pub entries: Vec<Entry<'t>>,
     /// Whether it is written in brackets on a line of its own, so that lines may be added below.
@@ -47,6 +57,12 @@ impl<'t> Written<'t> {
     /// The name of the table in errors: `[geometry]`, `[[support]] 2`, `[[support]] "root"`.
     pub fn title(&self) -> String {
         let name = self.entry("name").and_then(|entry| entry.value.get_ref().as_str());
+        if let Some(shell) = &self.below {
+            return match self.number {
+                None => format!("[shell.{}] of {shell}", self.name),
+                Some(number) => format!("[[shell.{}]] {number} of {shell}", self.name),
+            };
+        }
         match (self.number, name) {
             (None, _) => format!("[{}]", self.name),
             (Some(_), Some(name)) => format!("[[{}]] \"{}\"", self.name, one_line(name)),
@@ -62,7 +78,7 @@ impl<'t> Document<'t> {
             DeTable::parse(text).map_err(|error| syntax::fault(&error, text, &TextSpan { source: 0, span: 0..0 }))?;
         let last = text.trim_end().len();
         let end = TextSpan { source: 0, span: last..last };
-        let mut document = Self { sections, tables: vec![], strays: vec![], end, text };
+        let mut document = Self { sections, tables: vec![], of_shells: vec![], strays: vec![], end, text };
         for (name, value) in in_order_of_text(root.into_inner()) {
             document.take_root(name, value);
         }
@@ -116,16 +132,80 @@ impl<'t> Document<'t> {
     }
 
     fn take_table(&mut self, name: String, number: Option<usize>, place: TextSpan, table: DeTable<'t>) {
-        let entry = |(key, value): (Spanned<Cow<'t, str>>, Spanned<DeValue<'t>>)| Entry {
-            place: TextSpan { source: 0, span: key.span() },
-            name: key.into_inner().into_owned(),
-            value,
-            base: TextSpan { source: 0, span: 0..0 },
+        let mut entries: Vec<Entry<'t>> = in_order_of_text(table).into_iter().map(entry_of_file).collect();
+        let own_line = self.is_on_own_line(&place);
+        let is_shell = name == SHELL && number.is_some() && self.is_array(SHELL);
+        let nested = |entry: &mut Entry<'t>| {
+            let value = entry.value.get_ref();
+            OF_A_SHELL.contains(&&*entry.name) && (value.as_table().is_some() || is_of_tables(value))
         };
-        let entries = in_order_of_text(table).into_iter().map(entry).collect();
+        let below = if is_shell { entries.extract_if(.., nested).collect() } else { Vec::new() };
+        let shell = Written { name, number, below: None, place, entries, own_line };
+        if is_shell {
+            let title = shell.title();
+            let tables = below.into_iter().flat_map(|entry| self.tables_below(&title, entry)).collect();
+            self.of_shells.push(tables);
+        }
+        self.tables.push(shell);
+    }
+
+    /// The tables that an entry of a `[[shell]]` is.
+    fn tables_below(&self, shell: &str, entry: Entry<'t>) -> Vec<Written<'t>> {
+        let Entry { name, place, value, .. } = entry;
+        let tables: Vec<(Option<usize>, TextSpan, DeTable<'t>)> = match value.into_inner() {
+            DeValue::Table(table) => vec![(None, place, table)],
+            DeValue::Array(tables) => {
+                let table = |(index, table): (usize, Spanned<DeValue<'t>>)| {
+                    let own = TextSpan { source: place.source, span: table.span() };
+                    let DeValue::Table(inner) = table.into_inner() else { return None };
+                    Some((Some(index + 1), if index == 0 { place.clone() } else { own }, inner))
+                };
+                tables.into_iter().enumerate().filter_map(table).collect()
+            }
+            _ => Vec::new(),
+        };
+        let written = |(number, place, table): (Option<usize>, TextSpan, DeTable<'t>)| {
+            let entries = in_order_of_text(table).into_iter().map(entry_of_file).collect();
+            let (name, below) = (name.clone(), Some(shell.to_owned()));
+            Written { name, number, below, own_line: self.is_on_own_line(&place), place, entries }
+        };
+        tables.into_iter().map(written).collect()
+    }
+
+    /// Whether the header of a table is written in brackets on a line of its own.
+    fn is_on_own_line(&self, place: &TextSpan) -> bool {
         let (before, from) = self.text.split_at(place.span.start);
-        let own_line = before.trim_end_matches([' ', '\t']).ends_with('[') || from.starts_with('[');
-        self.tables.push(Written { name, number, place, entries, own_line });
+        before.trim_end_matches([' ', '\t']).trim_end_matches("shell.").ends_with('[') || from.starts_with('[')
+    }
+
+    /// The document of one shell: its own tables, and those that the scene has for all shells.
+    pub fn of_shell(&self, shell: usize) -> Self {
+        let own = &self.of_shells[shell];
+        let is_own = |name: &str| own.iter().any(|table| table.name == name);
+        // Plies belong to the material that is laminated.
+        let is_taken = |name: &str| is_own(name) || (name == "ply" && is_own("material"));
+        let shared = self.tables.iter().filter(|table| OF_A_SHELL.contains(&&*table.name) && !is_taken(&table.name));
+        let tables = own.iter().chain(shared).cloned().collect();
+        let sections = &self.sections[..self.shell_sections()];
+        Self { sections, tables, of_shells: vec![], strays: vec![], end: self.tables_end(shell), text: self.text }
+    }
+
+    /// The document without what describes single shells.
+    pub fn of_structure(&self) -> Self {
+        let tables = self.tables.iter().filter(|table| !OF_A_SHELL.contains(&&*table.name)).cloned().collect();
+        let sections = &self.sections[self.shell_sections()..];
+        Self { sections, tables, of_shells: vec![], strays: vec![], end: self.end.clone(), text: self.text }
+    }
+
+    /// Number of the sections that describe a single shell, which come first.
+    fn shell_sections(&self) -> usize {
+        self.sections.iter().take_while(|section| OF_A_SHELL.contains(&section.name)).count()
+    }
+
+    /// Where what a shell lacks is missing.
+    fn tables_end(&self, shell: usize) -> TextSpan {
+        let mut shells = self.tables.iter().filter(|table| table.name == SHELL);
+        shells.nth(shell).map_or(&self.end, |table| &table.place).clone()
     }
 
     /// Applies one setting, `section.key=value`.
@@ -160,13 +240,31 @@ impl<'t> Document<'t> {
         let at = self.tables.iter().position(|table| table.name == section).unwrap_or(self.tables.len());
         if at == self.tables.len() {
             let (name, entries) = (section.to_owned(), Vec::new());
-            self.tables.push(Written { name, number: None, place: section_place, entries, own_line: false });
+            self.tables.push(Written {
+                name,
+                number: None,
+                below: None,
+                place: section_place,
+                entries,
+                own_line: false,
+            });
         }
         let entries = &mut self.tables[at].entries;
         entries.retain(|entry| entry.name != name && !displaced.contains(&&*entry.name));
         entries.push(Entry { name: name.into(), place: name_place, value, base });
         Ok(())
     }
+}
+
+/// A key and its value in the file.
+fn entry_of_file<'t>((key, value): (Spanned<Cow<'t, str>>, Spanned<DeValue<'t>>)) -> Entry<'t> {
+    let base = TextSpan { source: 0, span: 0..0 };
+    Entry { place: TextSpan { source: 0, span: key.span() }, name: key.into_inner().into_owned(), value, base }
+}
+
+/// Whether a value is a list of tables.
+fn is_of_tables(value: &DeValue) -> bool {
+    value.as_array().is_some_and(|items| !items.is_empty() && items.iter().all(|item| item.get_ref().is_table()))
 }
 
 /// The value of a setting: TOML, or a bare word, which needs no quotes (a shell would take them away).

@@ -9,6 +9,7 @@ use super::fault::TextSpan;
 use super::keys::Key;
 
 /// A key with its value.
+#[derive(Clone)]
 pub(super) struct Entry<'t> {
     pub name: String,
     pub place: TextSpan,

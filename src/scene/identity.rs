@@ -35,6 +35,9 @@ const RESULTS_DOMAIN: &str = "foldline results 1";
 /// Tables of a scene that change nothing that a finished run shows.
 const WITHOUT_RESULTS: [&str; 2] = ["output.", "expect."];
 
+/// Tables of a scene that repeat what the first of several shells has.
+const OF_FIRST_SHELL: [&str; 4] = ["geometry.", "material.", "mesh.", "pose."];
+
 impl Scene {
     /// Hashes everything that decides states: all keys but those that reach nothing ([`Reach::Free`]: outputs, expectations, the
     /// target, strengths, probes; though of these the first, without its name, where a tolerance asks for its error). Those may
@@ -81,6 +84,10 @@ impl Scene {
         let mut leaves = BTreeMap::new();
         // A scene is structs of numbers, words and lists, which always have a JSON form.
         collect("", serde_json::to_value(self).unwrap_or_default(), &mut leaves);
+        if !self.shells.is_empty() {
+            // Those of the first shell stand among the shells.
+            leaves.retain(|path, _| !OF_FIRST_SHELL.iter().any(|table| path.starts_with(table)));
+        }
         if let Some(free) =
             leaves.get_mut("material.plies").and_then(Value::as_array_mut).and_then(|plies| take_free_of_plies(plies))
         {

@@ -21,15 +21,21 @@ const TOLERANCE: f64 = 0.01;
 /// Kinds of geometry without curvature.
 const FLAT: [&str; 2] = ["plate", "annulus"];
 
-/// Reads the mesh that a run starts with, and the part of the shell that is modelled.
-pub(super) fn mesh(tables: &Tables) -> Checked<(MeshSpec, Symmetry)> {
-    let (table, symmetry_table) = (tables.one("mesh"), tables.one("symmetry"));
+/// Reads the mesh that a shell starts with.
+pub(super) fn mesh_of_shell(tables: &Tables) -> MeshSpec {
+    let table = tables.one("mesh");
     let is_spring = tables.one("geometry").kind() == TAPE_SPRING;
     let degree = if is_spring && chooses_mesh(tables) { TAPE_SPRING_DEGREE } else { DEGREE };
     let mut values = table.values.clone();
     values.entry("degree").or_insert_with(|| degree.as_slice().into());
     values.entry("elements").or_insert_with(|| START_ELEMENTS.as_slice().into());
-    let (mesh, symmetry): (MeshSpec, Symmetry) = (data(&table.title, values), symmetry_table.get("part"));
+    data(&table.title, values)
+}
+
+/// Reads the part of the only shell that is modelled.
+pub(super) fn symmetry(tables: &Tables) -> Checked<Symmetry> {
+    let (table, symmetry_table) = (tables.one("mesh"), tables.one("symmetry"));
+    let (mesh, symmetry): (MeshSpec, Symmetry) = (mesh_of_shell(tables), symmetry_table.get("part"));
     for (index, direction) in Direction::BOTH.into_iter().enumerate() {
         let count = mesh.elements[index];
         if symmetry.cuts()[index] && count % 2 == 1 {
@@ -42,29 +48,43 @@ pub(super) fn mesh(tables: &Tables) -> Checked<(MeshSpec, Symmetry)> {
             });
         }
     }
-    Ok((mesh, symmetry))
+    Ok(symmetry)
 }
 
-/// Whether the scene leaves its mesh to the program: it names no number of elements.
-fn chooses_mesh(tables: &Tables) -> bool {
+/// Whether the tables of a shell leave its mesh to the program: they name no number of elements.
+pub(super) fn chooses_mesh(tables: &Tables) -> bool {
     !tables.one("mesh").values.contains_key("elements")
 }
 
-/// Whether the error that the mesh causes decides how it is refined, since the scene says nothing else.
-fn chooses_by_error(tables: &Tables) -> bool {
-    chooses_mesh(tables) && tables.one("adapt").place_of("threshold").is_none()
+/// What refining depends on beside its own tables.
+pub(super) struct Refinable<'a> {
+    pub tables: &'a Tables,
+    /// Whether the scene leaves its mesh to the program.
+    pub chooses_mesh: bool,
+    /// Kind of the geometry of each shell.
+    pub kinds: Vec<&'static str>,
+    /// Whether the scene has several shells.
+    pub is_structure: bool,
+}
+
+impl Refinable<'_> {
+    /// Whether the error that the mesh causes decides how it is refined, since the scene says nothing else.
+    fn chooses_by_error(&self) -> bool {
+        self.chooses_mesh && self.tables.one("adapt").place_of("threshold").is_none()
+    }
 }
 
 /// The stages of a load step.
-pub(super) fn stages(tables: &Tables) -> Checked<Vec<Stage>> {
+pub(super) fn stages(refinable: &Refinable) -> Checked<Vec<Stage>> {
+    let Refinable { tables, chooses_mesh, .. } = *refinable;
     let pipeline = tables.one("pipeline");
     let given: Option<Vec<Stage>> = pipeline.get("stages");
-    let stages = given.unwrap_or_else(|| match tables.one("adapt").is_given || chooses_mesh(tables) {
-        true if chooses_by_error(tables) => [&Stage::REFINING[..], &[Stage::CoarsenKnots]].concat(),
+    let stages = given.unwrap_or_else(|| match tables.one("adapt").is_given || chooses_mesh {
+        true if refinable.chooses_by_error() => [&Stage::REFINING[..], &[Stage::CoarsenKnots]].concat(),
         true => Stage::REFINING.to_vec(),
         false => vec![Stage::Solve],
     });
-    if chooses_mesh(tables) && !stages.contains(&Stage::RefineKnots) {
+    if chooses_mesh && !stages.contains(&Stage::RefineKnots) {
         let problem = "no number of elements is given, and no stage refines those that a run starts with";
         let (mesh, place) = (tables.one("mesh"), pipeline.place_of("stages"));
         return Err(mesh.wrong(place.as_ref(), problem, "write `elements` in [mesh], or leave [pipeline] out"));
@@ -79,28 +99,36 @@ fn one_or_pair(table: &Table, name: &str) -> Option<[f64; 2]> {
 }
 
 /// When and how far the mesh is refined; `None` where no stage looks at it.
-pub(super) fn adapt(tables: &Tables, pipeline: &[Stage]) -> Checked<Option<Adapt>> {
+pub(super) fn adapt(refinable: &Refinable, pipeline: &[Stage]) -> Checked<Option<Adapt>> {
+    let Refinable { tables, ref kinds, is_structure, .. } = *refinable;
     let table = tables.one("adapt");
     if !pipeline.contains(&Stage::EvaluateIndicators) {
         let stages = tables.one("pipeline").place_of("stages");
         let unused = Fault::new(Problem::AdaptUnused, &table.place).also(stages.as_ref());
         return if table.is_given { Err(unused) } else { Ok(None) };
     }
-    let geometry = tables.one("geometry").kind();
+    let is_spring = matches!(kinds[..], [TAPE_SPRING]);
     let Some(threshold) = one_or_pair(table, "threshold") else { unreachable!("adapt.threshold has a default") };
-    let chosen = chooses_by_error(tables).then_some(TOLERANCE);
+    let chosen = refinable.chooses_by_error().then_some(TOLERANCE);
     let tolerance = table.get::<Option<f64>>("tolerance").or(chosen);
     let indicator = tolerance.map_or(Indicator::BendingStrain(threshold), Indicator::Error);
-    let default = match (indicator, geometry) {
-        (Indicator::Error(_), _) => LengthLimit::Thickness,
-        (_, TAPE_SPRING) => LengthLimit::SqrtRadiusThickness,
-        _ => LengthLimit::HalfDecayLength,
+    if let (true, Indicator::Error(_)) = (is_structure, indicator) {
+        return Err(table.wrong_at(
+            "tolerance",
+            "the error that the mesh causes is estimated for single shells alone",
+            "write `threshold` in its place",
+        ));
+    }
+    let default = match indicator {
+        Indicator::Error(_) => LengthLimit::Thickness,
+        Indicator::BendingStrain(_) if is_spring => LengthLimit::SqrtRadiusThickness,
+        Indicator::BendingStrain(_) => LengthLimit::HalfDecayLength,
     };
     let length_limit = match one_or_pair(table, "length_limit_mm") {
         Some(lengths_mm) => LengthLimit::Millimetres(lengths_mm),
         None => table.get::<Option<_>>("length_limit").unwrap_or(default),
     };
-    if FLAT.contains(&geometry) && length_limit == LengthLimit::SqrtRadiusThickness {
+    if kinds.iter().any(|kind| FLAT.contains(kind)) && length_limit == LengthLimit::SqrtRadiusThickness {
         return Err(table.wrong(
             None,
             "a flat shell has no radius to limit the elements by",

@@ -14,6 +14,7 @@
 //! | `meant`, `nearest`, `foreign_unit` | what was meant by a wrong name |
 //! | `read`, `regions` | one entry to one value, within the limits of its key |
 //! | `table`, `tables` | one table, and all of them, with every default filled in |
+//! | `shells`, `connections` | the shells of a structure, and what connects them |
 //! | `geometries`, `nurbs`, `materials`, `supports`, `actions`, `histories`, `probes` | tables to data, and what must hold between their keys |
 //! | `meshes` | the mesh that a run starts with, and how it is refined |
 //! | `check`, `structure`, `stage_order`, `nearness` | tables to a scene; what must hold between tables, between supports and actions, between stages, between places |
@@ -27,6 +28,7 @@
 
 mod actions;
 mod check;
+mod connections;
 mod data;
 mod difference;
 mod document;
@@ -58,6 +60,7 @@ mod refused;
 mod regions;
 mod render;
 mod schema;
+mod shells;
 mod stage_order;
 mod structure;
 mod supports;
@@ -69,11 +72,11 @@ mod write;
 
 pub use check::{parse, parse_with_settings};
 pub use data::{
-    Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Component, Edge, EndRotation, Expectation,
-    ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, LengthLimit, Load, LoadSteps,
-    LoadedArea, Material, MeshSpec, Motion, NumbersIn, NurbsPatch, OrthotropicLaw, Output, ParametricDirection, Ply,
-    Probe, ProbeKind, Quadrature, Reaction, Region, Scene, Seam, Sense, Solver, Splitting, Stage, Strengths, Support,
-    SurfaceDirection, Symmetry, SyncPolicy,
+    Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Bond, Component, Edge, EndRotation, Expectation,
+    ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, Joint, JointKind, LengthLimit, Load,
+    LoadSteps, LoadedArea, Material, MeshSpec, Motion, NumbersIn, NurbsPatch, OrthotropicLaw, Output,
+    ParametricDirection, Ply, Pose, Probe, ProbeKind, Quadrature, Reaction, Region, Scene, Seam, SectionTurns, Sense,
+    Shell, ShellEdge, Solver, Splitting, Stage, Strengths, Support, SurfaceDirection, Symmetry, SyncPolicy,
 };
 pub use difference::Difference;
 pub(crate) use difference::shown_values;

@@ -1,13 +1,24 @@
 //! The array of tables `[[probe]]`: what reports read.
 
 use super::actions::has_centre;
-use super::data::{Component, Geometry, Probe, ProbeKind, Support};
+use super::data::{Component, Probe, ProbeKind, Support};
 use super::fault::Checked;
+use super::shells::Shells;
 use super::table::Table;
 
 /// One `[[probe]]`.
-pub(super) fn probe(table: &Table, supports: &[Support], geometry: &Geometry) -> Checked<Probe> {
-    let kind = table.data();
+pub(super) fn probe(table: &Table, supports: &[Support], shells: &Shells) -> Checked<Probe> {
+    let kind: ProbeKind = table.data();
+    let is_of_all = matches!(kind, ProbeKind::Reaction { .. } | ProbeKind::Energy);
+    let shell = shells.named_in(table, is_of_all)?.unwrap_or(0);
+    let geometry = &shells.all[shell].geometry;
+    if let (ProbeKind::SectionMoment { .. }, true) = (&kind, shells.are_named) {
+        return Err(table.wrong_at(
+            "kind",
+            "a line cuts one shell of a structure, and the others carry moments past it",
+            "read the \"reaction\" of a support",
+        ));
+    }
     match &kind {
         ProbeKind::Displacement { component: Component::Radial, .. } => has_centre(table, "component", geometry)?,
         ProbeKind::Reaction { support, .. } if supports.iter().all(|known| known.name != *support) => {
@@ -20,5 +31,5 @@ pub(super) fn probe(table: &Table, supports: &[Support], geometry: &Geometry) ->
         }
         _ => {}
     }
-    Ok(Probe { name: table.name(), kind })
+    Ok(Probe { name: table.name(), shell, kind })
 }

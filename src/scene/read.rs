@@ -56,6 +56,10 @@ pub(super) fn value(key: &'static Key, entry: &Entry<'_>) -> Checked<Value> {
         Kind::Switch => entry.value.get_ref().as_bool().map(Value::from).ok_or_else(|| item.wrong_type()),
         Kind::Stages => stage_order::read(key, entry).map(|stages| json!(stages)),
         Kind::Text => item.text().map(Value::from),
+        Kind::Texts(length) | Kind::Edges(length) => {
+            let texts = item.items(*length)?.iter().map(Item::text).collect::<Checked<Vec<_>>>()?;
+            if texts.is_empty() { Err(item.wrong_length(0)) } else { Ok(json!(texts)) }
+        }
     }
 }
 

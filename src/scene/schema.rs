@@ -134,6 +134,11 @@ fn of_values(kind: &Kind) -> Value {
             json!({ "type": "array", "items": { "enum": Stage::ALL.map(Stage::name) }, "minItems": 1, "uniqueItems": true })
         }
         Kind::Text => json!({ "type": "string" }),
+        Kind::Texts(length) => list(*length, json!({ "type": "string" })),
+        Kind::Edges(length) => {
+            let edges = EDGES.map(|(_, name)| name).join("|");
+            list(*length, json!({ "type": "string", "pattern": format!("^.+\\.({edges})$") }))
+        }
     }
 }
 

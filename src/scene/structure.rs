@@ -1,7 +1,8 @@
 //! Supports, actions and probes, and whether they make a problem.
 
-use super::data::{Action, ActionKind, Geometry, Hold, Load, Material, Motion, Probe, Support};
+use super::data::{Action, ActionKind, Hold, Load, Material, Motion, Probe, Support};
 use super::fault::{Checked, Faults};
+use super::shells::Shells;
 use super::table::Table;
 use super::tables::Tables;
 use super::{actions, nearness, probes, supports};
@@ -10,30 +11,25 @@ use super::{actions, nearness, probes, supports};
 pub(super) type Structure = (Vec<Support>, Vec<Action>, Vec<Probe>);
 
 /// Reads supports, actions and probes; `None` where something is wrong with them.
-pub(super) fn structure(
-    tables: &Tables,
-    load: &Load,
-    shell: (&Geometry, &Material),
-    faults: &mut Faults,
-) -> Option<Structure> {
+pub(super) fn structure(tables: &Tables, load: &Load, shells: &Shells, faults: &mut Faults) -> Option<Structure> {
     let before = faults.0.len();
     let supports: Vec<Support> =
-        tables.all("support").filter_map(|table| faults.keep(supports::support(table))).collect();
-    let actions: Vec<Action> =
-        tables.all("action").filter_map(|table| faults.keep(actions::action(table, shell))).collect();
-    let probe = |table: &Table| faults.keep(probes::probe(table, &supports, shell.0));
+        tables.all("support").filter_map(|table| faults.keep(supports::support(table, shells))).collect();
+    let action = |table: &Table| faults.keep(actions::action(table, shells, &supports));
+    let actions: Vec<Action> = tables.all("action").filter_map(action).collect();
+    let probe = |table: &Table| faults.keep(probes::probe(table, &supports, shells));
     let probes: Vec<Probe> = tables.all("probe").filter_map(probe).collect();
     if faults.0.len() > before {
         return None;
     }
-    faults.keep(check(tables, load, shell.1, (&supports, &actions, &probes)))?;
+    faults.keep(check(tables, load, shells, (&supports, &actions, &probes)))?;
     Some((supports, actions, probes))
 }
 
 fn check(
     tables: &Tables,
     load: &Load,
-    material: &Material,
+    shells: &Shells,
     (supports, actions, probes): (&[Support], &[Action], &[Probe]),
 ) -> Checked<()> {
     for (index, (probe, table)) in probes.iter().zip(tables.all("probe")).enumerate() {
@@ -53,7 +49,11 @@ fn check(
         }
         Load::Steps(_) => check_steps(tables, supports, actions)?,
     }
-    check_temperature(tables, material, actions)
+    for (index, shell) in shells.all.iter().enumerate() {
+        let on_it = actions.iter().filter(|action| action.shell.is_none_or(|on| on == index));
+        check_temperature(tables, &shell.material, on_it)?;
+    }
+    Ok(())
 }
 
 fn check_steps(tables: &Tables, supports: &[Support], actions: &[Action]) -> Checked<()> {
@@ -80,8 +80,9 @@ fn check_steps(tables: &Tables, supports: &[Support], actions: &[Action]) -> Che
                 "give each a name of its own",
             ));
         }
-        if let Some(other) =
-            supports[..index].iter().find(|other| other.on == support.on && hold_the_same(other, support))
+        if let Some(other) = supports[..index]
+            .iter()
+            .find(|other| (other.shell, other.on) == (support.shell, support.on) && hold_the_same(other, support))
         {
             let problem = format!("\"{}\" holds the same place already", other.name);
             return Err(table.wrong_at(
@@ -112,10 +113,15 @@ fn check_steps(tables: &Tables, supports: &[Support], actions: &[Action]) -> Che
 }
 
 /// Whether the material gives the effect of a change of temperature.
-fn check_temperature(tables: &Tables, material: &Material, actions: &[Action]) -> Checked<()> {
-    let is_thermal = |action: &Action| matches!(action.kind, ActionKind::Temperature { .. });
-    let heated = actions.iter().zip(tables.all("action")).find(|(action, _)| is_thermal(action) && !material.expands());
-    let Some((_, action)) = heated else { return Ok(()) };
+fn check_temperature<'a>(
+    tables: &Tables,
+    material: &Material,
+    mut actions: impl Iterator<Item = &'a Action>,
+) -> Checked<()> {
+    let is_thermal = |action: &&Action| matches!(action.kind, ActionKind::Temperature { .. });
+    let heated = actions.find(|action| is_thermal(action) && !material.expands());
+    let Some(heated) = heated else { return Ok(()) };
+    let Some(action) = tables.all("action").find(|table| table.name() == heated.name) else { return Ok(()) };
     let (problem, remedy) = match material {
         Material::Isotropic { .. } => (
             "the material has no `thermal_expansion_per_k`".into(),

@@ -1,12 +1,13 @@
 //! The array of tables `[[support]]`: what holds the shell.
 
-use super::data::{History, Hold, Motion, Region, Support};
+use super::data::{Edge, History, Hold, Motion, Region, ShellEdge, Support};
 use super::fault::Checked;
 use super::histories::history;
+use super::shells::Shells;
 use super::table::Table;
 
 /// One `[[support]]`.
-pub(super) fn support(table: &Table) -> Checked<Support> {
+pub(super) fn support(table: &Table, shells: &Shells) -> Checked<Support> {
     let zero = Some(0.0);
     let (on, hold) = match table.kind() {
         "hinged" => (table.get("on"), Hold::Displacement { displacement_mm: [zero; 3] }),
@@ -30,7 +31,7 @@ pub(super) fn support(table: &Table) -> Checked<Support> {
         "rigid-motions" => (Region::Whole, Hold::RigidMotions),
         "clamped" => {
             let hold = Hold::Rigid { motions: [Motion::Given(0.0); 6], reference_mm: None, normals_turn: true };
-            (Region::Edge(table.get("on")), hold)
+            (first_edge(table), hold)
         }
         "rigid" => {
             let names = ["x_mm", "y_mm", "z_mm", "rotation_x_deg", "rotation_y_deg", "rotation_z_deg"];
@@ -39,10 +40,35 @@ pub(super) fn support(table: &Table) -> Checked<Support> {
                 reference_mm: table.get("reference_mm"),
                 normals_turn: table.word("normals") == "turn",
             };
-            (Region::Edge(table.get("on")), hold)
+            (first_edge(table), hold)
         }
         other => unreachable!("a support of kind {other}"),
     };
     let history: History = history(table)?;
-    Ok(Support { name: table.name(), on, hold, history })
+    let edges = shells.edges(table, "edges")?;
+    check_edges(table, &edges)?;
+    let shell = match edges.first() {
+        Some(first) => Some(first.shell),
+        None => shells.named_in(table, on == Region::Whole)?,
+    };
+    let on = edges.first().map_or(on, |first| Region::Edge(first.edge));
+    let also = edges.into_iter().skip(1).collect();
+    Ok(Support { name: table.name(), on, shell: shell.unwrap_or(0), also, hold, history })
+}
+
+/// The edge that a table names by `on`; another one where it lists edges of several shells, which take its place.
+fn first_edge(table: &Table) -> Region {
+    Region::Edge(table.get::<Option<Edge>>("on").unwrap_or(Edge::UStart))
+}
+
+/// Refuses a list that names an edge twice, and one beside the name of a shell.
+fn check_edges(table: &Table, edges: &[ShellEdge]) -> Checked<()> {
+    if let (Some(_), Some(place)) = (edges.first(), table.place_of("shell")) {
+        let problem = "`edges` says which shells are meant already";
+        return Err(table.wrong(Some(&place), problem, "take `shell` out"));
+    }
+    match (1..edges.len()).any(|index| edges[..index].contains(&edges[index])) {
+        true => Err(table.wrong_at("edges", "an edge is named twice", "name each once")),
+        false => Ok(()),
+    }
 }

@@ -9,6 +9,7 @@
 //! | `point` | a point: energy, gradient, Hessian |
 //! | `local` | its strains and resultants in its own axes |
 //! | `layer`, `failure` | layers of the shell, and how near they are to failing |
+//! | `surface_frame` | normals as functions of the tangents |
 //! | `lanes`, `lanes_x86` | several numbers at once |
 //! | `lane_vector` | vectors whose components are such lanes |
 //! | `batch` | four points at once: what both kinds share |
@@ -28,6 +29,7 @@ mod point;
 mod point_batch;
 mod quadrature;
 mod stretching_batch;
+mod surface_frame;
 mod vector;
 
 pub(crate) use batch::{BatchGradient, BatchHessian, PointKernel};
@@ -39,4 +41,5 @@ pub use point::{Hessian, PointReference, Strains};
 pub use point_batch::PointBatch;
 pub use quadrature::gauss_legendre;
 pub use stretching_batch::StretchingBatch;
+pub(crate) use surface_frame::{FrameVector, TANGENTS};
 pub(crate) use vector::{add, cross, dot, norm, scaled, sub};

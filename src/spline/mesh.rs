@@ -1,95 +1,184 @@
-//! The spline space with its geometry: what knot insertion changes.
+//! The surfaces of a structure: one patch for each shell, with all control points in one list.
+
+use std::fmt::{self, Display, Formatter};
+use std::ops::Range;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::digest::{Feed, Hash};
-use crate::spline::{Grid, control_count, insert_knots_into_net};
+use crate::spline::{Patch, Spans};
 
-/// Tensor-product NURBS mid-surface; its control points are numbered as a [`Grid`], the second direction (arc) fastest.
+/// Knots of each direction of each patch, in the order of the patches.
+pub type KnotLists = Vec<[Vec<f64>; 2]>;
+
+/// The mid-surfaces of the shells of a structure. Vectors on control points hold those of the first patch, then those of
+/// the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Polynomial degree in each direction.
-    pub degree: [usize; 2],
-    /// Open knot vector of each direction; nᵢ = knots.len() − degree − 1 control points.
-    pub knots: [Vec<f64>; 2],
-    /// Homogeneous control points (w x, w y, w z, w), mm; length n₁ · n₂.
-    pub control_points: Vec<[f64; 4]>,
+    /// Surface of each shell; at least one.
+    pub patches: Vec<Patch>,
+}
+
+impl From<Patch> for Mesh {
+    fn from(patch: Patch) -> Self {
+        Self { patches: vec![patch] }
+    }
 }
 
 impl Mesh {
-    /// Number of control points in each direction.
-    pub fn control_counts(&self) -> [usize; 2] {
-        [0, 1].map(|direction| control_count(&self.knots[direction], self.degree[direction]))
+    /// The only patch, where what is asked for is known of scenes of one shell alone.
+    pub fn lone(&self) -> &Patch {
+        &self.patches[0]
     }
 
-    /// Grid that numbers the control points.
-    pub fn grid(&self) -> Grid {
-        Grid::new(self.control_counts())
+    /// Number of control points of all patches.
+    pub fn point_count(&self) -> usize {
+        self.patches.iter().map(|patch| patch.control_points.len()).sum()
+    }
+
+    /// Numbers of the control points of each patch.
+    pub fn ranges(&self) -> Vec<Range<usize>> {
+        let mut first = 0;
+        let range = |patch: &Patch| {
+            let from = first;
+            first += patch.control_points.len();
+            from..first
+        };
+        self.patches.iter().map(range).collect()
+    }
+
+    /// Numbers of the control points of one patch.
+    ///
+    /// # Panics
+    /// Where there is no such patch.
+    pub fn range(&self, patch: usize) -> Range<usize> {
+        let first = self.patches[..patch].iter().map(|patch| patch.control_points.len()).sum();
+        first..first + self.patches[patch].control_points.len()
     }
 
     /// Position of a control point, mm.
+    ///
+    /// # Panics
+    /// Where there is no such control point.
     pub fn point(&self, index: usize) -> [f64; 3] {
-        cartesian(self.control_points[index])
+        let (patch, index) = self.place(index);
+        self.patches[patch].point(index)
+    }
+
+    /// Patch of a control point, and its number there.
+    ///
+    /// # Panics
+    /// Where there is no such control point.
+    pub fn place(&self, mut index: usize) -> (usize, usize) {
+        for (number, patch) in self.patches.iter().enumerate() {
+            match index.checked_sub(patch.control_points.len()) {
+                Some(beyond) => index = beyond,
+                None => return (number, index),
+            }
+        }
+        panic!("a control point {index} beyond the last one")
+    }
+
+    /// Place of a control point in the grid of its patch.
+    ///
+    /// # Panics
+    /// Where there is no such control point.
+    pub fn grid_place(&self, index: usize) -> [usize; 2] {
+        let (patch, own) = self.place(index);
+        self.patches[patch].grid().place(own)
     }
 
     /// Positions of all control points, mm.
     pub fn points(&self) -> impl Iterator<Item = [f64; 3]> {
-        self.control_points.iter().copied().map(cartesian)
+        self.patches.iter().flat_map(Patch::points)
     }
 
-    /// Control points of an element, in the order of its functions, where `first` are the indices of the first of them.
-    pub fn window(&self, first: [usize; 2]) -> impl Iterator<Item = usize> + use<> {
-        self.grid().window(first, self.degree.map(|p| p + 1))
-    }
-
-    /// Number of non-empty knot spans (elements) in each direction.
-    pub fn element_counts(&self) -> [usize; 2] {
-        [0, 1].map(|direction| self.knots[direction].windows(2).filter(|pair| pair[0] < pair[1]).count())
-    }
-
-    /// Integrals of the B-splines (without the weights) of all control points over the parameter domain, relative to its
-    /// area: they sum to 1. ∫N_i dξ = (ξ_{i+p+1} − ξ_i)/(p + 1): de Boor, *A Practical Guide to Splines*, chapter X.
-    pub fn basis_integrals(&self) -> Vec<f64> {
-        let integrals = [0, 1].map(|direction| {
-            let (knots, degree) = (&self.knots[direction], self.degree[direction]);
-            let total = knots[knots.len() - 1] - knots[0];
-            let integral = |i: usize| (knots[i + degree + 1] - knots[i]) / ((degree + 1) as f64 * total);
-            (0..control_count(knots, degree)).map(integral).collect::<Vec<f64>>()
-        });
-        integrals[0].iter().flat_map(|along| integrals[1].iter().map(move |across| along * across)).collect()
-    }
-
-    /// Returns the same surface with the knots `new` of each direction (ascending) inserted.
-    pub fn with_knots(&self, new: &[Vec<f64>; 2]) -> Self {
-        let mut finer = self.clone();
-        for direction in 0..2 {
-            let counts = finer.control_counts();
-            let (knots, net) = insert_knots_into_net(
-                &finer.knots[direction],
-                finer.degree[direction],
-                &finer.control_points,
-                counts,
-                direction,
-                &new[direction],
-            );
-            finer.knots[direction] = knots;
-            finer.control_points = net;
+    /// Numbers of elements in each direction of each patch.
+    pub fn elements(&self) -> Elements {
+        match &self.patches[..] {
+            [patch] => Elements::OfOne(patch.element_counts()),
+            patches => Elements::OfEach(patches.iter().map(Patch::element_counts).collect()),
         }
-        finer
     }
 
-    /// Content hash of the mesh; independent of how a log encodes it.
+    /// Inserts a knot into the middle of every span.
+    pub fn halved(&self) -> Self {
+        let middles = |patch: &Patch| {
+            [0, 1].map(|direction| Spans::of(&patch.knots[direction], patch.degree[direction]).middles())
+        };
+        self.with_knots(&self.patches.iter().map(middles).collect::<Vec<_>>())
+    }
+
+    /// No knots for any patch.
+    pub fn no_knots(&self) -> KnotLists {
+        vec![Default::default(); self.patches.len()]
+    }
+
+    /// Returns the same surfaces with the knots `new` of each patch (ascending) inserted.
+    pub fn with_knots(&self, new: &[[Vec<f64>; 2]]) -> Self {
+        Self { patches: self.patches.iter().zip(new).map(|(patch, new)| patch.with_knots(new)).collect() }
+    }
+
+    /// Content hash of the mesh; independent of how a log encodes it. The hash of one patch is that of a mesh that has
+    /// no other.
     pub fn hash(&self) -> Hash {
-        let mut feed = Feed::new("foldline mesh");
-        for direction in 0..2 {
-            feed.integer(self.degree[direction] as u64);
-            feed.numbers(&self.knots[direction]);
+        if let [patch] = &self.patches[..] {
+            return patch.hash();
         }
-        feed.integer(self.control_points.len() as u64);
-        feed.each(self.control_points.as_flattened());
+        let mut feed = Feed::new("foldline mesh of several patches");
+        feed.integer(self.patches.len() as u64);
+        self.patches.iter().for_each(|patch| feed.bytes(patch.hash().as_bytes()));
         feed.finish()
     }
 }
 
-/// Cartesian coordinates, mm, of the point with homogeneous coordinates (w x, w y, w z, w).
-pub fn cartesian([x, y, z, w]: [f64; 4]) -> [f64; 3] {
-    [x / w, y / w, z / w]
+/// Numbers of elements in each direction, of the only patch or of each patch.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Elements {
+    /// Along u and v of the only patch.
+    OfOne([usize; 2]),
+    /// Along u and v of each of several patches.
+    OfEach(Vec<[usize; 2]>),
+}
+
+impl Elements {
+    /// Numbers of each patch.
+    pub fn each(&self) -> &[[usize; 2]] {
+        match self {
+            Self::OfOne(counts) => std::slice::from_ref(counts),
+            Self::OfEach(counts) => counts,
+        }
+    }
+
+    /// Number of all elements.
+    pub fn count(&self) -> usize {
+        self.each().iter().map(|[along, across]| along * across).sum()
+    }
+
+    /// The numbers with a sign between those of one patch, and a plus between patches.
+    pub fn with_sign(&self, times: &str) -> String {
+        let of_patch = |[along, across]: &[usize; 2]| format!("{along}{times}{across}");
+        self.each().iter().map(of_patch).collect::<Vec<_>>().join(" + ")
+    }
+}
+
+impl From<[usize; 2]> for Elements {
+    fn from(counts: [usize; 2]) -> Self {
+        Self::OfOne(counts)
+    }
+}
+
+impl PartialEq<[usize; 2]> for Elements {
+    fn eq(&self, other: &[usize; 2]) -> bool {
+        self.each() == [*other]
+    }
+}
+
+/// As in 16 × 8, or 16 × 8 + 4 × 4.
+impl Display for Elements {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.with_sign(" × "))
+    }
 }

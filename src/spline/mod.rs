@@ -10,7 +10,7 @@
 //! | `insertion` | knot insertion |
 //! | `coarsening` | best approximation on fewer knots |
 //! | `grid` | numbering of rows and columns |
-//! | `mesh` | the spline space with its geometry |
+//! | `patch`, `mesh` | a spline space with its geometry; the surfaces of a structure |
 //! | `surface` | points and derivatives |
 
 mod arc;
@@ -20,6 +20,7 @@ mod grid;
 mod insertion;
 mod knots;
 mod mesh;
+mod patch;
 mod surface;
 
 pub use arc::{HomogeneousCurve, circular_arc, segment_count, straight_line};
@@ -28,7 +29,8 @@ pub use coarsening::Coarsening;
 pub use grid::Grid;
 pub use insertion::{insert_knots, insert_knots_into_net};
 pub use knots::{KnotFlaw, check_knots, control_count, without_knots};
-pub use mesh::{Mesh, cartesian};
+pub use mesh::{Elements, KnotLists, Mesh};
+pub use patch::{Patch, cartesian};
 pub use surface::{
     LineBasis, SurfaceBasis, SurfacePoint, evaluate_surface, mid_surface_point, mid_surface_points, position_on_lines,
     quotient_derivatives, tensor_derivatives,

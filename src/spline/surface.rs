@@ -2,7 +2,7 @@
 //! own tables.
 
 use super::basis::MAX_DEGREE;
-use crate::spline::{Mesh, basis_derivatives, basis_derivatives_len, find_span};
+use crate::spline::{Patch, basis_derivatives, basis_derivatives_len, find_span};
 
 /// A point of a surface: position and the five derivatives that a Kirchhoff–Love shell needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +28,8 @@ pub struct LineBasis {
 
 impl LineBasis {
     /// Evaluates the functions of a direction of a mesh.
-    pub fn at(mesh: &Mesh, direction: usize, parameter: f64) -> Self {
-        let (knots, degree) = (&mesh.knots[direction], mesh.degree[direction]);
+    pub fn at(patch: &Patch, direction: usize, parameter: f64) -> Self {
+        let (knots, degree) = (&patch.knots[direction], patch.degree[direction]);
         let span = find_span(knots, degree, parameter);
         let mut derivatives = [0.0; 3 * MOST_EACH_WAY];
         basis_derivatives(knots, degree, span, parameter, &mut derivatives[..basis_derivatives_len(degree)]);
@@ -49,19 +49,19 @@ pub struct SurfaceBasis {
 
 impl SurfaceBasis {
     /// Evaluates the functions at a point of the parameters.
-    pub fn at(mesh: &Mesh, parameters: [f64; 2]) -> Self {
-        let [along, across] = [0, 1].map(|direction| LineBasis::at(mesh, direction, parameters[direction]));
-        Self::of(mesh, &along, &across)
+    pub fn at(patch: &Patch, parameters: [f64; 2]) -> Self {
+        let [along, across] = [0, 1].map(|direction| LineBasis::at(patch, direction, parameters[direction]));
+        Self::of(patch, &along, &across)
     }
 
     /// Evaluates the functions where two lines of the parameters meet.
-    pub fn of(mesh: &Mesh, along: &LineBasis, across: &LineBasis) -> Self {
-        let [p1, p2] = mesh.degree;
+    pub fn of(patch: &Patch, along: &LineBasis, across: &LineBasis) -> Self {
+        let [p1, p2] = patch.degree;
         let first = [along.first, across.first];
         let (mut functions, mut sums) = ([[0.0; MOST]; 6], [0.0; 6]);
         let count = (p1 + 1) * (p2 + 1);
-        for (a, index) in mesh.window(first).enumerate() {
-            let weight = mesh.control_points[index][3];
+        for (a, index) in patch.window(first).enumerate() {
+            let weight = patch.control_points[index][3];
             let place = [a / (p2 + 1), a % (p2 + 1)];
             let products = tensor_derivatives(&along.derivatives, &across.derivatives, [p1, p2], place);
             for k in 0..6 {
@@ -80,10 +80,10 @@ impl SurfaceBasis {
 
     /// The point of the surface whose control points are moved by `displacement` (in their order; empty for the undeformed
     /// surface).
-    pub fn point(&self, mesh: &Mesh, displacement: &[[f64; 3]]) -> SurfacePoint {
+    pub fn point(&self, patch: &Patch, displacement: &[[f64; 3]]) -> SurfacePoint {
         let mut sums = [[0.0; 3]; 6];
-        for (a, index) in mesh.window(self.first).enumerate() {
-            let position = moved(mesh, displacement, index);
+        for (a, index) in patch.window(self.first).enumerate() {
+            let position = moved(patch, displacement, index);
             for k in 0..6 {
                 for c in 0..3 {
                     sums[k][c] += self.functions[k][a] * position[c];
@@ -95,17 +95,17 @@ impl SurfaceBasis {
 }
 
 /// Evaluates the position, mm, of a surface where two lines of the parameters meet; [`SurfaceBasis::point`] gives the same.
-pub fn position_on_lines(mesh: &Mesh, displacement: &[[f64; 3]], [along, across]: [&LineBasis; 2]) -> [f64; 3] {
-    let columns = mesh.degree[1] + 1;
+pub fn position_on_lines(patch: &Patch, displacement: &[[f64; 3]], [along, across]: [&LineBasis; 2]) -> [f64; 3] {
+    let columns = patch.degree[1] + 1;
     let (mut weighted, mut sum) = ([0.0; MOST], 0.0);
-    for (a, index) in mesh.window([along.first, across.first]).enumerate() {
+    for (a, index) in patch.window([along.first, across.first]).enumerate() {
         let product = along.derivatives[a / columns] * across.derivatives[a % columns];
-        weighted[a] = mesh.control_points[index][3] * product;
+        weighted[a] = patch.control_points[index][3] * product;
         sum += weighted[a];
     }
     let mut position = [0.0; 3];
-    for (a, index) in mesh.window([along.first, across.first]).enumerate() {
-        let (function, point) = (weighted[a] / sum, moved(mesh, displacement, index));
+    for (a, index) in patch.window([along.first, across.first]).enumerate() {
+        let (function, point) = (weighted[a] / sum, moved(patch, displacement, index));
         for c in 0..3 {
             position[c] += function * point[c];
         }
@@ -114,16 +114,16 @@ pub fn position_on_lines(mesh: &Mesh, displacement: &[[f64; 3]], [along, across]
 }
 
 /// A control point where its displacement takes it, mm.
-fn moved(mesh: &Mesh, displacement: &[[f64; 3]], index: usize) -> [f64; 3] {
-    let [x, y, z] = mesh.point(index);
+fn moved(patch: &Patch, displacement: &[[f64; 3]], index: usize) -> [f64; 3] {
+    let [x, y, z] = patch.point(index);
     let shift = displacement.get(index).copied().unwrap_or_default();
     [x + shift[0], y + shift[1], z + shift[2]]
 }
 
 /// Evaluates the rational basis functions at a point: `(first control index in each direction, values and five
 /// derivatives)`. `functions[k][a₁ (p₂ + 1) + a₂]`, k = value, ,1 ,2 ,11 ,22 ,12.
-pub fn evaluate_surface(mesh: &Mesh, parameters: [f64; 2]) -> ([usize; 2], [Vec<f64>; 6]) {
-    let SurfaceBasis { first, functions, count } = SurfaceBasis::at(mesh, parameters);
+pub fn evaluate_surface(patch: &Patch, parameters: [f64; 2]) -> ([usize; 2], [Vec<f64>; 6]) {
+    let SurfaceBasis { first, functions, count } = SurfaceBasis::at(patch, parameters);
     (first, functions.map(|values| values[..count].to_vec()))
 }
 
@@ -147,16 +147,16 @@ pub fn quotient_derivatives(f: [f64; 6], w: [f64; 6]) -> [f64; 6] {
 
 /// Evaluates a point of the surface whose control points are moved by `displacement` (in their order; empty for the
 /// undeformed surface).
-pub fn mid_surface_point(mesh: &Mesh, displacement: &[[f64; 3]], parameters: [f64; 2]) -> SurfacePoint {
-    SurfaceBasis::at(mesh, parameters).point(mesh, displacement)
+pub fn mid_surface_point(patch: &Patch, displacement: &[[f64; 3]], parameters: [f64; 2]) -> SurfacePoint {
+    SurfaceBasis::at(patch, parameters).point(patch, displacement)
 }
 
 /// Evaluates the same point of several surfaces that differ by the displacement of their control points.
 pub fn mid_surface_points<const N: usize>(
-    mesh: &Mesh,
+    patch: &Patch,
     displacements: [&[[f64; 3]]; N],
     parameters: [f64; 2],
 ) -> [SurfacePoint; N] {
-    let basis = SurfaceBasis::at(mesh, parameters);
-    displacements.map(|displacement| basis.point(mesh, displacement))
+    let basis = SurfaceBasis::at(patch, parameters);
+    displacements.map(|displacement| basis.point(patch, displacement))
 }

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::record::{Parameter, Record};
 use crate::scene::{Drive, Reach, Scene, Stage};
+use crate::spline::Elements;
 use crate::study::archive::TaskError;
 use crate::study::path::{PathPoint, equilibrium_path, snaps};
 
@@ -25,7 +26,7 @@ pub struct Measured {
     /// Name of the quantity that is compared.
     quantity: String,
     steps: u64,
-    elements: [usize; 2],
+    elements: Elements,
     unknowns: usize,
     iterations: usize,
     factorizations: usize,
@@ -47,7 +48,7 @@ pub(super) struct CurvePoint {
 #[non_exhaustive]
 pub struct AccuracyRow {
     /// Elements (along u, along v) of the model at the end.
-    pub elements: [usize; 2],
+    pub elements: Elements,
     /// Free unknowns at the end.
     pub unknowns: usize,
     /// What is compared: the moment of turning ends, or the name of the first probe with its unit.
@@ -195,7 +196,7 @@ impl Measured {
                 _ => "moment (N·mm)".to_string(),
             },
             steps: last.map_or(0, |report| report.step),
-            elements: last.map_or([0, 0], |report| report.elements),
+            elements: last.map_or([0, 0].into(), |report| report.elements.clone()),
             unknowns: last.map_or(0, |report| report.unknowns),
             iterations: records.iter().map(|record| record.report.iterations).sum(),
             factorizations: records.iter().map(|record| record.report.factorizations).sum(),
@@ -242,7 +243,7 @@ impl Measured {
             (scale > 0.0).then_some(difference / scale)
         };
         Ok(AccuracyRow {
-            elements: self.elements,
+            elements: self.elements.clone(),
             unknowns: self.unknowns,
             quantity: self.quantity.clone(),
             threads: rayon::current_num_threads(),
@@ -268,7 +269,7 @@ mod tests {
         let of = |&(parameter, value, behind): &(f64, f64, bool)| CurvePoint { parameter, value, behind };
         let curve: Vec<CurvePoint> = points.iter().map(of).collect();
         let jump_at = curve.iter().find(|point| point.behind).map(|point| point.parameter);
-        let (elements, unknowns, what, quantity) = ([4, 4], 100, "rotation", "moment".to_string());
+        let (elements, unknowns, what, quantity) = ([4, 4].into(), 100, "rotation", "moment".to_string());
         let steps = curve.len() as u64;
         Measured {
             curve,

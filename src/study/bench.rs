@@ -18,6 +18,7 @@ use crate::equilibrium::{Configuration, DenseProduct, Equilibrium, KernelRun, So
 use crate::model::{ModelError, starting_mesh};
 use crate::pipeline::RunError;
 use crate::scene::Scene;
+use crate::spline::Elements;
 use crate::study::timed_run::timed_run;
 
 /// Size of the dense product.
@@ -35,7 +36,7 @@ pub struct Figure {
     /// Name of the scene file.
     pub scene: String,
     /// Elements each way.
-    pub elements: [usize; 2],
+    pub elements: Elements,
     /// Degree each way.
     pub degree: [usize; 2],
     /// Integration rule.
@@ -75,7 +76,7 @@ pub enum BenchError {
 pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<Figure>, BenchError> {
     let mesh = Arc::new(starting_mesh(scene)?);
     let mut work = Workspace::new(scene, &mesh)?;
-    let flat = vec![[0.0; 3]; mesh.control_points.len()];
+    let flat = vec![[0.0; 3]; mesh.point_count()];
     let start = Configuration { displacement: &flat, turns: &[], parameter: 0.0, largest_force: 0.0 };
     let target = ROTATION_DEG.min(scene.load.target());
     let solved = Equilibrium::new(scene, &mut work).advance(start, target, &mut |_| false)?;
@@ -83,8 +84,8 @@ pub fn kernel_figures(scene: &Scene, name: &str, repeats: usize) -> Result<Vec<F
     let figure = |name: &'static str, seconds: f64, fraction_of_peak: Option<f64>| Figure {
         name,
         scene: String::new(),
-        elements: mesh.element_counts(),
-        degree: mesh.degree,
+        elements: mesh.elements(),
+        degree: scene.mesh.degree,
         quadrature: scene.mesh.quadrature.name().to_string(),
         threads: rayon::current_num_threads(),
         unknowns,
@@ -139,7 +140,7 @@ pub fn run_figure(scene: &Scene, name: &str) -> Result<Figure, BenchError> {
     Ok(Figure {
         name: "run",
         scene: name.to_string(),
-        elements: last.map_or([0, 0], |report| report.elements),
+        elements: last.map_or([0, 0].into(), |report| report.elements.clone()),
         degree: scene.mesh.degree,
         quadrature: scene.mesh.quadrature.name().to_string(),
         threads: rayon::current_num_threads(),

@@ -223,8 +223,9 @@ pub fn check_calibratable(scene: &Scene) -> Result<&Adapt, CalibrationError> {
 pub fn fine_elements(scene: &Scene) -> Result<[usize; 2], CalibrationError> {
     let adapt = check_calibratable(scene)?;
     let discretization = Discretization::new(scene, &Arc::new(starting_mesh(scene)?))?;
-    let limit = length_limit(scene, &discretization, adapt.length_limit);
-    let lengths = span_lengths(&discretization);
+    let shell = &discretization.shells[0];
+    let limit = length_limit(scene, shell, adapt.length_limit);
+    let lengths = span_lengths(shell);
     Ok([0, 1].map(|axis| {
         let longest = lengths[axis].iter().copied().fold(0.0, f64::max);
         halved(scene.mesh.elements[axis], longest, OVER_LENGTH_LIMIT * limit[axis])

@@ -10,7 +10,6 @@ use super::path::{PathPoint, equilibrium_path};
 use super::summary::Summary;
 use crate::record::{Parameter, Record};
 use crate::scene::Scene;
-use crate::spline::Grid;
 
 /// A number that a run came to or cost.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,11 +58,11 @@ impl Summary {
             value: reading.value,
         });
         let mesh = self.meshes.last();
-        let elements = mesh.map(|mesh| (self.symmetric_parts * Grid::new(mesh.elements).len()) as f64);
+        let elements = mesh.map(|mesh| (self.symmetric_parts * mesh.elements.count()) as f64);
         let sum = |number: fn(&super::summary::StageWork) -> usize| self.work.iter().map(number).sum::<usize>() as f64;
         let of_end = [
-            finding("reached", at, self.last.map(|last| last.parameter)),
-            finding("strain energy", "N·mm", self.last.map(|last| last.strain_energy_n_mm)),
+            finding("reached", at, self.last.as_ref().map(|last| last.parameter)),
+            finding("strain energy", "N·mm", self.last.as_ref().map(|last| last.strain_energy_n_mm)),
             finding("elements (whole)", "", elements),
             finding("unknowns", "", mesh.map(|mesh| mesh.unknowns as f64)),
             finding("load steps", "", Some(self.load_steps as f64)),

@@ -8,7 +8,7 @@ use crate::model::{ModelError, Size, is_driven_by_loads, odd_motion, oddities, s
 use crate::pipeline::{Run, RunError, Stages};
 use crate::record::{MemorySink, Outcome, Record};
 use crate::scene::{Scene, Stage};
-use crate::spline::Mesh;
+use crate::spline::{Elements, Mesh};
 use crate::state::State;
 
 /// Load steps that are done at least: the first starts from rest, and those behind it are like the rest of a run.
@@ -31,7 +31,7 @@ pub struct Forecast {
     /// Size of the shell.
     pub size: Size,
     /// Elements of the model each way.
-    pub elements: [usize; 2],
+    pub elements: Elements,
     /// Free unknowns of the model.
     pub unknowns: usize,
     /// A load step; an error where none can be done, `None` where the mesh is too large to try one.
@@ -63,7 +63,7 @@ pub struct StepCost {
 #[derive(Clone, Debug)]
 pub struct FinestMesh {
     /// Elements of the model each way.
-    pub elements: [usize; 2],
+    pub elements: Elements,
     /// The mesh; `None` where it is too large to be tried out.
     mesh: Option<Arc<Mesh>>,
 }
@@ -90,27 +90,29 @@ impl Forecast {
         let size = Size::of(scene)?;
         let (unknowns, remarks) = (stages.unknowns(&start)?, stages.remarks(&start)?);
         let mut odd = oddities(scene, &size);
-        let [along, across] = start.mesh.element_counts();
-        let is_tried = along.saturating_mul(across) <= MOST_TRIED;
+        let is_tried = start.mesh.elements().count() <= MOST_TRIED;
         if is_tried {
             odd.extend(hardly_moved_or_thrown_off(&mut stages, &start, &size));
         }
         let finest = stages.finest(&start).map(|finest| {
-            let [along, across] = finest.elements();
-            let is_small = along.saturating_mul(across) <= MOST_TRIED;
-            FinestMesh { elements: [along, across], mesh: is_small.then(|| Arc::new(finest.mesh(&start.mesh))) }
+            let elements = finest.elements();
+            let is_small = elements.count() <= MOST_TRIED;
+            FinestMesh { elements, mesh: is_small.then(|| Arc::new(finest.mesh(&start.mesh))) }
         });
         // What it keeps of the starting mesh would be in memory twice.
         drop(stages);
         Ok(Self {
             odd,
             size,
-            elements: start.mesh.element_counts(),
+            elements: start.mesh.elements(),
             unknowns,
             remarks,
             load_steps: scene.continuation.is_none().then(|| scene.load.target() / scene.load.longest_increment()),
             finest,
-            symmetric: symmetric_lines(scene, &start.mesh),
+            symmetric: match &start.mesh.patches[..] {
+                [patch] => symmetric_lines(scene, patch),
+                _ => [false; 2],
+            },
             step: is_tried.then(|| step_cost(scene, start)),
         })
     }
@@ -125,7 +127,7 @@ impl FinestMesh {
         let unknowns = &work.discretization().unknowns;
         let (count, sections) = (unknowns.count(), unknowns.sections().len());
         let turns = if unknowns.turns_are_unknown() { vec![[0.0; 3]; sections] } else { Vec::new() };
-        let displacement = vec![[0.0; 3]; mesh.control_points.len()];
+        let displacement = vec![[0.0; 3]; mesh.point_count()];
         let at = Configuration { displacement: &displacement, turns: &turns, parameter: 0.0, largest_force: 0.0 };
         let begin = Instant::now();
         work.linear_release(at).ok()?;

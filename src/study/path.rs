@@ -1,9 +1,10 @@
 //! The equilibrium path of a run: which of its stages are points of the moment–rotation curve, and where it jumped.
 
 use crate::record::{CriticalPoint, Outcome, Record, Report};
+use crate::spline::Elements;
 
 /// A point of the moment–rotation curve: the last equilibrium of a load step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PathPoint {
     /// Load step.
     pub step: u64,
@@ -14,7 +15,7 @@ pub struct PathPoint {
     /// Strain energy of the whole shell, N·mm.
     pub strain_energy_n_mm: f64,
     /// Elements (along the length, along the arc) of the model.
-    pub elements: [usize; 2],
+    pub elements: Elements,
     /// Negative pivots of the tangent stiffness: 0 where the equilibrium is stable.
     pub negative_pivots: u64,
     /// Whether the shell jumped to get here.
@@ -102,7 +103,7 @@ impl PathPoint {
             parameter: report.parameter,
             moment_n_mm: report.moment_n_mm,
             strain_energy_n_mm: report.strain_energy_n_mm,
-            elements: report.elements,
+            elements: report.elements.clone(),
             negative_pivots: report.negative_pivots,
             jumped: *jumped,
             probe: probe(report),

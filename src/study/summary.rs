@@ -2,6 +2,7 @@
 
 use crate::record::{Outcome, Parameter, Reading, Record, Warning};
 use crate::scene::{Geometry, Scene, Stage};
+use crate::spline::Elements;
 use crate::study::{Passed, PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
 use crate::units::{rounded, significant};
 
@@ -105,12 +106,12 @@ pub struct WarningCount {
 }
 
 /// A mesh of the run, and the rotation at which the run came to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MeshChange {
     /// Rotation of each end at which it was made, degrees; 0 for the mesh that the run starts with.
     pub parameter: f64,
     /// Elements (along the length, along the arc) of the model.
-    pub elements: [usize; 2],
+    pub elements: Elements,
     /// Free unknowns of the model.
     pub unknowns: usize,
 }
@@ -208,7 +209,7 @@ impl Summary {
             kept_s: records.iter().map(|record| record.kept_s).sum(),
             rejections: records.iter().filter(|record| record.report.outcome != Outcome::Done).count(),
             load_steps: steps.len(),
-            last: path.last().copied(),
+            last: path.last().cloned(),
         }
     }
 
@@ -389,7 +390,7 @@ fn mesh_changes(records: &[Record]) -> Vec<MeshChange> {
         if changes.last().is_none_or(|last| last.elements != report.elements) {
             changes.push(MeshChange {
                 parameter: if changes.is_empty() { 0.0 } else { report.parameter },
-                elements: report.elements,
+                elements: report.elements.clone(),
                 unknowns: report.unknowns,
             });
         }

@@ -7,7 +7,6 @@ use super::TapeSpring;
 use super::summary::{FoldMean, MeshChange, PeakFound, WarningCount};
 use crate::record::{Parameter, Reading, released_in_words};
 use crate::scene::Sense;
-use crate::spline::Grid;
 use crate::units::{count, duration, figure, reading, rounded, signed, significant};
 
 /// Share of the moment before the jump below which the shell has folded: a fold carries a tenth of it or less in the seven cases
@@ -59,7 +58,7 @@ impl Summary {
             }
             None => writeln!(f, "{}", self.shell)?,
         }
-        let Some(last) = self.last else {
+        let Some(last) = &self.last else {
             let turned_down = match self.rejections {
                 0 => String::new(),
                 n => format!(": {} rejected", count(n, "solve")),
@@ -318,9 +317,9 @@ impl Summary {
     fn write_meshes(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let whole = if self.symmetric_parts > 1 { "   whole shell" } else { "" };
         writeln!(f, "  {:<11}   {:>18}{whole}   {:>8}", "mesh from", "elements", "unknowns")?;
-        for &MeshChange { parameter, elements: [n1, n2], unknowns } in &self.meshes {
-            let count = Grid::new([n1, n2]).len();
-            let elements = format!("{n1} × {n2} = {count}");
+        for MeshChange { parameter, elements, unknowns } in &self.meshes {
+            let count = elements.count();
+            let elements = format!("{elements} = {count}");
             let whole = match self.symmetric_parts {
                 1 => String::new(),
                 parts => format!("   {:>11}", count * parts),

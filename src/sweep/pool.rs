@@ -8,6 +8,7 @@ use super::plan::Task;
 use super::record::TaskRecord;
 use super::work::Work;
 use crate::model::starting_mesh;
+use crate::spline::Patch;
 use crate::study::{EngineError, Room, TaskError, Workers};
 
 /// What came of a task on this machine.
@@ -70,10 +71,13 @@ fn bytes_of(work: &Work<'_>, task: &Task) -> u64 {
     const AT_LEAST: f64 = 20e6;
     let Ok(scene) = work.scene_of(task) else { return 0 };
     let Ok(mesh) = starting_mesh(&scene) else { return AT_LEAST as u64 };
-    let elements = mesh.element_counts();
     let judged = if scene.adapt.is_some() { 2 } else { 1 };
-    let lines = [0, 1].map(|way| (judged * elements[way] + scene.mesh.degree[way]) as f64);
-    let unknowns = 3.0 * lines[0] * lines[1];
-    let band = 3.0 * lines[0].min(lines[1]) * (scene.mesh.degree[0].max(scene.mesh.degree[1]) + 1) as f64;
-    (AT_LEAST + 2.0 * 8.0 * unknowns * band) as u64
+    let of_patch = |patch: &Patch| {
+        let (elements, degree) = (patch.element_counts(), patch.degree);
+        let lines = [0, 1].map(|way| (judged * elements[way] + degree[way]) as f64);
+        let unknowns = 3.0 * lines[0] * lines[1];
+        let band = 3.0 * lines[0].min(lines[1]) * (degree[0].max(degree[1]) + 1) as f64;
+        2.0 * 8.0 * unknowns * band
+    };
+    (AT_LEAST + mesh.patches.iter().map(of_patch).sum::<f64>()) as u64
 }

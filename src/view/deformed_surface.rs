@@ -2,11 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::fields::{Field, ShellFields};
+use super::fields::{Field, ShellFields, fields_of};
 use super::samples::{SamplesError, SurfaceSamples, cells_of};
+use crate::model::{Member, members};
 use crate::scene::Scene;
 use crate::shell::{add, cross, dot, norm, sub};
-use crate::spline::{Grid, LineBasis, Mesh, SurfaceBasis, SurfacePoint, position_on_lines};
+use crate::spline::{Grid, LineBasis, Mesh, Patch, SurfaceBasis, SurfacePoint, position_on_lines};
 use crate::state::State;
 
 /// Points and values on a grid that follows the elements.
@@ -26,7 +27,7 @@ struct Shown<'v> {
     quantity: String,
 }
 
-/// Samples the shell of `scene` on `mesh`, displaced by `displacement` (mm, one vector for each control point), with
+/// Samples the shells of `scene` on `mesh`, displaced by `displacement` (mm, one vector for each control point), with
 /// `cells_per_element` cells along u and along v in every element. The value of a cell is the larger of the physical bending
 /// strains |κᵢᵢ|/|Aᵢ|² along the length and along the arc at its middle, 1/mm. Symmetric parts are reflected.
 ///
@@ -41,13 +42,17 @@ pub fn deformed_surface(
     displacement: &[[f64; 3]],
     cells_per_element: [usize; 2],
 ) -> Result<SurfaceSamples, SamplesError> {
-    let value =
-        |[along, across]: [&LineBasis; 2]| bending_strain(mesh, displacement, &SurfaceBasis::of(mesh, along, across));
-    let shown = Shown { value: &value, image: [1.0; 2], quantity: "bending strain max|κ| (1/mm)".to_owned() };
-    sampled(scene, mesh, displacement, cells_per_element, shown)
+    of_shells(members(scene, mesh), |Member { scene, patch, points, .. }| {
+        let moved = &displacement[points];
+        let value =
+            |[along, across]: [&LineBasis; 2]| bending_strain(patch, moved, &SurfaceBasis::of(patch, along, across));
+        let shown = Shown { value: &value, image: [1.0; 2], quantity: "bending strain max|κ| (1/mm)".to_owned() };
+        sampled(&scene, patch, moved, cells_per_element, shown)
+    })
 }
 
-/// The same with the values of a component of a field, or with the length of all of them.
+/// The same with the values of a component of a field, or with the length of all of them; shells without that field show nothing
+/// of it.
 ///
 /// # Errors
 /// Where a displacement is not finite.
@@ -58,15 +63,22 @@ pub fn coloured_surface(
     component: Option<usize>,
     cells_per_element: [usize; 2],
 ) -> Result<SurfaceSamples, SamplesError> {
-    let fields = ShellFields::new(scene, state);
-    let of = |value: [f64; 3]| component.map_or_else(|| norm(value), |index| value[index]);
-    let value = |lines: [&LineBasis; 2]| of(fields.at(lines.map(|line| line.parameter)).value(field));
-    let image = [0, 1].map(|direction| of(field.mirrored([1.0; 3], direction)).signum());
-    let shown = Shown { value: &value, image, quantity: field.title_of(component) };
-    sampled(scene, &state.mesh, &state.displacement, cells_per_element, shown)
+    of_shells(members(scene, &state.mesh), |Member { scene, patch, points, .. }| {
+        let moved = &state.displacement[points];
+        let fields = ShellFields::new(&scene, patch, moved, state.parameter);
+        let of = |value: [f64; 3]| component.map_or_else(|| norm(value), |index| value[index]);
+        let has_it = fields_of(&scene).contains(field);
+        let value = |lines: [&LineBasis; 2]| match has_it {
+            true => of(fields.at(lines.map(|line| line.parameter)).value(field)),
+            false => f64::NAN,
+        };
+        let image = [0, 1].map(|direction| of(field.mirrored([1.0; 3], direction)).signum());
+        let shown = Shown { value: &value, image, quantity: field.title_of(component) };
+        sampled(&scene, patch, moved, cells_per_element, shown)
+    })
 }
 
-/// The shell of a state moved by `mode` (mm, one vector for each control point), with the motion relative to the largest as the
+/// The shells of a state moved by `mode` (mm, one vector for each control point), with the motion relative to the largest as the
 /// value of a cell.
 ///
 /// # Errors
@@ -77,21 +89,33 @@ pub fn mode_surface(
     mode: &[[f64; 3]],
     cells_per_element: [usize; 2],
 ) -> Result<SurfaceSamples, SamplesError> {
-    let motion = |lines: [&LineBasis; 2]| {
-        let [to, from] = [mode, &[]].map(|moved| position_on_lines(&state.mesh, moved, lines));
-        norm(sub(to, from))
-    };
-    let moved: Vec<[f64; 3]> = state.displacement.iter().zip(mode).map(|(u, motion)| add(*u, *motion)).collect();
-    let shown = Shown { value: &motion, image: [1.0; 2], quantity: "motion in the mode, relative".to_owned() };
-    let mut samples = sampled(scene, &state.mesh, &moved, cells_per_element, shown)?;
+    let mut samples = of_shells(members(scene, &state.mesh), |Member { scene, patch, points, .. }| {
+        let (mode, displacement) = (&mode[points.clone()], &state.displacement[points]);
+        let motion = |lines: [&LineBasis; 2]| {
+            let [to, from] = [mode, &[]].map(|moved| position_on_lines(patch, moved, lines));
+            norm(sub(to, from))
+        };
+        let moved: Vec<[f64; 3]> = displacement.iter().zip(mode).map(|(u, motion)| add(*u, *motion)).collect();
+        let shown = Shown { value: &motion, image: [1.0; 2], quantity: "motion in the mode, relative".to_owned() };
+        sampled(&scene, patch, &moved, cells_per_element, shown)
+    })?;
     let largest = samples.value_range().map_or(1.0, |[_, largest]| largest.max(f64::MIN_POSITIVE));
     samples.cell_values.iter_mut().for_each(|value| *value /= largest);
     Ok(samples)
 }
 
+/// Samples every shell, and puts the surfaces together.
+fn of_shells<'a>(
+    members: Vec<Member<'a>>,
+    of: impl Fn(Member<'a>) -> Result<SurfaceSamples, SamplesError>,
+) -> Result<SurfaceSamples, SamplesError> {
+    let parts = members.into_iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    SurfaceSamples::joined(parts).ok_or(SamplesError::TooFewPoints { counts: [0, 0] })
+}
+
 fn sampled(
     scene: &Scene,
-    mesh: &Mesh,
+    mesh: &Patch,
     displacement: &[[f64; 3]],
     cells_per_element: [usize; 2],
     shown: Shown,
@@ -116,7 +140,7 @@ fn sampled(
 }
 
 /// What is found where lines of the parameters meet, the second direction fastest.
-fn on_grid<T: Send>(mesh: &Mesh, lines: [&[f64]; 2], find: &(dyn Fn([&LineBasis; 2]) -> T + Sync)) -> Vec<T> {
+fn on_grid<T: Send>(mesh: &Patch, lines: [&[f64]; 2], find: &(dyn Fn([&LineBasis; 2]) -> T + Sync)) -> Vec<T> {
     let [along, across] = [0, 1].map(|direction| {
         let at = |parameter: &f64| LineBasis::at(mesh, direction, *parameter);
         lines[direction].iter().map(at).collect::<Vec<_>>()
@@ -133,7 +157,7 @@ fn divided(knots: &[f64], parts: usize) -> Vec<f64> {
 }
 
 /// The larger of |B₁₁ − b₁₁|/A₁₁ and |B₂₂ − b₂₂|/A₂₂ at a point.
-fn bending_strain(mesh: &Mesh, displacement: &[[f64; 3]], basis: &SurfaceBasis) -> f64 {
+fn bending_strain(mesh: &Patch, displacement: &[[f64; 3]], basis: &SurfaceBasis) -> f64 {
     let curvatures = |surface: &SurfacePoint| {
         let [a1, a2, a11, a22, _] = surface.derivatives;
         let normal = cross(a1, a2);
@@ -236,18 +260,18 @@ mod tests {
     fn undeformed(symmetry: Symmetry, cells_per_element: usize) -> SurfaceSamples {
         let scene = Scene { symmetry, ..scene::parse(SCENE, "test").unwrap() };
         let mesh = starting_mesh(&scene).unwrap();
-        let displacement = vec![[0.0; 3]; mesh.control_points.len()];
+        let displacement = vec![[0.0; 3]; mesh.point_count()];
         deformed_surface(&scene, &mesh, &displacement, [cells_per_element; 2]).unwrap()
     }
 
     #[test]
     fn parts_make_the_whole() {
         let whole = undeformed(Symmetry::None, 2);
-        assert_eq!(whole.counts, [9, 9]);
+        assert_eq!(whole.grids, [[9, 9]]);
         assert_eq!(whole.knot_lines.len(), 10);
         for symmetry in [Symmetry::HalfLength, Symmetry::HalfArc, Symmetry::Quarter] {
             let completed = undeformed(symmetry, 2);
-            assert_eq!(completed.counts, whole.counts);
+            assert_eq!(completed.grids, whole.grids);
             assert_eq!(completed.knot_lines.len(), whole.knot_lines.len());
             for (point, expected) in completed.points.iter().zip(&whole.points) {
                 // The arc is parametrized again in each part: the same cylinder, points along it a little apart.

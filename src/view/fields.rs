@@ -6,8 +6,7 @@
 use crate::model::{FreeStrains, NaturalState};
 use crate::scene::{Material, Scene};
 use crate::shell::{Criterion, Layer, LocalPoint, gauss_legendre, layers, local_point, norm, principal, sub};
-use crate::spline::{Grid, Mesh, Spans, mid_surface_point, mid_surface_points};
-use crate::state::State;
+use crate::spline::{Grid, Patch, Spans, mid_surface_point, mid_surface_points};
 
 /// A field of the shell.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,7 +165,7 @@ impl Field {
 #[derive(Debug)]
 pub struct ShellFields<'a> {
     scene: &'a Scene,
-    mesh: &'a Mesh,
+    mesh: &'a Patch,
     displacement: &'a [[f64; 3]],
     natural: Option<NaturalState>,
     spans: [Spans; 2],
@@ -176,15 +175,15 @@ pub struct ShellFields<'a> {
 }
 
 impl<'a> ShellFields<'a> {
-    /// The fields of a state of a scene.
-    pub fn new(scene: &'a Scene, state: &'a State) -> Self {
-        let mesh = &*state.mesh;
+    /// The fields of a shell alone, on its patch, displaced by `displacement` (mm, one vector for each control point) at a value of
+    /// the scene's parameter.
+    pub fn new(scene: &'a Scene, mesh: &'a Patch, displacement: &'a [[f64; 3]], parameter: f64) -> Self {
         let spans = [0, 1].map(|direction| Spans::of(&mesh.knots[direction], mesh.degree[direction]));
         Self {
             scene,
             mesh,
-            displacement: &state.displacement,
-            natural: FreeStrains::new(scene, mesh).at(state.parameter),
+            displacement,
+            natural: FreeStrains::new(scene, mesh).at(parameter),
             lengths: element_lengths(mesh, &spans),
             spans,
             layers: layers(&scene.material),
@@ -291,7 +290,7 @@ fn angle_between(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Undeformed lengths of the elements through their middles, mm.
-fn element_lengths(mesh: &Mesh, spans: &[Spans; 2]) -> Vec<[f64; 2]> {
+fn element_lengths(mesh: &Patch, spans: &[Spans; 2]) -> Vec<[f64; 2]> {
     let rule = gauss_legendre(mesh.degree[0].max(mesh.degree[1]) + 1);
     let elements = Grid::new([0, 1].map(|direction| spans[direction].count()));
     (0..elements.len())

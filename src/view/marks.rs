@@ -4,7 +4,7 @@ use super::export::WholeShell;
 use crate::model::{Site, direction_at, parameters_of, supports_of};
 use crate::scene::{ActionKind, Edge, ForceVector, Hold, Motion, Region, Scene, Support, SurfaceDirection, Symmetry};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
-use crate::spline::{Mesh, mid_surface_point};
+use crate::spline::{Patch, mid_surface_point};
 use crate::state::State;
 
 /// Marks on a deformed shell, mm.
@@ -124,7 +124,7 @@ impl Marks {
 }
 
 /// The four edges of a surface.
-fn outline(mesh: &Mesh) -> Vec<Vec<[f64; 3]>> {
+fn outline(mesh: &Patch) -> Vec<Vec<[f64; 3]>> {
     let edges = [Edge::UStart, Edge::UEnd, Edge::VStart, Edge::VEnd];
     edges.map(|edge| places_on(edge).map(|at| mid_surface_point(mesh, &[], at).position).collect()).to_vec()
 }
@@ -140,8 +140,8 @@ fn places_on(edge: Edge) -> impl Iterator<Item = [f64; 2]> {
 /// A shell to be marked.
 struct Place<'a> {
     scene: &'a Scene,
-    undeformed: &'a Mesh,
-    deformed: &'a Mesh,
+    undeformed: &'a Patch,
+    deformed: &'a Patch,
     parameter: f64,
     /// Diagonal of the undeformed shell, mm.
     size: f64,
@@ -214,6 +214,21 @@ impl<'a> Place<'a> {
             (0..ARROWS).flat_map(move |i| (0..ARROWS).map(move |j| [middle(i), middle(j)]))
         };
         match kind {
+            ActionKind::SectionForce { section, force_n } => {
+                let along = scaled(factor, *force_n);
+                self.section(section)
+                    .and_then(|at| straight(ArrowKind::Load, at, along, AT_POINT * self.size, Head::At))
+                    .into_iter()
+                    .collect()
+            }
+            ActionKind::SectionMoment { section, moment_n_mm, about, .. } => {
+                let mut axis = [0.0; 3];
+                axis[*about as usize] = factor * moment_n_mm;
+                self.section(section)
+                    .and_then(|at| turning(ArrowKind::Load, at, axis, TURN * self.size))
+                    .into_iter()
+                    .collect()
+            }
             ActionKind::Force { on, force_n } => {
                 let at = parameters_of(&self.scene.geometry, *on);
                 onto(at, self.vector(force_n, at, None, factor), AT_POINT).into_iter().collect()
@@ -253,6 +268,18 @@ impl<'a> Place<'a> {
         }
     }
 
+    /// Where the middle of a rigid section stands.
+    fn section(&self, name: &str) -> Option<[f64; 3]> {
+        let support = self.scene.supports.iter().find(|support| support.name == name)?;
+        match support.on {
+            Region::Edge(Edge::UStart) => Some(self.position([0.0, 0.5])),
+            Region::Edge(Edge::UEnd) => Some(self.position([1.0, 0.5])),
+            Region::Edge(Edge::VStart) => Some(self.position([0.5, 0.0])),
+            Region::Edge(Edge::VEnd) => Some(self.position([0.5, 1.0])),
+            _ => None,
+        }
+    }
+
     /// The direction of a force, of any length.
     fn vector(&self, force: &ForceVector, at: [f64; 2], edge: Option<Edge>, factor: f64) -> [f64; 3] {
         match force {
@@ -261,7 +288,7 @@ impl<'a> Place<'a> {
                 let point = mid_surface_point(self.undeformed, &[], at);
                 let [a1, a2, ..] = point.derivatives;
                 let site = Site { position: point.position, tangents: [a1, a2], edge };
-                scaled(factor * size, direction_at(&self.scene.geometry, &site, *direction))
+                scaled(factor * size, direction_at(self.scene, &site, *direction))
             }
         }
     }

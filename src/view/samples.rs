@@ -2,10 +2,11 @@
 
 use crate::spline::Grid;
 
-/// A surface as a grid of points with a value for each cell, and lines upon it.
+/// Surfaces as grids of points with a value for each cell, and lines upon them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceSamples {
-    pub(super) counts: [usize; 2],
+    /// Number of points of each grid in each direction; points and cells of one grid follow those of the other.
+    pub(super) grids: Vec<[usize; 2]>,
     pub(super) points: Vec<[f64; 3]>,
     pub(super) cell_values: Vec<f64>,
     pub(super) knot_lines: Vec<Vec<[f64; 3]>>,
@@ -83,15 +84,31 @@ impl SurfaceSamples {
         if let Some(index) = knot_lines.iter().flatten().position(broken) {
             return Err(SamplesError::NotFinite { what: "knot lines", index });
         }
-        Ok(Self { counts, points, cell_values, knot_lines, quantity: quantity.to_string() })
+        Ok(Self { grids: vec![counts], points, cell_values, knot_lines, quantity: quantity.to_string() })
     }
 
     /// Point indices of the corners of every cell, around it, in the order of the cell values.
     pub(super) fn cells(&self) -> impl Iterator<Item = [usize; 4]> {
-        let (points, cells) = (Grid::new(self.counts), cells_of(self.counts));
-        (0..cells.len()).map(move |cell| {
-            let [i, j] = cells.place(cell);
-            [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|corner| points.index(corner))
+        let mut first = 0;
+        self.grids.iter().flat_map(move |counts| {
+            let (points, cells) = (Grid::new(*counts), cells_of(*counts));
+            let from = first;
+            first += points.len();
+            (0..cells.len()).map(move |cell| {
+                let [i, j] = cells.place(cell);
+                [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|corner| from + points.index(corner))
+            })
+        })
+    }
+
+    /// Puts the surfaces of several shells together, which show the same quantity; `None` without any.
+    pub(super) fn joined(parts: impl IntoIterator<Item = Self>) -> Option<Self> {
+        parts.into_iter().reduce(|mut all, part| {
+            all.grids.extend(part.grids);
+            all.points.extend(part.points);
+            all.cell_values.extend(part.cell_values);
+            all.knot_lines.extend(part.knot_lines);
+            all
         })
     }
 

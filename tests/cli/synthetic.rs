@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use foldline::record::{Commit, Outcome, Parameter, Record, Report, Warning};
 use foldline::scene::{
-    Adapt, EndRotation, Geometry, Indicator, LengthLimit, Load, Material, MeshSpec, NumbersIn, Output, Quadrature,
-    Scene, Sense, Solver, Splitting, Stage, Symmetry, SyncPolicy,
+    Adapt, EndRotation, Geometry, Indicator, LengthLimit, Load, Material, MeshSpec, NumbersIn, Output, Pose,
+    Quadrature, Scene, Sense, Solver, Splitting, Stage, Symmetry, SyncPolicy,
 };
-use foldline::state::{DriveMemory, Hash, Mesh, State};
+use foldline::state::{DriveMemory, Hash, Mesh, Patch, State};
 
 /// (rotation in degrees, moment in N·mm, strain energy in N·mm).
 pub const CURVE: [(f64, f64, f64); 14] = [
@@ -41,6 +41,10 @@ pub fn scene() -> Scene {
             thermal_expansion_per_k: None,
         },
         mesh: MeshSpec { degree: [3, 3], elements: [4, 4], quadrature: Quadrature::Full },
+        pose: Pose::default(),
+        shells: vec![],
+        joints: vec![],
+        bonds: vec![],
         symmetry: Symmetry::Quarter,
         load: Load::EndRotation(EndRotation {
             sense: Sense::Opposite,
@@ -84,6 +88,7 @@ impl Script {
             work_n_mm: 0.0,
             put_in_n_mm: 0.0,
             probes: vec![],
+            connections: vec![],
             path_length_mm: None,
             critical_point: None,
             warnings: vec![],
@@ -93,7 +98,7 @@ impl Script {
             attempted_parameter: 0.0,
             moment_n_mm: 0.0,
             strain_energy_n_mm: 0.0,
-            elements: [2, 2],
+            elements: [2, 2].into(),
             unknowns: 63,
             iterations: 0,
             factorizations: 0,
@@ -182,8 +187,8 @@ impl Script {
 
     /// The three stages of a refinement.
     pub fn refine(&mut self, elements: [usize; 2]) {
-        let marked = [0, 1].map(|k| elements[k] - self.last.elements[k]);
-        self.push(Report { stage: Stage::RefineKnots, elements, marked, ..self.last.clone() }, 0.001);
+        let marked = [0, 1].map(|k| elements[k] - self.last.elements.each()[0][k]);
+        self.push(Report { stage: Stage::RefineKnots, elements: elements.into(), marked, ..self.last.clone() }, 0.001);
         let unknowns = 3 * (elements[0] + 3) * (elements[1] + 3) - 12;
         self.push(Report { stage: Stage::ProjectDisplacements, unknowns, ..self.last.clone() }, 0.002);
         let report = Report {
@@ -246,13 +251,13 @@ pub fn records() -> Vec<Record> {
 /// A state to hand to a sink beside `record`; what is shown does not look into it.
 pub fn state(record: &Record) -> State {
     State {
-        mesh: Arc::new(Mesh {
+        mesh: Arc::new(Mesh::from(Patch {
             degree: [1, 1],
             knots: [vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]],
             control_points: vec![[0.0, 0.0, 0.0, 1.0]; 4],
-        }),
+        })),
         displacement: vec![[0.0; 3]; 4],
-        marked: [vec![], vec![]],
+        marked: vec![[vec![], vec![]]],
         refined: None,
         step: record.report.step,
         stage: Some(record.report.stage),
@@ -264,7 +269,7 @@ pub fn state(record: &Record) -> State {
         drive: DriveMemory::default(),
         largest_force_n: 0.0,
         refinement: None,
-        superfluous: Default::default(),
+        superfluous: vec![[vec![], vec![]]],
         estimate: None,
     }
 }
@@ -277,13 +282,13 @@ pub fn coarse_records() -> Vec<Record> {
         script.solve(point, false);
         script.evaluate([2, 2]);
         script.refine([4, 4]);
-        let (parameter, elements) = (point.0, [4, 4]);
+        let (parameter, elements) = (point.0, [4, 4].into());
         script.warn(&[Warning::EnergyChangedByRefining { parameter, elements, energy_change }]);
         script.evaluate([0, 0]);
     }
     script.step(CURVE[8]);
     script.solve(CURVE[9], true);
-    script.warn(&[Warning::CoarseElements { parameter: CURVE[8].0, elements: [4, 4], energy_share: 0.64 }]);
+    script.warn(&[Warning::CoarseElements { parameter: CURVE[8].0, elements: [4, 4].into(), energy_share: 0.64 }]);
     script.evaluate([0, 0]);
     let (parameter, spans) = (CURVE[9].0, [1, 4]);
     script.warn(&[Warning::RefinementBlocked { parameter, spans, decay_lengths: 4.31, over_threshold: 93.2 }]);

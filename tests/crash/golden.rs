@@ -133,7 +133,7 @@ fn every_encoding_of_states_is_among_them() {
     assert_eq!(growing, [-1, -2, -2, -2], "doubled twice, up to the longest increment");
     let predicted = states("predicted");
     let previous = |state: &State| state.drive.previous().map(|previous| previous.displacement.len());
-    let points = predicted.iter().map(|state| state.mesh.control_points.len());
+    let points = predicted.iter().map(|state| state.mesh.point_count());
     assert!(predicted.iter().zip(points).skip(1).all(|(state, points)| previous(state) == Some(points)));
     let meshes: std::collections::BTreeSet<usize> = predicted.iter().filter_map(previous).collect();
     assert!(meshes.len() > 1, "what states remember is carried to a finer mesh");

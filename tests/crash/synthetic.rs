@@ -5,7 +5,7 @@ use std::sync::Arc;
 use foldline::journal::{Manifest, format::FORMAT_VERSION};
 use foldline::record::{Commit, Outcome, Parameter, Record, Report};
 use foldline::scene::Stage;
-use foldline::state::{Hash, Mesh, Rejection, State, StepControl};
+use foldline::state::{Hash, Patch, Rejection, State, StepControl};
 
 /// Open uniform knots of `degree` with `elements` spans on [0, 1].
 pub fn uniform_knots(degree: usize, elements: usize) -> Vec<f64> {
@@ -20,10 +20,10 @@ fn wave(x: f64) -> f64 {
 }
 
 /// A mesh with quadratic splines and these knots; its control points are made up.
-pub fn mesh(knots: [Vec<f64>; 2]) -> Mesh {
+pub fn mesh(knots: [Vec<f64>; 2]) -> Patch {
     let counts = [0, 1].map(|way| knots[way].len() - 3);
     let point = |k: usize| [k as f64, wave(k as f64), 1.0 - wave(k as f64), 1.0];
-    Mesh { degree: [2, 2], knots, control_points: (0..counts[0] * counts[1]).map(point).collect() }
+    Patch { degree: [2, 2], knots, control_points: (0..counts[0] * counts[1]).map(point).collect() }
 }
 
 /// The state that a run of `elements` × `elements` elements starts from.
@@ -41,7 +41,7 @@ pub fn next(state: &State) -> (State, Report) {
     let (stage, step) = match state.stage {
         None | Some(Stage::ReEquilibrate) => (Stage::Solve, state.step + 1),
         Some(Stage::Solve) => (Stage::EvaluateIndicators, state.step),
-        Some(Stage::EvaluateIndicators | Stage::SwitchBranch) if state.marked[0].is_empty() => {
+        Some(Stage::EvaluateIndicators | Stage::SwitchBranch) if state.marked[0][0].is_empty() => {
             (Stage::Solve, state.step + 1)
         }
         Some(Stage::EvaluateIndicators | Stage::SwitchBranch) => (Stage::RefineKnots, state.step),
@@ -59,21 +59,21 @@ pub fn next(state: &State) -> (State, Report) {
             let jump_beyond = rejection.map(|_| new.parameter + 0.3);
             new.drive.control = StepControl { halvings: (step % 3) as i32, jump_beyond, rejection };
         }
-        Stage::EvaluateIndicators if step % 3 == 0 && state.mesh.knots[0].len() < 60 => {
-            let spans = state.mesh.knots[0].windows(2).filter(|pair| pair[0] < pair[1]);
-            new.marked[0] = spans.take(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+        Stage::EvaluateIndicators if step % 3 == 0 && state.mesh.patches[0].knots[0].len() < 60 => {
+            let spans = state.mesh.patches[0].knots[0].windows(2).filter(|pair| pair[0] < pair[1]);
+            new.marked[0][0] = spans.take(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
         }
         Stage::EvaluateIndicators => {}
         Stage::RefineKnots => {
-            let mut knots = state.mesh.knots.clone();
-            knots[0].extend(&state.marked[0]);
+            let mut knots = state.mesh.patches[0].knots.clone();
+            knots[0].extend(&state.marked[0][0]);
             knots[0].sort_by(f64::total_cmp);
-            new.refined = Some(Arc::new(mesh(knots)));
-            new.marked[0].clear();
+            new.refined = Some(Arc::new(mesh(knots).into()));
+            new.marked[0][0].clear();
         }
         Stage::ProjectDisplacements => {
             new.mesh = new.refined.take().unwrap_or_else(|| state.mesh.clone());
-            new.displacement = vec![[0.125 * state.parameter; 3]; new.mesh.control_points.len()];
+            new.displacement = vec![[0.125 * state.parameter; 3]; new.mesh.point_count()];
         }
         Stage::ReEquilibrate | Stage::SwitchBranch | Stage::CoarsenKnots => new.displacement = moved(state, 1.0e-3),
     }
@@ -85,6 +85,7 @@ pub fn next(state: &State) -> (State, Report) {
         work_n_mm: 0.0,
         put_in_n_mm: 0.0,
         probes: vec![],
+        connections: vec![],
         path_length_mm: None,
         critical_point: None,
         warnings: vec![],
@@ -92,7 +93,7 @@ pub fn next(state: &State) -> (State, Report) {
         attempted_parameter: new.parameter + 0.1,
         moment_n_mm: new.moment_n_mm,
         strain_energy_n_mm: new.strain_energy_n_mm,
-        elements: new.refined.as_ref().unwrap_or(&new.mesh).element_counts(),
+        elements: new.refined.as_ref().unwrap_or(&new.mesh).elements(),
         unknowns: 3 * new.displacement.len(),
         iterations: 4,
         factorizations: 5,
@@ -101,7 +102,7 @@ pub fn next(state: &State) -> (State, Report) {
         energy_released_n_mm: Some(0.0),
         jumped: false,
         rippled: false,
-        marked: [new.marked[0].len(), new.marked[1].len()],
+        marked: [new.marked[0][0].len(), new.marked[0][1].len()],
         largest_indicator: [0.1, 0.2],
         estimated_error: None,
     };

@@ -23,12 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (state, record) in &sink.stages {
         // A step that refined ends with the equilibrium on the finer mesh.
         if record.report.stage.finds_equilibrium() && record.report.outcome == Outcome::Done {
-            println!(
-                "{:>7.3}  {:>9.3} N·mm  {:?} elements",
-                state.parameter,
-                state.moment_n_mm,
-                state.mesh.element_counts()
-            );
+            println!("{:>7.3}  {:>9.3} N·mm  {:?} elements", state.parameter, state.moment_n_mm, state.mesh.elements());
         }
     }
     Ok(())

@@ -9,8 +9,8 @@ use foldline::journal::{
 };
 use foldline::scene::{Stage, SyncPolicy};
 use foldline::state::{
-    Course, CriticalAhead, DriveMemory, Estimate, Hash, Mesh, PathMemory, Previous, Refinement, Rejection, State,
-    StepControl,
+    Course, CriticalAhead, DriveMemory, Estimate, Hash, KnotLists, Mesh, Patch, PathMemory, Previous, Refinement,
+    Rejection, State, StepControl,
 };
 use proptest::prelude::*;
 
@@ -36,17 +36,33 @@ fn knots(degree: usize) -> impl Strategy<Value = Vec<f64>> {
 }
 
 fn mesh() -> impl Strategy<Value = Mesh> {
+    prop::collection::vec(patch(), 1..=3).prop_map(|patches| Mesh { patches })
+}
+
+fn patch() -> impl Strategy<Value = Patch> {
     (2..=5_usize, 2..=5_usize).prop_flat_map(|(first, second)| {
         (knots(first), knots(second)).prop_flat_map(move |(along_length, along_arc)| {
             let count = (along_length.len() - first - 1) * (along_arc.len() - second - 1);
             let points = prop::collection::vec(prop::array::uniform4(number()), count);
-            points.prop_map(move |points| Mesh {
+            points.prop_map(move |points| Patch {
                 degree: [first, second],
                 knots: [along_length.clone(), along_arc.clone()],
                 control_points: points.into_iter().map(|[x, y, z, w]| [x, y, z, w.abs().max(1e-9)]).collect(),
             })
         })
     })
+}
+
+/// Knots of the last patch, and none of the others.
+fn of_last(mesh: &Mesh, knots: [Vec<f64>; 2]) -> KnotLists {
+    let mut lists = mesh.no_knots();
+    *lists.last_mut().unwrap() = knots;
+    lists
+}
+
+/// The first knot along v of the last patch.
+fn last_knot(mesh: &Mesh) -> Vec<f64> {
+    mesh.patches.last().unwrap().knots[1][..1].to_vec()
 }
 
 fn stage() -> impl Strategy<Value = Option<Stage>> {
@@ -70,13 +86,16 @@ fn state() -> impl Strategy<Value = State> {
     (mesh(), refined, marks, stage(), scalars, control).prop_flat_map(
         |(mesh, refined, marks, stage, (rotation, moment, energy, pivots, step), control)| {
             let mesh = Arc::new(mesh);
-            prop::collection::vec(prop::array::uniform3(number()), mesh.control_points.len()).prop_map(
-                move |displacement| State {
+            prop::collection::vec(prop::array::uniform3(number()), mesh.point_count()).prop_map(move |displacement| {
+                State {
                     turns: if step % 2 == 0 { vec![[rotation, 0.5, -1.0]] } else { vec![] },
                     mesh: mesh.clone(),
                     displacement,
-                    marked: [marks.clone(), Vec::new()],
-                    superfluous: [Vec::new(), if step % 7 == 0 { mesh.knots[1][..1].to_vec() } else { Vec::new() }],
+                    marked: of_last(&mesh, [marks.clone(), Vec::new()]),
+                    superfluous: of_last(
+                        &mesh,
+                        [Vec::new(), if step % 7 == 0 { last_knot(&mesh) } else { Vec::new() }],
+                    ),
                     estimate: (step % 4 == 0).then_some(Estimate {
                         step: pivots,
                         relative_error: rotation,
@@ -93,7 +112,7 @@ fn state() -> impl Strategy<Value = State> {
                         control,
                         course: match pivots % 3 {
                             0 => Course::Path(PathMemory {
-                                heading: vec![[energy, moment, 0.25]; mesh.control_points.len()],
+                                heading: vec![[energy, moment, 0.25]; mesh.point_count()],
                                 parameter_rate: energy,
                                 first_mm: moment,
                                 next_mm: rotation,
@@ -103,7 +122,7 @@ fn state() -> impl Strategy<Value = State> {
                                 at_bifurcation: step % 3 == 0,
                             }),
                             1 => Course::Load(Previous {
-                                displacement: vec![[moment, rotation, -1.5]; mesh.control_points.len()],
+                                displacement: vec![[moment, rotation, -1.5]; mesh.point_count()],
                                 parameter: energy,
                             }),
                             _ => Course::Unknown,
@@ -116,8 +135,8 @@ fn state() -> impl Strategy<Value = State> {
                         expected_n_mm: (pivots % 2 == 0).then_some(moment),
                         ripple_n_mm: moment,
                     }),
-                },
-            )
+                }
+            })
         },
     )
 }

@@ -32,7 +32,7 @@ impl TermSource for Pull {
         blake3::hash(&self.0.to_le_bytes())
     }
 
-    fn on(&self, _: &Scene, _: &Mesh, _: &Tables) -> Result<Box<dyn Term>, ModelError> {
+    fn on(&self, _: &Scene, _: &Mesh, _: &[Tables]) -> Result<Box<dyn Term>, ModelError> {
         Ok(Box::new(Self(self.0)))
     }
 }

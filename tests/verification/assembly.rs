@@ -57,7 +57,7 @@ fn residual_and_stiffness_are_derivatives_of_the_energy() {
         let moved = |q: &[f64]| discretization.unknowns.configure(q, 8.5).displacement();
         let direction = &noise(2 * count)[count..];
         let at = |step: f64| -> Vec<f64> { point.iter().zip(direction).map(|(q, d)| q + step * d).collect() };
-        let energy = |step: f64| strain_energy(&discretization.shell.tables, &moved(&at(step)), None);
+        let energy = |step: f64| strain_energy(&discretization.shells[0].tables, &moved(&at(step)), None);
         let mut assembled = Assembled::new(&discretization);
         let mut gradient = |step: f64| {
             assembled.assemble(&discretization, &moved(&at(step)), 8.5, Want::Residual);
@@ -91,16 +91,14 @@ fn rigid_motions_give_no_strain() {
         let (sin, cos) = 1.1_f64.sin_cos();
         let motion = |[x, y, z]: [f64; 3]| [cos * x - sin * y + 5.0, sin * x + cos * y - 2.0, z + 1.0];
         let displacement: Vec<[f64; 3]> = mesh
-            .control_points
-            .iter()
-            .map(|[x, y, z, w]| {
-                let point = [x / w, y / w, z / w];
+            .points()
+            .map(|point| {
                 let moved = motion(point);
                 [0, 1, 2].map(|c| moved[c] - point[c])
             })
             .collect();
-        for element in 0..discretization.shell.tables.elements.len() {
-            let strains = foldline::adapt::element_strains(&discretization, &displacement, element);
+        for element in 0..discretization.shells[0].tables.elements.len() {
+            let strains = foldline::adapt::element_strains(&discretization.shells[0], &displacement, element);
             for strain in strains {
                 // Physical strains: in units of the tangents.
                 let [l1, l2] = strain.1;
@@ -127,7 +125,7 @@ fn moment_is_the_derivative_of_the_energy_with_respect_to_the_rotation() {
         scene.solver.tolerance = 1e-11;
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
         let mut work = Workspace::new(&scene, &mesh).unwrap();
-        let start = vec![[0.0; 3]; mesh.control_points.len()];
+        let start = vec![[0.0; 3]; mesh.point_count()];
         let mut solve = |from: &[[f64; 3]], a: f64, b: f64| {
             let from = Configuration { displacement: from, turns: &[], parameter: a, largest_force: 0.0 };
             Equilibrium::new(&scene, &mut work).advance(from, b, &mut |_| false).unwrap()
@@ -150,7 +148,7 @@ fn symmetric_parts_agree_with_the_whole() {
         scene.mesh.elements = [16, 8];
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
         let mut work = Workspace::new(&scene, &mesh).unwrap();
-        let start = vec![[0.0; 3]; mesh.control_points.len()];
+        let start = vec![[0.0; 3]; mesh.point_count()];
         let solved = Equilibrium::new(&scene, &mut work).advance(flat(&start), 2.0, &mut |_| false).unwrap();
         solved.moment
     };
@@ -170,7 +168,7 @@ fn wide_arcs_have_the_closed_form_stiffness() {
         scene.mesh.elements = [16, 16];
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
         let mut work = Workspace::new(&scene, &mesh).unwrap();
-        let start = vec![[0.0; 3]; mesh.control_points.len()];
+        let start = vec![[0.0; 3]; mesh.point_count()];
         let solved = Equilibrium::new(&scene, &mut work).advance(flat(&start), 0.001, &mut |_| false).unwrap();
         let arc = arc_deg.to_radians();
         let inertia = 100.0 * ((arc + arc.sin()) / 2.0 - 4.0 * (arc / 2.0).sin().powi(2) / arc);

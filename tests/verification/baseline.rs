@@ -39,7 +39,7 @@ fn the_tolerance_bounds_the_error_of_the_moment() {
         let stages = run(scene);
         // Runs of other tolerances bracket the snap at other rotations and refine alike: compared are equal meshes and steps.
         let settled = steps(&stages);
-        let points = settled.iter().map(|(state, _)| (state.parameter, state.mesh.element_counts(), state.moment_n_mm));
+        let points = settled.iter().map(|(state, _)| (state.parameter, state.mesh.elements(), state.moment_n_mm));
         points.collect::<Vec<_>>()
     };
     let converged = at_tolerance(1e-10);
@@ -144,7 +144,7 @@ fn check_descent(scene: Scene, stages: &[(State, Record)], most: usize) {
 fn elements_at(stages: &[(State, Record)], parameter: f64, parts: usize) -> usize {
     let settled = steps(stages);
     let step = settled.iter().find(|(state, _)| (state.parameter - parameter).abs() < 1e-9).unwrap();
-    step.0.mesh.element_counts().iter().product::<usize>() * parts
+    step.0.mesh.elements().count() * parts
 }
 
 /// The paper refines from 0.019 on, and says how many elements it has.

@@ -111,7 +111,7 @@ fn a_path_leaves_for_the_elastica() {
 
 /// Difference of the lift of control points that mirror each other in mid-length and in the apex line, mm.
 fn asymmetry(state: &State) -> [f64; 2] {
-    let [n1, n2] = state.mesh.control_counts();
+    let [n1, n2] = state.mesh.patches[0].control_counts();
     let lift = |i: usize, j: usize| state.displacement[i * n2 + j][2];
     let mut worst = [0.0_f64; 2];
     for i in 0..n1 {

@@ -2,25 +2,25 @@
 
 use foldline::energy::{Discretization, ShellElements, Want};
 use foldline::equilibrium::Assembled;
-use foldline::model::{BlockPattern, Blocks, Tables, starting_mesh};
+use foldline::model::{BlockPattern, Blocks, Tables, starting_patch};
 use foldline::scene::{Quadrature, Scene};
-use foldline::spline::Mesh;
+use foldline::spline::Patch;
 use std::sync::Arc;
 
 use crate::support::scene;
 
 /// A tape spring with a knot of full multiplicity at half its length: what two patches that share a row are as well.
-fn creased() -> (Scene, Mesh) {
+fn creased() -> (Scene, Patch) {
     let mut scene = scene("baseline.toml");
     scene.mesh.quadrature = Quadrature::Full;
     scene.mesh.elements = [6, 4];
-    let mesh = starting_mesh(&scene).unwrap();
+    let mesh = starting_patch(&scene).unwrap();
     let again = mesh.degree[0] - mesh.knots[0].iter().filter(|knot| **knot == 0.5).count();
     (scene, mesh.with_knots(&[vec![0.5; again], vec![]]))
 }
 
 /// The part of a mesh before or beyond u = 1/2, and its first row of control points.
-fn half(mesh: &Mesh, beyond: bool) -> (Mesh, usize) {
+fn half(mesh: &Patch, beyond: bool) -> (Patch, usize) {
     let degree = mesh.degree[0];
     let mut along: Vec<f64> =
         mesh.knots[0].iter().copied().filter(|knot| *knot == 0.5 || (*knot > 0.5) == beyond).collect();
@@ -29,7 +29,7 @@ fn half(mesh: &Mesh, beyond: bool) -> (Mesh, usize) {
     let first = if beyond { mesh.control_counts()[0] - rows } else { 0 };
     let control_points = (first..first + rows).flat_map(|row| mesh.grid().line(0, row));
     let control_points = control_points.map(|point| mesh.control_points[point]).collect();
-    (Mesh { degree: mesh.degree, knots: [along, mesh.knots[1].clone()], control_points }, first)
+    (Patch { degree: mesh.degree, knots: [along, mesh.knots[1].clone()], control_points }, first)
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn two_patches_that_share_a_row_are_one() {
         .map(|i| [0, 1, 2].map(|c| 0.05 * (((3 * i + c + 1) as f64 * 0.732_050_807_57).fract() - 0.5)))
         .collect();
 
-    let whole = Discretization::new(&scene, &Arc::new(mesh.clone())).unwrap();
+    let whole = Discretization::new(&scene, &Arc::new(mesh.clone().into())).unwrap();
     let mut expected = Assembled::new(&whole);
     expected.assemble(&whole, &displacement, 0.0, Want::Stiffness);
 

@@ -32,7 +32,7 @@ fn closed_form() -> [f64; 2] {
 /// κ₁₁ and κ₂₂ at the quadrature points of the elements that are at least this far from all edges.
 fn curvatures(scene: &Scene, state: &State, margin: f64) -> Vec<[f64; 2]> {
     let discretization = Discretization::new(scene, &state.mesh).unwrap();
-    let elements = discretization.shell.tables.elements;
+    let elements = discretization.shells[0].tables.elements;
     let Geometry::Plate { length_mm, .. } = scene.geometry else { panic!() };
     let inside = |index: usize, count: usize| {
         let size = length_mm / count as f64;
@@ -40,7 +40,7 @@ fn curvatures(scene: &Scene, state: &State, margin: f64) -> Vec<[f64; 2]> {
     };
     (0..elements.len())
         .filter(|element| (0..2).all(|way| inside(elements.place(*element)[way], elements.counts[way])))
-        .flat_map(|element| element_strains(&discretization, &state.displacement, element))
+        .flat_map(|element| element_strains(&discretization.shells[0], &state.displacement, element))
         .map(|(strains, lengths)| [0, 1].map(|axis| strains.bending[axis] / (lengths[axis] * lengths[axis])))
         .collect()
 }

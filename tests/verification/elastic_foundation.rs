@@ -20,24 +20,25 @@ impl TermSource for Foundation {
         blake3::hash(&self.0.to_le_bytes())
     }
 
-    fn on(&self, scene: &Scene, mesh: &Mesh, tables: &Tables) -> Result<Box<dyn Term>, ModelError> {
+    fn on(&self, scene: &Scene, mesh: &Mesh, tables: &[Tables]) -> Result<Box<dyn Term>, ModelError> {
         self.below(scene, mesh, tables, [1.0; 2])
     }
 
-    fn below(&self, _: &Scene, mesh: &Mesh, _: &Tables, limits: [f64; 2]) -> Result<Box<dyn Term>, ModelError> {
+    fn below(&self, _: &Scene, mesh: &Mesh, _: &[Tables], limits: [f64; 2]) -> Result<Box<dyn Term>, ModelError> {
+        let patch = mesh.lone();
         let [along, across] = [0, 1].map(|way| {
-            let spans = Spans::of(&mesh.knots[way], mesh.degree[way]).bounds.into_iter();
+            let spans = Spans::of(&patch.knots[way], patch.degree[way]).bounds.into_iter();
             let spans = spans.map(|[from, to]| [from, to.min(limits[way])]).filter(|[from, to]| from < to);
-            let rule = gauss_legendre(mesh.degree[way] + 1);
+            let rule = gauss_legendre(patch.degree[way] + 1);
             let in_span = |[from, to]: [f64; 2]| rule.clone().into_iter().map(move |[x, w]| [from, to, x, w]);
             let point = |[from, to, x, w]: [f64; 4]| (0.5 * (from + to + (to - from) * x), 0.5 * (to - from) * w);
             spans.flat_map(in_span).map(point).collect::<Vec<_>>()
         });
         let pairs = along.iter().flat_map(|one| across.iter().map(move |other| (one, other)));
         let spring = |((u, one), (v, other)): (&(f64, f64), &(f64, f64))| {
-            let (first, [values, ..]) = evaluate_surface(mesh, [*u, *v]);
-            let [a1, a2, ..] = mid_surface_point(mesh, &[], [*u, *v]).derivatives;
-            let shares = mesh.window(first).zip(values).collect();
+            let (first, [values, ..]) = evaluate_surface(patch, [*u, *v]);
+            let [a1, a2, ..] = mid_surface_point(patch, &[], [*u, *v]).derivatives;
+            let shares = patch.window(first).zip(values).collect();
             Spring { shares, stiffness: self.0 * one * other * (a1[0] * a2[1] - a1[1] * a2[0]) }
         };
         Ok(Box::new(Bed(pairs.map(spring).collect())))

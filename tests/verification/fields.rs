@@ -16,8 +16,12 @@ fn field(scene: &Scene, name: &str) -> Field {
     fields_of(scene).into_iter().find(|field| field.name == name).unwrap_or_else(|| panic!("there is no {name}"))
 }
 
+fn fields_in<'a>(scene: &'a Scene, state: &'a State) -> ShellFields<'a> {
+    ShellFields::new(scene, state.mesh.lone(), &state.displacement, state.parameter)
+}
+
 fn value(scene: &Scene, state: &State, name: &str, at: [f64; 2]) -> [f64; 3] {
-    ShellFields::new(scene, state).at(at).value(&field(scene, name))
+    fields_in(scene, state).at(at).value(&field(scene, name))
 }
 
 fn assert_close(found: f64, expected: f64, scale: f64, what: &str) {
@@ -315,7 +319,7 @@ fn images_continue_the_fields() {
     };
     let (whole, of_whole) = bent(Symmetry::None, [16, 8]);
     let (quarter, of_quarter) = bent(Symmetry::Quarter, [16, 8]);
-    let (all, part) = (ShellFields::new(&whole, &of_whole), ShellFields::new(&quarter, &of_quarter));
+    let (all, part) = (fields_in(&whole, &of_whole), fields_in(&quarter, &of_quarter));
     // The whole one is held at another place along x.
     let names = ["displacement", "membrane_force", "bending_moment", "membrane_strain", "bending_moment_principal"];
     for (name, field) in names.map(|name| (name, field(&quarter, name))) {

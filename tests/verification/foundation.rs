@@ -41,8 +41,8 @@ impl TermSource for Tie {
         blake3::hash(&self.stiffness.to_le_bytes())
     }
 
-    fn on(&self, _: &Scene, mesh: &Mesh, _: &Tables) -> Result<Box<dyn Term>, ModelError> {
-        let grid = mesh.grid();
+    fn on(&self, _: &Scene, mesh: &Mesh, _: &[Tables]) -> Result<Box<dyn Term>, ModelError> {
+        let grid = mesh.lone().grid();
         let ends: Vec<[usize; 2]> =
             grid.line(0, 0).zip(grid.line(0, grid.counts[0] - 1)).map(|(a, b)| [a, b]).collect();
         let each = Tie { stiffness: self.stiffness / ends.len() as f64, ..*self };
@@ -323,7 +323,7 @@ fn a_skew_tangent_that_hides_is_refused() {
     let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Tie { at_once: false, ..Tie::of(1.0) })];
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
     let work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
-    let still = vec![[0.0; 3]; mesh.control_points.len()];
+    let still = vec![[0.0; 3]; mesh.point_count()];
     Assembled::new(work.discretization()).assemble(work.discretization(), &still, 0.0, Want::Stiffness);
 }
 
@@ -359,7 +359,7 @@ fn it_stands_in_the_sums() {
     let work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
     let field = |seed: f64| -> Vec<[f64; 3]> {
         let value = |i: usize| ((i as f64 + 1.0) * seed).fract() - 0.5;
-        (0..mesh.control_points.len()).map(|i| [0, 1, 2].map(|c| 0.1 * value(3 * i + c))).collect()
+        (0..mesh.point_count()).map(|i| [0, 1, 2].map(|c| 0.1 * value(3 * i + c))).collect()
     };
     let (shape, direction) = (field(0.618_033_988_75), field(0.732_050_807_57));
     let at = |step: f64| -> Vec<[f64; 3]> {
@@ -400,7 +400,7 @@ fn the_balance_of_a_solve_tells_it_apart() {
     let own: Vec<Arc<dyn TermSource>> = vec![Arc::new(Foundation(3.0))];
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
     let mut work = Workspace::with_terms(&scene, &mesh, &own).unwrap();
-    let still = vec![[0.0; 3]; mesh.control_points.len()];
+    let still = vec![[0.0; 3]; mesh.point_count()];
     let rest = Configuration { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
     let solved = Equilibrium::new(&scene, &mut work).advance(rest, 1.0, &mut |_| false).unwrap();
     let Balance { stored, of_terms, work: done, .. } = &solved.balance;

@@ -101,8 +101,8 @@ fn gradient_and_stiffness_are_derivatives_under_free_strain() {
         discretization.unknowns.configure(&free, parameter).displacement()
     };
     let placement = discretization.unknowns.configure(&point, parameter);
-    let natural = discretization.shell.free_strains.at(parameter);
-    let energy = |step: f64| strain_energy(&discretization.shell.tables, &at(step), natural);
+    let natural = discretization.shells[0].free_strains.at(parameter);
+    let energy = |step: f64| strain_energy(&discretization.shells[0].tables, &at(step), natural);
     let mut assembled = Assembled::new(&discretization);
     let mut gradient = |step: f64| {
         assembled.assemble(&discretization, &at(step), parameter, Want::Residual);

@@ -1,6 +1,6 @@
 //! Planes of symmetry: what is not its own mirror image is refused with its numbers, and what is, is taken.
 
-use foldline::model::{ModelError, starting_mesh, symmetric_lines};
+use foldline::model::{ModelError, starting_patch, symmetric_lines};
 use foldline::pipeline::Stages;
 use foldline::scene::{OrthotropicLaw, Ply, Scene, Symmetry, parse};
 
@@ -278,7 +278,7 @@ fn lips_of_a_slit_are_told_apart() {
 fn symmetric_lines_are_found() {
     let lines = |name: &str| {
         let scene = scene(name);
-        symmetric_lines(&scene, &starting_mesh(&scene).unwrap())
+        symmetric_lines(&scene, &starting_patch(&scene).unwrap())
     };
     assert_eq!(lines("baseline.toml"), [true, true]);
     assert_eq!(lines("baseline-quarter.toml"), [false, false], "what is cut is not symmetric again");

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use foldline::energy::{Discretization, Want};
 use foldline::equilibrium::Assembled;
-use foldline::model::starting_mesh;
+use foldline::model::{starting_mesh, starting_patch};
 use foldline::scene::{Quadrature, Scene, parse};
-use foldline::spline::Mesh;
+use foldline::spline::{Mesh, Patch};
 use nalgebra::DMatrix;
 
 /// A short panel, so thick that bending and stretching are not far apart: what has no energy stands out.
@@ -57,7 +57,7 @@ fn eigenvalues(scene: &Scene, mesh: &Arc<Mesh>, displacement: &[[f64; 3]]) -> Ve
     let discretization = Discretization::new(scene, mesh).unwrap();
     let mut assembled = Assembled::new(&discretization);
     assembled.assemble(&discretization, displacement, 0.0, Want::Stiffness);
-    let count = mesh.control_points.len();
+    let count = mesh.point_count();
     let mut matrix = DMatrix::zeros(3 * count, 3 * count);
     for column in 0..3 * count {
         let mut field = vec![[0.0; 3]; count];
@@ -84,7 +84,7 @@ fn check_against(
     mesh: &Arc<Mesh>,
     what: &str,
 ) {
-    let still = vec![[0.0; 3]; mesh.control_points.len()];
+    let still = vec![[0.0; 3]; mesh.point_count()];
     let values = |quadrature| eigenvalues(&panel_of(thickness, degree, [1, 1], quadrature), mesh, &still);
     let (found, full) = (values(quadrature), values(reference));
     let rounding = 1e-12 * full[full.len() - 1];
@@ -93,7 +93,7 @@ fn check_against(
     assert!(found[6] > 0.5 * full[6], "{what}: {:e} where full quadrature has {:e}", found[6], full[6]);
 }
 
-fn graded(mesh: &Mesh) -> Mesh {
+fn graded(mesh: &Patch) -> Patch {
     // Each knot ten times closer to the edge than the one before, and a pair that is very close together inside.
     mesh.with_knots(&[vec![1e-3, 1e-2, 0.1, 0.5, 0.5001], vec![0.3, 0.9, 0.99, 0.999]])
 }
@@ -106,11 +106,11 @@ fn no_field_but_rigid_motions_is_without_energy() {
                 let mesh = Arc::new(starting_mesh(&panel(degree, elements, quadrature)).unwrap());
                 check(degree, quadrature, &mesh, &format!("{elements:?} elements"));
             }
-            let mesh = starting_mesh(&panel(degree, [1, 1], quadrature)).unwrap();
-            check(degree, quadrature, &Arc::new(graded(&mesh)), "graded");
+            let mesh = starting_patch(&panel(degree, [1, 1], quadrature)).unwrap();
+            check(degree, quadrature, &Arc::new(graded(&mesh).into()), "graded");
             let refined =
                 mesh.with_knots(&[vec![0.5], vec![0.25, 0.5, 0.75]]).with_knots(&[vec![0.75, 0.875], vec![0.125]]);
-            check(degree, quadrature, &Arc::new(refined), "refined twice");
+            check(degree, quadrature, &Arc::new(refined.into()), "refined twice");
         }
     }
 }
@@ -122,14 +122,14 @@ fn the_default_is_nowhere_half_as_stiff() {
     let quadrature = Quadrature::Balanced;
     for degree in 2..=5 {
         for thickness in [1.0, 0.1] {
-            let check = |mesh: Mesh, what: &str| {
-                check_against(Quadrature::FullPlusTwo, thickness, degree, quadrature, &Arc::new(mesh), what);
+            let check = |mesh: Patch, what: &str| {
+                check_against(Quadrature::FullPlusTwo, thickness, degree, quadrature, &Arc::new(mesh.into()), what);
             };
             for elements in [[1, 1], [1, 2], [2, 2], [3, 2], [8, 1], [1, 8], [4, 4]] {
-                let mesh = starting_mesh(&panel(degree, elements, quadrature)).unwrap();
+                let mesh = starting_patch(&panel(degree, elements, quadrature)).unwrap();
                 check(mesh, &format!("{elements:?} elements"));
             }
-            let single = starting_mesh(&panel(degree, [1, 1], quadrature)).unwrap();
+            let single = starting_patch(&panel(degree, [1, 1], quadrature)).unwrap();
             check(single.with_knots(&[vec![], vec![0.4, 0.6, 0.7]]), "graded strip");
             check(single.with_knots(&[vec![0.5, 0.75, 0.9], vec![0.4, 0.6, 0.7]]), "graded");
             check(single.with_knots(&[vec![0.5], vec![0.5; degree - 1]]), "repeated knot");
@@ -156,12 +156,13 @@ fn the_default_is_nowhere_half_as_stiff_on_any_small_patch() {
 fn too_few_points_would_show() {
     let scene = panel(3, [6, 6], Quadrature::Patch);
     let mesh = Arc::new(starting_mesh(&scene).unwrap());
-    let still = vec![[0.0; 3]; mesh.control_points.len()];
+    let still = vec![[0.0; 3]; mesh.point_count()];
     let mut poor = Discretization::new(&scene, &mesh).unwrap();
     // All points of the elements next to one edge lose their stiffness, as if none were there.
-    let elements = poor.shell.tables.elements.counts[1];
-    let lost: usize = (0..elements).map(|element| poor.shell.tables.points.element_points(element).len()).sum();
-    poor.shell.tables.points.functions[..lost * 5 * poor.shell.tables.padded].fill(0.0);
+    let elements = poor.shells[0].tables.elements.counts[1];
+    let lost: usize = (0..elements).map(|element| poor.shells[0].tables.points.element_points(element).len()).sum();
+    let tables = &mut poor.shells[0].tables;
+    tables.points.functions[..lost * 5 * tables.padded].fill(0.0);
     let mut assembled = Assembled::new(&poor);
     assembled.assemble(&poor, &still, 0.0, Want::Stiffness);
     let mut corner = still.clone();

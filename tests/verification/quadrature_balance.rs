@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use foldline::energy::{Discretization, Want};
 use foldline::equilibrium::{Assembled, Configuration, Equilibrium, Workspace};
-use foldline::model::starting_mesh;
+use foldline::model::starting_patch;
 use foldline::scene::{Scene, parse};
-use foldline::spline::{Mesh, Spans, mid_surface_point};
+use foldline::spline::{Patch, Spans, mid_surface_point};
 use nalgebra::{DMatrix, DVector};
 
 /// Radius, mm; modulus, MPa; hoop strain: so small that the shell is linear, so large that rounding is not seen.
@@ -84,7 +84,7 @@ fn tube(part: Part, radius_over_thickness: f64, degree: usize, quadrature: &str)
 }
 
 /// Knots that cut each span of a direction into pieces of these relative sizes.
-fn cut(mesh: &Mesh, direction: usize, sizes: &[f64]) -> Vec<f64> {
+fn cut(mesh: &Patch, direction: usize, sizes: &[f64]) -> Vec<f64> {
     let total: f64 = sizes.iter().sum();
     let spans = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
     let in_span = |[from, to]: &[f64; 2]| {
@@ -105,8 +105,8 @@ fn sizes(count: usize, graded: bool) -> Vec<f64> {
 }
 
 /// The displacement of a scene on a mesh.
-fn solved(scene: &Scene, mesh: &Arc<Mesh>) -> Vec<[f64; 3]> {
-    let mut work = Workspace::new(scene, mesh).unwrap();
+fn solved(scene: &Scene, mesh: &Patch) -> Vec<[f64; 3]> {
+    let mut work = Workspace::new(scene, &Arc::new(mesh.clone().into())).unwrap();
     let still = vec![[0.0; 3]; mesh.control_points.len()];
     let start = Configuration { displacement: &still, turns: &[], parameter: 0.0, largest_force: 0.0 };
     Equilibrium::new(scene, &mut work).advance(start, scene.load.target(), &mut |_| false).unwrap().displacement
@@ -123,7 +123,7 @@ fn tube_error(
     quadrature: &str,
 ) -> f64 {
     let scene = tube(part, radius_over_thickness, degree, quadrature);
-    let coarse = starting_mesh(&scene).unwrap();
+    let coarse = starting_patch(&scene).unwrap();
     let spans = coarse.element_counts()[1];
     let sizes = sizes(per_quarter * part.quarters() / spans, graded);
     let mesh = Arc::new(coarse.with_knots(&[vec![0.25, 0.5, 0.75], cut(&coarse, 1, &sizes)]));
@@ -182,7 +182,7 @@ fn the_rule_for_bending_alone_would_show() {
 
 /// Forces of a displacement on a finer mesh, on the control points of a coarser one: what a load made from a known
 /// displacement is in the coarser space.
-fn restricted(coarse: &Mesh, new: &[Vec<f64>; 2], forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+fn restricted(coarse: &Patch, new: &[Vec<f64>; 2], forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let of_function = |a: usize| {
         let mut marked = coarse.clone();
         for (b, point) in marked.control_points.iter_mut().enumerate() {
@@ -196,8 +196,8 @@ fn restricted(coarse: &Mesh, new: &[Vec<f64>; 2], forces: &[[f64; 3]]) -> Vec<[f
 }
 
 /// Displacement under forces on the control points, of the undeformed shell (linear).
-fn linear(scene: &Scene, mesh: &Arc<Mesh>, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let discretization = Discretization::new(scene, mesh).unwrap();
+fn linear(scene: &Scene, mesh: &Patch, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let discretization = Discretization::new(scene, &Arc::new(mesh.clone().into())).unwrap();
     let mut assembled = Assembled::new(&discretization);
     let still = vec![[0.0; 3]; mesh.control_points.len()];
     assembled.assemble(&discretization, &still, 0.0, Want::Stiffness);
@@ -220,7 +220,7 @@ fn linear(scene: &Scene, mesh: &Arc<Mesh>, forces: &[[f64; 3]]) -> Vec<[f64; 3]>
 fn varying_error(ratio: f64, degree: usize, count: usize, graded: bool, quadrature: &str) -> f64 {
     let scene = tube(Part::Quarter, ratio, degree, quadrature);
     let exact_scene = tube(Part::Quarter, ratio, degree, "full-plus-two");
-    let single = starting_mesh(&scene).unwrap();
+    let single = starting_patch(&scene).unwrap();
     let coarse = Arc::new(single.with_knots(&[vec![], cut(&single, 1, &sizes(count, graded))]));
     let new = [vec![], cut(&coarse, 1, &[1.0; 8])];
     let fine = Arc::new(coarse.with_knots(&new));
@@ -235,7 +235,7 @@ fn varying_error(ratio: f64, degree: usize, count: usize, graded: bool, quadratu
             [0.0, radial * angle.sin(), radial * angle.cos()]
         })
         .collect();
-    let discretization = Discretization::new(&exact_scene, &fine).unwrap();
+    let discretization = Discretization::new(&exact_scene, &Arc::new((*fine).clone().into())).unwrap();
     let mut assembled = Assembled::new(&discretization);
     let still = vec![[0.0; 3]; fine.control_points.len()];
     assembled.assemble(&discretization, &still, 0.0, Want::Stiffness);
@@ -355,7 +355,7 @@ fn shell(text: &str, size: f64, ratio: f64, degree: usize, quadrature: &str) -> 
 
 /// Displacements at samples of the surface.
 fn sampled(scene: &Scene, sizes: &[f64]) -> Vec<[f64; 3]> {
-    let single = starting_mesh(scene).unwrap();
+    let single = starting_patch(scene).unwrap();
     let mesh = Arc::new(single.with_knots(&[cut(&single, 0, sizes), cut(&single, 1, sizes)]));
     let displacement = solved(scene, &mesh);
     let at = |sample: usize| [(sample % 11) as f64 / 10.0, (sample / 11) as f64 / 10.0];

@@ -67,6 +67,8 @@ fn with_planes(mut scene: Scene, edges: &[Edge], first: bool) -> Scene {
         let plane = Support {
             name: format!("plane {index}"),
             on: Region::Edge(*edge),
+            shell: 0,
+            also: vec![],
             hold: Hold::Symmetric,
             history: History::default(),
         };

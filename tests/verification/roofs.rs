@@ -151,6 +151,7 @@ fn a_follower_load_has_one_limit_point() {
     let mut by_length = coarse();
     by_length.actions = vec![Action {
         name: "pressure".into(),
+        shell: None,
         kind: ActionKind::Pressure { pressure_mpa: -0.03, follower: true },
         history: by_length.actions[0].history.clone(),
     }];
@@ -187,15 +188,21 @@ fn a_given_motion_goes_back() {
     by_motion.supports.push(Support {
         name: "crown".into(),
         on: Region::Point([0.5, 0.5]),
+        shell: 0,
+        also: vec![],
         hold: Hold::Displacement { displacement_mm: [None, None, Some(-30.0)] },
         history: by_force.actions[0].history.clone(),
     });
     by_motion.probes = vec![Probe {
         name: "force".into(),
+        shell: 0,
         kind: ProbeKind::Reaction { support: "crown".into(), component: Reaction::ForceZ },
     }];
-    by_force.probes =
-        vec![Probe { name: "w_c".into(), kind: ProbeKind::Displacement { on: [0.5, 0.5], component: Component::Z } }];
+    by_force.probes = vec![Probe {
+        name: "w_c".into(),
+        shell: 0,
+        kind: ProbeKind::Displacement { on: [0.5, 0.5], component: Component::Z },
+    }];
     by_motion.continuation = Some(ARC_LENGTH);
 
     let (force, motion) = (Path::of(by_force), Path::of(by_motion));

@@ -6,7 +6,7 @@ use foldline::energy::{Discretization, Want};
 use foldline::equilibrium::{Assembled, Configuration, SoftMode, Workspace, soft_mode};
 use foldline::record::Outcome;
 use foldline::scene::{Scene, parse};
-use foldline::spline::Mesh;
+use foldline::spline::Patch;
 use foldline::state::State;
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 
@@ -56,7 +56,7 @@ fn dense(scene: &Scene, state: &State) -> Vec<f64> {
     let placement = unknowns.configure(&free, state.parameter);
     let mut assembled = Assembled::new(&discretization);
     assembled.assemble(&discretization, &state.displacement, state.parameter, Want::Stiffness);
-    let Mesh { knots, degree, .. } = &*state.mesh;
+    let Patch { knots, degree, .. } = state.mesh.lone();
     let [along, across] = [0, 1].map(|way| shares(&knots[way], degree[way]));
     let count = unknowns.count();
     let (mut stiffness, mut mass) = (DMatrix::zeros(count, count), DMatrix::zeros(count, count));
@@ -139,11 +139,8 @@ fn the_lowest_eigenvalue_hardly_depends_on_the_mesh() {
     // Inserting knots into the undeformed shell changes nothing but the space.
     let scene = scene("verification/hinged-roof-12.7.toml");
     let start = foldline::pipeline::Stages::new(scene.clone()).start().unwrap();
-    let between = |knots: &[f64]| -> Vec<f64> {
-        knots.windows(2).filter(|pair| pair[1] > pair[0]).map(|pair| 0.5 * (pair[0] + pair[1])).collect()
-    };
-    let mesh = Arc::new(start.mesh.with_knots(&[between(&start.mesh.knots[0]), between(&start.mesh.knots[1])]));
-    let finer = State { displacement: vec![[0.0; 3]; mesh.control_points.len()], mesh, ..start.clone() };
+    let mesh = Arc::new(start.mesh.halved());
+    let finer = State { displacement: vec![[0.0; 3]; mesh.point_count()], mesh, ..start.clone() };
     let [coarse, fine] = [&start, &finer].map(|state| soft(&scene, state).eigenvalue);
     assert!((fine / coarse - 1.0).abs() < 0.03, "{coarse} and {fine} N/mm");
 }

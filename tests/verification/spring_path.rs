@@ -102,8 +102,8 @@ fn refined_on_the_way() {
     let path = Path::of(by_length(&scene, 4.0));
     let first = path.limit_points()[0];
     let meshes = |from: usize, to: usize| {
-        let elements: std::collections::BTreeSet<[usize; 2]> =
-            path.points[from..to].iter().map(|report| report.elements).collect();
+        let elements: std::collections::BTreeSet<String> =
+            path.points[from..to].iter().map(|report| report.elements.to_string()).collect();
         elements.len()
     };
     assert!(meshes(0, first) >= 4 && meshes(first, path.points.len()) >= 4, "refined before and behind the limit");

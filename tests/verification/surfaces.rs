@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use foldline::model::{ModelError, starting_mesh};
+use foldline::model::{ModelError, starting_patch};
 use foldline::pipeline::Stages;
 use foldline::record::Report;
 use foldline::scene::{Geometry, Material, NurbsPatch, Scene, Seam, parse};
-use foldline::spline::{Mesh, Spans, mid_surface_point};
+use foldline::spline::{Patch, Spans, mid_surface_point};
 use foldline::state::State;
 
 use crate::support::run;
@@ -18,14 +18,14 @@ fn read(text: &str) -> Scene {
 const PLATE: &str = include_str!("scenes/near-equal-knots.toml");
 
 /// A surface, meshed: nothing of a scene but this decides whether it is taken, as its shell is thin.
-fn meshed(patch: NurbsPatch, degree: [usize; 2], elements: [usize; 2]) -> Result<Mesh, ModelError> {
+fn meshed(patch: NurbsPatch, degree: [usize; 2], elements: [usize; 2]) -> Result<Patch, ModelError> {
     let mut scene = read(include_str!("scenes/elements-not-honoured.toml"));
     scene.geometry = Geometry::Nurbs(patch);
     (scene.mesh.degree, scene.mesh.elements) = (degree, elements);
     if let Material::Isotropic { thickness_mm, .. } = &mut scene.material {
         *thickness_mm = 1e-3;
     }
-    starting_mesh(&scene)
+    starting_patch(&scene)
 }
 
 /// A surface without weights whose control points are a function of their place in the net, with uniform knots.
@@ -164,8 +164,8 @@ fn a_closed_tube_widens_evenly() {
     for k in 0..24 {
         for v in [0.0, 0.5, 1.0] {
             let at = [k as f64 / 24.0, v];
-            let before = mid_surface_point(&state.mesh, &[], at).position;
-            let after = mid_surface_point(&state.mesh, &state.displacement, at).position;
+            let before = mid_surface_point(state.mesh.lone(), &[], at).position;
+            let after = mid_surface_point(state.mesh.lone(), &state.displacement, at).position;
             // No x at (−10, 0) and (0, 10), no y at (−10, 0): a shift by the radial displacement both ways and a turn.
             let expected = [
                 radial * (before[0] / 10.0 + 1.0 - before[1] / 10.0),
@@ -196,7 +196,7 @@ fn a_torus_is_closed_both_ways() {
     let (state, _) = end_of(scene);
     // Displacement, and its derivatives across u and v.
     let motion = |at: [f64; 2]| {
-        let [one, other] = [&state.displacement[..], &[]].map(|moved| mid_surface_point(&state.mesh, moved, at));
+        let [one, other] = [&state.displacement[..], &[]].map(|moved| mid_surface_point(state.mesh.lone(), moved, at));
         let sub = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|c| a[c] - b[c]);
         [
             sub(one.position, other.position),
@@ -216,7 +216,7 @@ fn a_torus_is_closed_both_ways() {
 
 #[test]
 fn elements_are_as_many_and_as_even_as_asked() {
-    let lengths = |mesh: &Mesh, way: usize| -> Vec<f64> {
+    let lengths = |mesh: &Patch, way: usize| -> Vec<f64> {
         let length = |[from, to]: &[f64; 2]| {
             let at = |k: usize| {
                 let x = from + (to - from) * k as f64 / 20.0;
@@ -246,11 +246,11 @@ fn elements_are_as_many_and_as_even_as_asked() {
     assert_eq!(few, ModelError::TooFewElements { direction: "u", asked: 3, least: 4 });
 }
 
-trait Patch {
+trait AsPatch {
     fn patch(self) -> NurbsPatch;
 }
 
-impl Patch for Geometry {
+impl AsPatch for Geometry {
     fn patch(self) -> NurbsPatch {
         match self {
             Geometry::Nurbs(patch) => patch,

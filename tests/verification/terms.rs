@@ -40,7 +40,7 @@ fn forces_of(term: &dyn Term, at: At) -> Field {
 fn each_is_consistent_in_itself() {
     let discretization = discretization();
     let mesh = &*discretization.mesh;
-    let count = mesh.control_points.len();
+    let count = mesh.point_count();
     let (shape, direction) = (field(count, 0.618_033_988_75), field(count, 0.732_050_807_57));
     let moved = |step: f64| -> Field {
         shape.iter().zip(&direction).map(|(u, d)| [0, 1, 2].map(|c| u[c] + step * d[c])).collect()
@@ -98,13 +98,13 @@ fn each_is_consistent_in_itself() {
 #[test]
 fn together_they_are_what_a_solve_sees() {
     let discretization = discretization();
-    let shape = field(discretization.mesh.control_points.len(), 0.618_033_988_75);
+    let shape = field(discretization.mesh.point_count(), 0.618_033_988_75);
     let at = At { mesh: &discretization.mesh, displacement: &shape, parameter: PARAMETER };
     let mut assembled = Assembled::new(&discretization);
     assembled.assemble(&discretization, &shape, PARAMETER, Want::Stiffness);
     let energy: f64 = discretization.all_terms().map(|term| term.energy(at)).sum();
     assert_eq!(energy, assembled.energy);
-    let shell = &discretization.shell;
+    let shell = &discretization.shells[0];
     assert!(assembled.residual.iter().zip(forces_of(shell, at)).all(|(g, f)| *g == f.map(|f| -f)));
     let loads = discretization.terms.iter().flat_map(|term| forces_of(term, at).into_iter().enumerate());
     let mut external = assembled.external.clone();

@@ -1,9 +1,7 @@
 //! Meshes refined by the error that they cause: estimates against converged values, tolerances that are kept, knots taken out.
 
-use std::sync::Arc;
-
 use foldline::adapt::{Coarsened, DirectionalError, Enriched, project_displacements};
-use foldline::model::starting_mesh;
+use foldline::model::starting_patch;
 use foldline::record::Record;
 use foldline::scene::{Adapt, Indicator, LengthLimit, Scene, Splitting, Stage, parse};
 use foldline::state::State;
@@ -100,7 +98,7 @@ fn knots_leave_a_fold_that_has_grown() {
     let mut folding = by_error(quarter([3, 5], [4, 4], 52.0, 0.4), 0.01);
     folding.pipeline.push(Stage::CoarsenKnots);
     let stages = run(folding);
-    let elements = |(state, _): &(State, Record)| state.mesh.element_counts().iter().product::<usize>();
+    let elements = |(state, _): &(State, Record)| state.mesh.elements().count();
     let coarsened = stages.windows(2).filter(|pair| pair[1].1.report.stage == Stage::CoarsenKnots);
     let counts: Vec<[usize; 2]> = coarsened.map(|pair| [elements(&pair[0]), elements(&pair[1])]).collect();
     assert!(!counts.is_empty() && counts.iter().all(|[before, after]| after < before), "{counts:?}");
@@ -131,15 +129,15 @@ fn a_jump_on_refining_is_located_on_the_finer_mesh() {
 /// What a coarser space can show comes back exactly, with weights and in both directions; knots of the start do not leave.
 #[test]
 fn what_the_coarser_space_can_show_is_not_changed() {
-    let start = starting_mesh(&quarter([3, 4], [4, 4], 8.0, 2.0)).unwrap();
+    let start = starting_patch(&quarter([3, 4], [4, 4], 8.0, 2.0)).unwrap();
     let inserted = [vec![0.1, 0.3, 0.6], vec![0.2, 0.9]];
-    let finer = Arc::new(start.with_knots(&inserted));
+    let finer = start.with_knots(&inserted);
     let displacement: Vec<[f64; 3]> = (0..start.control_points.len())
         .map(|i| [(i % 5) as f64, ((3 * i) % 7) as f64, -0.5 * (i % 3) as f64])
         .collect();
-    let refined = project_displacements(&start, &finer, &displacement);
+    let refined = project_displacements(&start.clone().into(), &finer.clone().into(), &displacement);
     let coarsened = Coarsened::new(&finer, &inserted, &start).unwrap();
-    assert_eq!(coarsened.mesh.knots, start.knots);
+    assert_eq!(coarsened.patch.knots, start.knots);
     for (found, given) in coarsened.approximated(&refined).as_flattened().iter().zip(displacement.as_flattened()) {
         assert!((found - given).abs() < 1e-10, "{found} for {given}");
     }

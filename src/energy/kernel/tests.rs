@@ -1,7 +1,7 @@
 use std::ops::{Add, Div, Mul, Sub};
 
 use super::*;
-use crate::model::starting_mesh;
+use crate::model::starting_patch;
 use crate::scene::{Quadrature, parse};
 use crate::shell::{Hessian, PointReference};
 
@@ -31,7 +31,7 @@ fn tables_of(degree: [usize; 2], quadrature: Quadrature) -> Tables {
     let mut scene = parse(include_str!("../../../pipelines/baseline.toml"), "baseline.toml").unwrap();
     scene.mesh.degree = degree;
     scene.mesh.quadrature = quadrature;
-    Tables::new(&scene, &starting_mesh(&scene).unwrap())
+    Tables::new(&scene, &starting_patch(&scene).unwrap())
 }
 
 /// Buffers with a displacement, and what an earlier element left in them.

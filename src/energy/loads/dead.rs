@@ -52,16 +52,16 @@ impl Term for DeadLoads {
     }
 }
 
-/// Computes the forces of a load whose force per weight at a point is `force`.
+/// Computes the forces on `count` control points of a load whose force per weight at a point is `force`.
 pub(super) fn dead_forces(
-    mesh: &Mesh,
+    count: usize,
     points: &[LoadPoint],
     force: impl Fn(&LoadPoint) -> [f64; 3],
 ) -> Vec<(usize, [f64; 3])> {
-    let mut sums = vec![[0.0; 3]; mesh.control_points.len()];
+    let mut sums = vec![[0.0; 3]; count];
     for point in points {
         let whole = scaled(point.weight, force(point));
-        for (a, control) in point.controls(mesh).enumerate() {
+        for (a, control) in point.controls.iter().copied().enumerate() {
             sums[control] = add(sums[control], scaled(point.functions[0][a], whole));
         }
     }

@@ -47,8 +47,8 @@ impl FollowingLoads {
         for following in &self.0 {
             let factor = factor(&following.history);
             for point in &following.points {
-                let (h, _) = following.kind.work(point.deformed(at.mesh, at.displacement));
-                for (a, control) in point.controls(at.mesh).enumerate() {
+                let (h, _) = following.kind.work(point.deformed(at.displacement));
+                for (a, control) in point.controls.iter().copied().enumerate() {
                     for k in 0..3 {
                         let share = factor * point.weight * point.functions[k][a];
                         forces[control] = add(forces[control], scaled(share, h[k]));
@@ -75,12 +75,12 @@ impl Term for FollowingLoads {
     fn add_tangent(&self, at: At, tangent: &mut Tangent) {
         for following in &self.0 {
             let factor = following.history.at(at.parameter);
-            for points in following.points.chunk_by(|one, other| one.first == other.first) {
+            for points in following.points.chunk_by(|one, other| one.controls[0] == other.controls[0]) {
                 let Some(first) = points.first() else { continue };
-                let controls: Vec<usize> = first.controls(at.mesh).collect();
+                let controls = &first.controls;
                 let mut element = ElementTangent::new(controls.len());
                 for point in points {
-                    let (_, slopes) = following.kind.work(point.deformed(at.mesh, at.displacement));
+                    let (_, slopes) = following.kind.work(point.deformed(at.displacement));
                     element.add(factor, point, &slopes);
                 }
                 for (a, i) in controls.iter().enumerate() {
@@ -96,9 +96,9 @@ impl Term for FollowingLoads {
         self.add(at, |history| history.rate(at.parameter), rates);
     }
 
-    fn strokes(&self, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
+    fn strokes(&self, _: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
         let stroke = |following: &Following| {
-            let at_point = |point: &LoadPoint| point.weight * following.kind.stroke(point, mesh, from, to);
+            let at_point = |point: &LoadPoint| point.weight * following.kind.stroke(point, from, to);
             following.points.iter().map(at_point).sum()
         };
         self.0.iter().map(stroke).collect()
@@ -218,13 +218,15 @@ mod tests {
         };
         scene.mesh.elements = [3, 2];
         let kind = ActionKind::Pressure { pressure_mpa: 0.7, follower: true };
-        let pressure = Action { name: "p".into(), kind, history: History::default() };
+        let pressure = Action { name: "p".into(), kind, shell: None, history: History::default() };
         if clamped {
             scene.geometry = crate::scene::Geometry::Plate { length_mm: 9.0, width_mm: 7.0 };
             scene.actions.clear();
             let hinged = |edge: Edge| crate::scene::Support {
                 name: format!("{edge:?}"),
                 on: Region::Edge(edge),
+                shell: 0,
+                also: Vec::new(),
                 hold: crate::scene::Hold::Displacement { displacement_mm: [Some(0.0); 3] },
                 history: History::default(),
             };

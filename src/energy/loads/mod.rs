@@ -5,19 +5,22 @@
 //! | `dead` | loads that do not depend on the displacement |
 //! | `following` | loads that turn with the shell |
 //! | `points` | where loads are summed up |
+//! | `sections` | loads on rigid sections |
 //! | `strokes` | the work of loads that turn with the shell |
 
 mod dead;
 mod following;
 mod points;
+mod sections;
 mod strokes;
 
 use self::dead::{Dead, DeadLoads, dead_forces};
 use self::following::{FollowerKind, Following, FollowingLoads};
 use self::points::{LoadPoint, area_points, edge_points, line_points};
+use self::sections::{SectionPoints, TurningCouple};
 use crate::energy::Terms;
-use crate::model::{ModelError, direction_at, parameters_of};
-use crate::scene::{Action, ActionKind, ForceVector, History, LoadedArea, Region, Scene};
+use crate::model::{Member, ModelError, direction_at, members, parameters_of};
+use crate::scene::{Action, ActionKind, ForceVector, History, LoadedArea, Region, Scene, SectionTurns};
 use crate::shell::{cross, scaled};
 use crate::spline::Mesh;
 
@@ -38,9 +41,13 @@ impl Terms {
     /// # Errors
     /// Where an action does not fit the surface.
     pub fn of_actions_below(scene: &Scene, mesh: &Mesh, limits: [f64; 2]) -> Result<Self, ModelError> {
-        let mut loads = Loads::default();
+        let members = members(scene, mesh);
+        let mut loads = Loads { points: mesh.point_count(), ..Loads::default() };
         for action in &scene.actions {
-            loads.add(scene, mesh, action, limits)?;
+            loads.add_to_section(scene, &members, action)?;
+            for member in members.iter().filter(|member| action.shell.is_none_or(|shell| shell == member.index)) {
+                loads.add(member, action, limits)?;
+            }
         }
         let mut terms = Self::default();
         if !loads.dead.0.is_empty() {
@@ -49,6 +56,9 @@ impl Terms {
         if !loads.following.0.is_empty() {
             terms.push("loads that follow", Box::new(loads.following));
         }
+        for (name, couple) in loads.couples {
+            terms.push(&name, Box::new(couple));
+        }
         Ok(terms)
     }
 }
@@ -56,73 +66,115 @@ impl Terms {
 /// Dead and following loads while they are collected.
 #[derive(Debug, Default)]
 struct Loads {
+    /// Number of control points of all shells.
+    points: usize,
     dead: DeadLoads,
     following: FollowingLoads,
+    couples: Vec<(String, TurningCouple)>,
 }
 
 impl Loads {
-    fn add(&mut self, scene: &Scene, mesh: &Mesh, action: &Action, limits: [f64; 2]) -> Result<(), ModelError> {
+    fn add(&mut self, member: &Member, action: &Action, limits: [f64; 2]) -> Result<(), ModelError> {
+        let (scene, patch) = (&*member.scene, member.patch);
         let history = action.history.clone();
         match &action.kind {
             ActionKind::Force { on, force_n } => {
                 let at = parameters_of(&scene.geometry, *on);
                 if at[0] < limits[0] && at[1] < limits[1] {
-                    self.push_dead(scene, mesh, history, &[LoadPoint::new(mesh, at, 1.0)], *force_n);
+                    self.push_dead(member, history, vec![LoadPoint::new(patch, at, 1.0)], *force_n);
                 }
             }
             ActionKind::LineForce { on, force_n_per_mm } => {
                 let points = match on {
-                    Region::Edge(edge) => edge_points(mesh, *edge, limits),
+                    Region::Edge(edge) => edge_points(patch, *edge, limits),
                     Region::Line(direction, fraction) => {
                         let direction = direction.index();
-                        line_points(mesh, direction, parameters_of(&scene.geometry, [*fraction; 2])[direction], limits)
+                        line_points(patch, direction, parameters_of(&scene.geometry, [*fraction; 2])[direction], limits)
                     }
                     Region::Point(_) | Region::Whole => {
                         return Err(ModelError::NotALine { action: action.name.clone() });
                     }
                 };
-                self.push_dead(scene, mesh, history, &points, *force_n_per_mm);
+                self.push_dead(member, history, points, *force_n_per_mm);
             }
             ActionKind::AreaForce { force_n_per_mm2, per } => {
-                let mut points = area_points(scene, mesh, limits);
+                let mut points = area_points(scene, patch, limits);
                 points.iter_mut().for_each(|point| point.weight *= point.area(*per, *force_n_per_mm2));
-                self.push_dead(scene, mesh, history, &points, *force_n_per_mm2);
+                self.push_dead(member, history, points, *force_n_per_mm2);
             }
             ActionKind::Gravity { acceleration_m_s2 } => {
                 // kg/mm² times m/s² is N/mm². A scene without density has no gravity.
                 let weight = scaled(scene.material.mass_kg_per_mm2().unwrap_or(0.0), *acceleration_m_s2);
-                let mut points = area_points(scene, mesh, limits);
+                let mut points = area_points(scene, patch, limits);
                 let force = ForceVector::Components(weight);
                 points.iter_mut().for_each(|point| point.weight *= point.area(LoadedArea::Undeformed, force));
-                self.push_dead(scene, mesh, history, &points, force);
+                self.push_dead(member, history, points, force);
             }
             ActionKind::EdgeMoment { on, moment_n } => {
-                let mut points = edge_points(mesh, *on, limits);
+                let mut points = edge_points(patch, *on, limits);
                 points.iter_mut().for_each(|point| point.weight *= moment_n);
                 let running = 1 - on.side().0.index();
+                let points = shifted(points, member);
                 self.following.0.push(Following { history, kind: FollowerKind::Moment(running), points });
             }
             ActionKind::Pressure { pressure_mpa, follower } => {
-                let mut points = area_points(scene, mesh, limits);
+                let mut points = area_points(scene, patch, limits);
                 points.iter_mut().for_each(|point| point.weight *= pressure_mpa);
+                let points = shifted(points, member);
                 if *follower {
                     self.following.0.push(Following { history, kind: FollowerKind::Pressure, points });
                 } else {
                     let along_normal = |point: &LoadPoint| cross(point.site.tangents[0], point.site.tangents[1]);
-                    self.dead.0.push(Dead { history, forces: dead_forces(mesh, &points, along_normal) });
+                    self.dead.0.push(Dead { history, forces: dead_forces(self.points, &points, along_normal) });
                 }
             }
-            // Such actions change the shell's free strain and exert no forces of their own.
-            ActionKind::Temperature { .. } | ActionKind::NaturalCurvature { .. } => {}
+            // Loads on sections are those of the structure; the others change the shell's free strain and exert no forces of
+            // their own.
+            ActionKind::SectionForce { .. }
+            | ActionKind::SectionMoment { .. }
+            | ActionKind::Temperature { .. }
+            | ActionKind::NaturalCurvature { .. } => {}
         }
         Ok(())
     }
 
-    fn push_dead(&mut self, scene: &Scene, mesh: &Mesh, history: History, points: &[LoadPoint], force: ForceVector) {
+    fn add_to_section(&mut self, scene: &Scene, members: &[Member], action: &Action) -> Result<(), ModelError> {
+        let history = action.history.clone();
+        match &action.kind {
+            ActionKind::SectionForce { section, force_n } => {
+                let forces = SectionPoints::of(scene, members, section)?.force(section, *force_n)?;
+                self.dead.0.push(Dead { history, forces });
+            }
+            ActionKind::SectionMoment { section, moment_n_mm, about, forces_along, turns } => {
+                let points = SectionPoints::of(scene, members, section)?;
+                let axes = [*about, *forces_along];
+                match turns {
+                    SectionTurns::Dead => {
+                        let forces = points.dead_moment(section, *moment_n_mm, axes)?;
+                        self.dead.0.push(Dead { history, forces });
+                    }
+                    SectionTurns::Follows => {
+                        let couple = points.turning_moment(section, *moment_n_mm, axes, history)?;
+                        self.couples.push((action.name.clone(), couple));
+                    }
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn push_dead(&mut self, member: &Member, history: History, points: Vec<LoadPoint>, force: ForceVector) {
+        let points = shifted(points, member);
         let at = |point: &LoadPoint| match force {
             ForceVector::Components(components) => components,
-            ForceVector::Along(size, direction) => scaled(size, direction_at(&scene.geometry, &point.site, direction)),
+            ForceVector::Along(size, direction) => scaled(size, direction_at(&member.scene, &point.site, direction)),
         };
-        self.dead.0.push(Dead { history, forces: dead_forces(mesh, points, at) });
+        self.dead.0.push(Dead { history, forces: dead_forces(self.points, &points, at) });
     }
+}
+
+/// Points of a shell by the numbers that control points have in the structure.
+fn shifted(points: Vec<LoadPoint>, member: &Member) -> Vec<LoadPoint> {
+    points.into_iter().map(|point| point.shifted(member.points.start)).collect()
 }

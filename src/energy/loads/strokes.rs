@@ -17,21 +17,20 @@
 use crate::energy::loads::following::FollowerKind;
 use crate::energy::loads::points::LoadPoint;
 use crate::shell::{add, cross, dot, norm, scaled, sub};
-use crate::spline::Mesh;
 
 /// Length of a sum of two unit tangents below which its direction is rounding.
 const TURNED_ROUND: f64 = 1e-9;
 
 impl FollowerKind {
     /// Computes the stroke of the load at a point of weight 1, N·mm.
-    pub fn stroke(self, point: &LoadPoint, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
-        let ends = [from, to].map(|displacement| point.deformed(mesh, displacement));
+    pub fn stroke(self, point: &LoadPoint, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
+        let ends = [from, to].map(|displacement| point.deformed(displacement));
         let normals = ends.map(|[a1, a2]| cross(a1, a2));
         match self {
             FollowerKind::Pressure => {
                 let middle = [0, 1].map(|k| scaled(0.5, add(ends[0][k], ends[1][k])));
                 let mean = add(add(normals[0], normals[1]), scaled(4.0, cross(middle[0], middle[1])));
-                dot(scaled(1.0 / 6.0, mean), point.motion(mesh, from, to))
+                dot(scaled(1.0 / 6.0, mean), point.motion(from, to))
             }
             FollowerKind::Moment(running) => {
                 let unit = |vector: [f64; 3]| scaled(1.0 / norm(vector), vector);
@@ -61,7 +60,7 @@ mod tests {
     fn plate(kind: ActionKind) -> Discretization {
         let mut scene =
             parse(include_str!("../../../pipelines/verification/rolled-cantilever.toml"), "x.toml").unwrap();
-        scene.actions.push(Action { name: "more".into(), kind, history: History::default() });
+        scene.actions.push(Action { name: "more".into(), kind, shell: None, history: History::default() });
         let mesh = Arc::new(starting_mesh(&scene).unwrap());
         Discretization::new(&scene, &mesh).unwrap()
     }
@@ -69,13 +68,12 @@ mod tests {
     /// The plate turned about y by an angle, as a displacement of its control points.
     fn turned(plate: &Discretization, angle: f64) -> Vec<[f64; 3]> {
         let (sin, cos) = angle.sin_cos();
-        let points = plate.mesh.control_points.iter();
-        points.map(|[x, _, z, _]| [(cos - 1.0) * x + sin * z, 0.0, (cos - 1.0) * z - sin * x]).collect()
+        plate.mesh.points().map(|[x, _, z]| [(cos - 1.0) * x + sin * z, 0.0, (cos - 1.0) * z - sin * x]).collect()
     }
 
     fn field(plate: &Discretization, size: f64, seed: usize) -> Vec<[f64; 3]> {
         let value = |i: usize, c: usize| size * (((i * 7919 + c * 104_729 + seed * 31) % 1013) as f64 / 1013.0 - 0.5);
-        (0..plate.mesh.control_points.len()).map(|i| [0, 1, 2].map(|c| value(i, c))).collect()
+        (0..plate.mesh.point_count()).map(|i| [0, 1, 2].map(|c| value(i, c))).collect()
     }
 
     #[test]
@@ -123,9 +121,9 @@ mod tests {
     fn a_moment_whose_edge_turns_round_does_finite_work() {
         let plate = plate(ActionKind::Force { on: [0.0, 0.0], force_n: [0.0; 3].into() });
         let Discretization { mesh, terms: loads, .. } = &plate;
-        let still = vec![[0.0; 3]; mesh.control_points.len()];
-        let about_z: Vec<[f64; 3]> = mesh.control_points.iter().map(|[x, y, _, _]| [-2.0 * x, -2.0 * y, 0.0]).collect();
-        let about_x: Vec<[f64; 3]> = mesh.control_points.iter().map(|[_, y, z, _]| [0.0, -2.0 * y, -2.0 * z]).collect();
+        let still = vec![[0.0; 3]; mesh.point_count()];
+        let about_z: Vec<[f64; 3]> = mesh.points().map(|[x, y, _]| [-2.0 * x, -2.0 * y, 0.0]).collect();
+        let about_x: Vec<[f64; 3]> = mesh.points().map(|[_, y, z]| [0.0, -2.0 * y, -2.0 * z]).collect();
         let work = |to: &[[f64; 3]]| loads.work(&loads.strokes(mesh, &still, to), 1.0);
         assert!(work(&about_z).abs() < 1e-9, "{}", work(&about_z));
         assert!(work(&about_x).is_finite());
@@ -136,7 +134,7 @@ mod tests {
     fn a_pressure_does_work_by_the_volume_between() {
         let plate = plate(ActionKind::Pressure { pressure_mpa: 0.7, follower: true });
         let Discretization { mesh, terms: loads, .. } = &plate;
-        let grid = mesh.grid();
+        let grid = mesh.lone().grid();
         let held = |size: f64, seed: usize| -> Vec<[f64; 3]> {
             let mut field = field(&plate, size, seed);
             let edge =

@@ -6,8 +6,10 @@ use crate::journal::format::CHUNK_BYTES_LIMIT;
 use crate::journal::soundness::Flaw;
 use crate::state::Hash;
 
-/// The version in which states are written, in front of each of them.
-pub const CODEC_VERSION: u8 = 8;
+/// The latest version in which states are written, in front of each of them: on several patches.
+pub const CODEC_VERSION: u8 = 9;
+/// The version in which states on one patch are written.
+pub(super) const ONE_PATCH_VERSION: u8 = 8;
 
 /// Why bytes do not decode to a usable state or mesh.
 #[derive(Debug, thiserror::Error)]

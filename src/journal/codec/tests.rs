@@ -3,12 +3,12 @@
 use super::older::{PathV3, StateV1, StateV3, StateV5, StateV6};
 use super::*;
 use crate::journal::Flaw;
-use crate::state::{Course, PathMemory};
+use crate::state::{Course, Patch, PathMemory};
 
 fn on_a_path() -> State {
     let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
     let control_points = (0..9).map(|i| [f64::from(i), 2.0, 3.0, 1.0]).collect();
-    let mut state = State::undeformed(Mesh { degree: [2, 2], knots: [knots.clone(), knots], control_points });
+    let mut state = State::undeformed(Patch { degree: [2, 2], knots: [knots.clone(), knots], control_points });
     state.largest_force_n = 1.0;
     state.drive.course = Course::Path(PathMemory {
         heading: vec![[1.0, 0.0, 0.0]; 9],

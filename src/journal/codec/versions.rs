@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use crate::state::{Course, CriticalAhead, Estimate, Mesh, PathMemory, Previous, Refinement};
+use crate::state::{Course, CriticalAhead, Estimate, KnotLists, Mesh, Patch, PathMemory, Previous, Refinement};
 
 #[derive(Serialize, Deserialize)]
 pub(super) struct MeshV1<'a> {
@@ -14,22 +14,38 @@ pub(super) struct MeshV1<'a> {
 }
 
 impl<'a> MeshV1<'a> {
-    /// Borrows a mesh in the form in which it is encoded.
-    pub fn of(mesh: &'a Mesh) -> Self {
+    /// Borrows a patch in the form in which it is encoded.
+    pub fn of(patch: &'a Patch) -> Self {
         Self {
-            degree: mesh.degree.map(|degree| degree as u64),
-            knots: [0, 1].map(|direction| Cow::from(&mesh.knots[direction])),
-            control_points: Cow::from(&mesh.control_points),
+            degree: patch.degree.map(|degree| degree as u64),
+            knots: [0, 1].map(|direction| Cow::from(&patch.knots[direction])),
+            control_points: Cow::from(&patch.control_points),
         }
     }
 
-    /// Converts the decoded form to a mesh.
-    pub fn into_mesh(self) -> Mesh {
-        Mesh {
+    /// Converts the decoded form to a patch.
+    pub fn into_patch(self) -> Patch {
+        Patch {
             degree: self.degree.map(|degree| usize::try_from(degree).unwrap_or(usize::MAX)),
             knots: self.knots.map(Cow::into_owned),
             control_points: self.control_points.into_owned(),
         }
+    }
+}
+
+/// A mesh of several patches.
+#[derive(Serialize, Deserialize)]
+pub(super) struct MeshV2<'a>(pub Vec<MeshV1<'a>>);
+
+impl<'a> MeshV2<'a> {
+    /// Borrows a mesh in the form in which it is encoded.
+    pub fn of(mesh: &'a Mesh) -> Self {
+        Self(mesh.patches.iter().map(MeshV1::of).collect())
+    }
+
+    /// Converts the decoded form to a mesh.
+    pub fn into_mesh(self) -> Mesh {
+        Mesh { patches: self.0.into_iter().map(MeshV1::into_patch).collect() }
     }
 }
 
@@ -38,7 +54,28 @@ impl<'a> MeshV1<'a> {
 #[derive(Serialize, Deserialize)]
 pub(super) struct FieldV1<'a>(pub Cow<'a, [[f64; 3]]>);
 
-/// Version 8, which is written: with superfluous knots and the last estimate of the error.
+/// Version 9, which is written where the mesh has several patches: what version 8 has is that of the first.
+#[derive(Serialize, Deserialize)]
+pub(super) struct StateV9<'a> {
+    pub base: StateV8<'a>,
+    /// Marked and superfluous knots of each further patch.
+    pub marked: Vec<[Cow<'a, [f64]>; 2]>,
+    pub superfluous: Vec<[Cow<'a, [f64]>; 2]>,
+    /// The finer mesh, whole.
+    pub refined: Option<MeshV2<'a>>,
+}
+
+/// Borrows lists of knots.
+pub(super) fn borrowed(lists: &[[Vec<f64>; 2]]) -> Vec<[Cow<'_, [f64]>; 2]> {
+    lists.iter().map(|knots| knots.each_ref().map(Cow::from)).collect()
+}
+
+/// Puts the lists of the first patch and those of further patches together.
+pub(super) fn owned(first: [Cow<'_, [f64]>; 2], more: Vec<[Cow<'_, [f64]>; 2]>) -> KnotLists {
+    std::iter::once(first).chain(more).map(|knots| knots.map(Cow::into_owned)).collect()
+}
+
+/// Version 8, which is written where the mesh is one patch: with superfluous knots and the last estimate of the error.
 #[derive(Serialize, Deserialize)]
 pub(super) struct StateV8<'a> {
     pub base: StateV7<'a>,

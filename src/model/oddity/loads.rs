@@ -20,7 +20,7 @@ pub(super) fn odd(scene: &Scene, size: &Size) -> Vec<String> {
     actions.chain(increments(&scene.load)).collect()
 }
 
-fn of_action(scene: &Scene, size: &Size, Action { name, kind, history }: &Action) -> Option<String> {
+fn of_action(scene: &Scene, size: &Size, Action { name, kind, history, .. }: &Action) -> Option<String> {
     if let ActionKind::Gravity { acceleration_m_s2 } = kind {
         let acceleration = norm(*acceleration_m_s2);
         return (acceleration > MOST_ACCELERATION).then(|| {

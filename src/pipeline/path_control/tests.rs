@@ -5,7 +5,7 @@ use crate::energy::Balance;
 use crate::equilibrium::{Direction, Effort, Solved};
 use crate::record::CriticalPoint;
 use crate::scene::{ArcLengthWord, Stage, parse};
-use crate::spline::Mesh;
+use crate::spline::Patch;
 
 const LIMITS: ArcLength =
     ArcLength { control: ArcLengthWord::ArcLength, longest_step: 4.0, shortest_step: 1e-3, most_steps: 1000 };
@@ -34,7 +34,7 @@ fn memory(parameter_rate: f64) -> PathMemory {
 }
 
 fn state_with(negative_pivots: u64) -> State {
-    let mesh = Mesh { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] };
+    let mesh = Patch { degree: [2, 2], knots: [vec![], vec![]], control_points: vec![] };
     State { step: 1, stage: Some(Stage::Solve), negative_pivots, ..State::undeformed(mesh) }
 }
 

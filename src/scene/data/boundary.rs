@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use super::{Axis, ShellEdge};
+
 /// A parametric direction of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -118,12 +120,23 @@ pub struct Support {
     pub name: String,
     /// The region that is supported.
     pub on: Region,
+    /// The shell that the region belongs to, by its place in the list.
+    #[serde(default, skip_serializing_if = "is_first")]
+    pub shell: usize,
+    /// Further edges that belong to the same rigid section.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub also: Vec<ShellEdge>,
     /// How the region is held.
     #[serde(flatten)]
     pub hold: Hold,
     /// Factor of the given motions over the load factor.
     #[serde(default, skip_serializing_if = "History::is_proportional")]
     pub history: History,
+}
+
+/// Whether a place in the list of shells is the first one, which is not written.
+pub(super) fn is_first(shell: &usize) -> bool {
+    *shell == 0
 }
 
 /// How a support holds.
@@ -189,6 +202,9 @@ pub struct Action {
     /// What acts, at factor 1.
     #[serde(flatten)]
     pub kind: ActionKind,
+    /// The shell that it acts on, by its place in the list; `None`: all shells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shell: Option<usize>,
     /// Factor over the load factor.
     #[serde(default, skip_serializing_if = "History::is_proportional")]
     pub history: History,
@@ -242,6 +258,26 @@ pub enum ActionKind {
         /// undeformed shell (dead).
         follower: bool,
     },
+    /// A dead force on a rigid section, at its reference point.
+    SectionForce {
+        /// Name of the support that is the section.
+        section: String,
+        /// Components in x, y, z, N.
+        force_n: [f64; 3],
+    },
+    /// A moment on a rigid section: a couple of forces along one axis, in arms along another.
+    SectionMoment {
+        /// Name of the support that is the section.
+        section: String,
+        /// The moment, N·mm.
+        moment_n_mm: f64,
+        /// The axis that it acts about.
+        about: Axis,
+        /// The axis of its forces.
+        forces_along: Axis,
+        /// Whether the forces turn with the section, and have no potential then; otherwise they are dead.
+        turns: SectionTurns,
+    },
     /// A change of temperature, the same in the whole shell. The material states how much it expands.
     Temperature {
         /// The change of temperature, K.
@@ -283,6 +319,16 @@ pub enum SurfaceDirection {
     Outward,
 }
 
+/// How the forces of a couple behave as the section turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SectionTurns {
+    /// They keep their direction.
+    Dead,
+    /// They turn with the section.
+    Follows,
+}
+
 /// The area to which a force per area refers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -304,7 +350,12 @@ impl LoadedArea {
 impl ActionKind {
     /// Whether the load turns with the shell, so that it need not have a potential.
     pub fn follows(&self) -> bool {
-        matches!(self, Self::EdgeMoment { .. } | Self::Pressure { follower: true, .. })
+        matches!(
+            self,
+            Self::EdgeMoment { .. }
+                | Self::Pressure { follower: true, .. }
+                | Self::SectionMoment { turns: SectionTurns::Follows, .. }
+        )
     }
 }
 

@@ -76,6 +76,18 @@ pub enum Geometry {
 }
 
 impl Geometry {
+    /// The word for its kind.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Geometry::TapeSpring { .. } => "tape-spring",
+            Geometry::CylinderPanel { .. } => "cylinder-panel",
+            Geometry::Plate { .. } => "plate",
+            Geometry::Annulus { .. } => "annulus",
+            Geometry::SphereZone { .. } => "sphere-zone",
+            Geometry::Nurbs(_) => "nurbs",
+        }
+    }
+
     /// What the surface does where it meets itself; `None` where it does not.
     pub fn seam(&self) -> Option<Seam> {
         match self {

@@ -8,35 +8,52 @@
 //! | `probe` | what reports read |
 //! | `expectation` | how a run is to end |
 //! | `output` | what is written besides the states |
+//! | `structure`, `connection` | several shells, and what connects them |
 
 mod boundary;
+mod connection;
 mod expectation;
 mod geometry;
 mod material;
 mod output;
 mod probe;
+mod structure;
 
 pub use boundary::{
     Action, ActionKind, Edge, ForceVector, FreeWord, History, Hold, LoadedArea, Motion, ParametricDirection, Region,
-    Support, SurfaceDirection,
+    SectionTurns, Support, SurfaceDirection,
 };
+pub use connection::{Bond, Joint, JointKind, ShellEdge};
 pub use expectation::{Expectation, ExpectedOutcome};
 pub use geometry::{Geometry, NurbsPatch, Seam};
 pub use material::{Material, OrthotropicLaw, Ply, Strengths};
 pub use output::{NumbersIn, Output, SyncPolicy};
 pub use probe::{Axis, Component, Probe, ProbeKind, Reaction};
+pub use structure::{Pose, Shell};
 
 use serde::{Deserialize, Serialize};
 
 /// A checked scene with all defaults filled in; a run is a function of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
-    /// Undeformed mid-surface.
+    /// Undeformed mid-surface; of several shells that of the first.
     pub geometry: Geometry,
-    /// Constitutive law and thickness.
+    /// Constitutive law and thickness; of several shells those of the first.
     pub material: Material,
-    /// Spline space and quadrature that the run starts with.
+    /// Spline space and quadrature that the run starts with; of several shells those of the first.
     pub mesh: MeshSpec,
+    /// Where the axes of the geometry lie.
+    #[serde(default, skip_serializing_if = "Pose::is_none")]
+    pub pose: Pose,
+    /// The shells of a structure; empty where there is one shell, which needs no name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shells: Vec<Shell>,
+    /// What joins shells along edges.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joints: Vec<Joint>,
+    /// What joins shells over areas.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bonds: Vec<Bond>,
     /// Which part of the shell is modelled.
     pub symmetry: Symmetry,
     /// What drives the run: how far, and in which steps.

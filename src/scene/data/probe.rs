@@ -3,12 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 use super::Region;
+use super::boundary::is_first;
 
 /// A quantity of the scene that every equilibrium reports by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Probe {
     /// Its name in reports; no two probes have the same.
     pub name: String,
+    /// The shell that it looks at, by its place in the list.
+    #[serde(default, skip_serializing_if = "is_first")]
+    pub shell: usize,
     /// The quantity that is measured.
     #[serde(flatten)]
     pub kind: ProbeKind,

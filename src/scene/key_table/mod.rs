@@ -5,6 +5,7 @@
 //! | file | tables |
 //! |---|---|
 //! | `geometry`, `material` | what the shell is |
+//! | `shells` | several shells, and what connects them |
 //! | `structure` | what holds it, what acts on it, what is measured |
 //! | `mesh`, `run` | how it is made discrete and solved |
 //! | `output` | what is written of it, and how it is to end |
@@ -14,6 +15,7 @@ mod material;
 mod mesh;
 mod output;
 mod run;
+mod shells;
 mod structure;
 
 use super::keys::{Key, Section};
@@ -24,6 +26,15 @@ pub static SECTIONS: &[Section] = &[
     one("material", true, "Constitutive law and thickness.", material::MATERIAL),
     many("ply", "A layer of a laminate, from bottom (the side that n points away from) to top.", material::PLY),
     one("mesh", false, "Spline space and quadrature that the run starts with.", mesh::MESH),
+    many(
+        "shell",
+        "A shell of a structure of several. Its surface, material and mesh are tables below it: [shell.geometry], [shell.material], \
+         [[shell.ply]], [shell.mesh], with the keys of [geometry] and so on; shells without a material or a mesh of their own \
+         have those of [material], [[ply]] and [mesh].",
+        shells::SHELL,
+    ),
+    many("joint", "What joins two shells of a structure along an edge of each.", shells::JOINT),
+    many("bond", "What glues two shells of a structure together over an area.", shells::BOND),
     one("symmetry", false, "Which part of the shell is modelled.", mesh::SYMMETRY),
     one("load", true, "What moves the shell.", run::LOAD),
     many("support", "What holds the shell, where [load] is of kind \"steps\"; at least one.", structure::SUPPORT),
@@ -44,6 +55,10 @@ pub static SECTIONS: &[Section] = &[
     one("output", false, "Which outputs are written besides the states; they never change a state.", output::OUTPUT),
     one("expect", false, "How the run is to end; `foldline extremes` alone looks at it.", output::EXPECT),
 ];
+
+/// The tables of a scene that each shell of a structure has of its own, or from the scene; they are the first of
+/// [`SECTIONS`].
+pub(super) static OF_A_SHELL: [&str; 4] = ["geometry", "material", "ply", "mesh"];
 
 /// The keys of a scene file, table by table. A name occurs once for each kind of table that has its own key of that
 /// name.

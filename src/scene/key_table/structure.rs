@@ -1,6 +1,6 @@
 //! Keys of `[[support]]`, `[[action]]` and `[[probe]]`.
 
-use crate::scene::keys::Presence::{Default, Follows};
+use crate::scene::keys::Presence::{Default, Follows, InsteadOf, Unless};
 use crate::scene::keys::Reach::{Free, LaterLoads, Names};
 use crate::scene::keys::{Choice, Form, Key, Kind, Length, Limits, choice};
 
@@ -56,7 +56,13 @@ pub(super) static SUPPORT: &[Key] = &[
     support("on", Kind::Region(&[Form::Edge]), "\"u-start\"")
         .of(&["clamped", "rigid"])
         .means("Edge that it holds.")
+        .or(Unless("edges"))
         .also_called(PLACES),
+    support("edges", Kind::Edges(Length::Any), "[\"web.u-end\", \"flange.u-end\"]")
+        .of(&["clamped", "rigid"])
+        .means("Edges of several shells that are held as one section.")
+        .or(InsteadOf("on")),
+    support("shell", Kind::Text, "\"web\"").means("Shell that the place belongs to.").or(Follows(ONE_SHELL)),
     support("hold", Kind::Words(AXES), "[\"x\", \"z\"]")
         .of(&["fixed"])
         .means("Components of the displacement that are zero.")
@@ -88,7 +94,7 @@ pub(super) static SUPPORT: &[Key] = &[
     support("reference_mm", Kind::Numbers(Length::Exactly(3), Limits::ANY), "[0.0, 0.0, 0.0]")
         .of(&["rigid"])
         .means("The point that x_mm, y_mm and z_mm move and about which the section turns.")
-        .or(Follows("the centroid of the edge"))
+        .or(Follows("the centroid of the edge, or of all edges"))
         .also_called(&["reference_point", "centre", "center"]),
     support("normals", Kind::Word(&[
         choice("turn", "clamped: the shell's normal turns with the section"),
@@ -121,6 +127,13 @@ pub(super) static ACTION: &[Key] = &[
             "a moment per undeformed length of an edge, about the deformed edge's tangent in the direction of growing v (u-edges) \
              or u (v-edges); it turns with the shell",
         ),
+        choice("section-force", "a force on a rigid section, at its reference point, that keeps its direction"),
+        choice(
+            "section-moment",
+            "a moment on a rigid section: forces along one axis, in arms along another. Dead, they have the potential -M f.(R a), \
+             with f the axis of the forces, a that of the arms (f x about) and R the rotation of the section; a section without \
+             extent along the arms takes none",
+        ),
         choice("pressure", "on the whole surface, positive along n: on a cylinder or a sphere it acts from within"),
         choice(
             "temperature",
@@ -147,7 +160,35 @@ pub(super) static ACTION: &[Key] = &[
         .of(&["edge-moment"])
         .means("Edge that it acts on.")
         .also_called(PLACES),
+    action("shell", Kind::Text, "\"web\"")
+        .means("Shell that it acts on.")
+        .or(Follows("the only shell; weight, temperature and natural curvature act on all shells")),
+    action("section", Kind::Text, "\"tip\"")
+        .of(&["section-force", "section-moment"])
+        .means("Name of the support of kind \"rigid\" or \"clamped\" that it acts on."),
     action("force_n", Kind::Vector, "[0.0, 0.0, 4.0]").of(&["force"]).means(FORCE).also_called(FORCES),
+    action("force_n", Kind::Numbers(Length::Exactly(3), Limits::ANY), "[0.0, 0.0, 4.0]")
+        .of(&["section-force"])
+        .means("Force in x, y and z.")
+        .also_called(FORCES),
+    action("moment_n_mm", Kind::Number(Limits::ANY), "100.0")
+        .of(&["section-moment"])
+        .means("The moment, N mm.")
+        .also_called(&["moment", "m"]),
+    action("about", Kind::Word(AXES), "\"y\"")
+        .of(&["section-moment"])
+        .means("Axis that it acts about.")
+        .also_called(&["axis"]),
+    action("forces_along", Kind::Word(AXES), "\"x\"")
+        .of(&["section-moment"])
+        .means("Axis of its forces, another one: of a boom along x that is bent, x."),
+    action("turns", Kind::Word(&[
+        choice("dead", "its forces keep their direction"),
+        choice("follows", "its forces turn with the section, and have no potential"),
+    ]), "\"dead\"")
+        .of(&["section-moment"])
+        .means("What its forces do as the section turns.")
+        .or(Default("\"dead\"")),
     action("force_n_per_mm", Kind::Vector, "[0.0, 0.0, 1.0]").of(&["line-force"]).means(FORCE).also_called(FORCES),
     action("force_n_per_mm2", Kind::Vector, "[0.0, 0.0, -0.001]").of(&["area-force"]).means(FORCE).also_called(FORCES),
     action("along", Kind::Word(&[NORMAL, RADIAL]), "\"normal\"")
@@ -239,6 +280,10 @@ pub(super) static PROBE: &[Key] = &[
     ]), "\"displacement\"")
         .means("What it measures.")
         .also_called(TYPES),
+    probe("shell", Kind::Text, "\"web\"")
+        .of(&["displacement", "section-moment", "bending-strain"])
+        .means("Shell that it looks at.")
+        .or(Follows(ONE_SHELL)),
     probe("on", Kind::Region(&[Form::Point]), "[1.0, 0.5]")
         .of(&["displacement"])
         .means("Point whose displacement it is.")
@@ -292,6 +337,7 @@ const RADIAL: Choice = choice(
      none",
 );
 const FREE: &str = "this component is free";
+const ONE_SHELL: &str = "the only shell";
 const COMPONENTS: &str = "the force has components";
 const FORCE: &str = "Force in x, y and z; or one number and `along`, a direction that the undeformed surface has.";
 const HISTORY: &str = "Rows of [load factor, factor], straight in between, constant beyond the last. By arc length a history that \

@@ -34,6 +34,10 @@ pub enum Kind {
     Stages,
     /// Any text in one line, in quotes.
     Text,
+    /// A list of such texts.
+    Texts(Length),
+    /// A list of edges of shells: the name of the shell, a point, and the word of the edge.
+    Edges(Length),
 }
 
 impl Kind {
@@ -66,6 +70,10 @@ impl Kind {
             Kind::Switch => "true or false".into(),
             Kind::Stages => "a list of stages".into(),
             Kind::Text => "text in quotes".into(),
+            Kind::Texts(length) => format!("a list of {}names in quotes", length.words()),
+            Kind::Edges(length) => {
+                format!("a list of {}edges, each \"SHELL.EDGE\" as in \"web.v-end\"", length.words())
+            }
         }
     }
 }
@@ -81,6 +89,16 @@ pub enum Length {
     Exactly(usize),
     /// Any number of items.
     Any,
+}
+
+impl Length {
+    /// The number with a blank behind it, or nothing.
+    fn words(self) -> String {
+        match self {
+            Length::Exactly(length) => format!("{length} "),
+            Length::Any => String::new(),
+        }
+    }
 }
 
 /// The ways to describe a region of the surface.

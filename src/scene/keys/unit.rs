@@ -15,6 +15,8 @@ pub enum Unit {
     KilogramPerCubicMetre,
     /// Newtons; of moments per length, N mm per mm.
     Newton,
+    /// Newton millimetres.
+    NewtonMillimetre,
     /// Newtons per millimetre.
     NewtonPerMillimetre,
     /// Newtons per square millimetre.
@@ -31,13 +33,14 @@ pub enum Unit {
 
 impl Unit {
     /// Those of the keys; a name that ends in two of them has the one that comes first.
-    const ALL: [Unit; 11] = [
+    const ALL: [Unit; 12] = [
         Unit::NewtonPerSquareMillimetre,
         Unit::NewtonPerMillimetre,
         Unit::PerMillimetre,
         Unit::PerKelvin,
         Unit::KilogramPerCubicMetre,
         Unit::MetrePerSecondSquared,
+        Unit::NewtonMillimetre,
         Unit::Millimetre,
         Unit::Degree,
         Unit::Megapascal,
@@ -66,6 +69,7 @@ impl Unit {
             Unit::Megapascal => "mpa",
             Unit::KilogramPerCubicMetre => "kg_m3",
             Unit::Newton => "n",
+            Unit::NewtonMillimetre => "n_mm",
             Unit::NewtonPerMillimetre => "n_per_mm",
             Unit::NewtonPerSquareMillimetre => "n_per_mm2",
             Unit::MetrePerSecondSquared => "m_s2",
@@ -84,6 +88,7 @@ impl Unit {
             Unit::Megapascal => "MPa",
             Unit::KilogramPerCubicMetre => "kg/m3",
             Unit::Newton => "N",
+            Unit::NewtonMillimetre => "N mm",
             Unit::NewtonPerMillimetre => "N/mm",
             Unit::NewtonPerSquareMillimetre => "N/mm2",
             Unit::MetrePerSecondSquared => "m/s2",

@@ -3,7 +3,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::spline::{Grid, Mesh, Spans};
+use crate::spline::{Grid, Patch, Spans};
 
 use super::whole_shell::{WholeShell, displacements};
 
@@ -11,7 +11,7 @@ use super::whole_shell::{WholeShell, displacements};
 #[derive(Debug)]
 pub(super) struct BezierPatches {
     /// Undeformed surface with every knot of multiplicity p: patches share the control points of their borders.
-    pub(super) undeformed: Mesh,
+    pub(super) undeformed: Patch,
     /// Displacements of its control points, mm.
     pub(super) displacement: Vec<[f64; 3]>,
     spans: [Spans; 2],
@@ -98,7 +98,7 @@ impl BezierPatches {
 }
 
 /// The same surface with every inner knot of multiplicity p.
-fn extracted(mesh: &Mesh) -> Mesh {
+fn extracted(mesh: &Patch) -> Patch {
     let missing = [0, 1].map(|direction| {
         let groups = mesh.knots[direction].chunk_by(|a, b| a == b);
         let degree = mesh.degree[direction];

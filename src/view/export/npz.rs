@@ -10,7 +10,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::instant::Instant;
-use crate::spline::Mesh;
+use crate::spline::Patch;
 
 /// Length of the front of an array is a multiple of this.
 const ALIGNMENT: usize = 64;
@@ -19,7 +19,7 @@ const ALIGNMENT: usize = 64;
 #[derive(Debug)]
 pub struct StatesOnMesh {
     /// The undeformed surface.
-    pub mesh: Mesh,
+    pub mesh: Patch,
     /// Displacements of its control points, mm, and what state they are of.
     pub states: Vec<(Instant, Vec<[f64; 3]>)>,
 }

@@ -8,7 +8,7 @@
 use std::fmt::Write as _;
 
 use crate::shell::{norm, sub};
-use crate::spline::{Grid, Mesh};
+use crate::spline::{Grid, Patch};
 
 /// Distance within which readers take points for one, mm.
 const UNCERTAINTY_MM: f64 = 1e-6;
@@ -47,7 +47,7 @@ impl Entities {
 }
 
 /// Formats a surface as the text of a STEP file; `name` names the product and says what state it is of.
-pub fn step(surface: &Mesh, name: &str) -> String {
+pub fn step(surface: &Patch, name: &str) -> String {
     let name = string(name);
     let product = PRODUCT
         .replace("'NAME'", &format!("'{name}'"))
@@ -69,7 +69,7 @@ pub fn step(surface: &Mesh, name: &str) -> String {
 }
 
 /// The surface, bounded by its edges.
-fn face(entities: &mut Entities, surface: &Mesh, points: &[String]) -> String {
+fn face(entities: &mut Entities, surface: &Patch, points: &[String]) -> String {
     let grid = surface.grid();
     let [n1, n2] = grid.counts;
     let corners = [[0, 0], [n1 - 1, 0], [n1 - 1, n2 - 1], [0, n2 - 1]].map(|place| grid.index(place));
@@ -94,7 +94,7 @@ fn face(entities: &mut Entities, surface: &Mesh, points: &[String]) -> String {
     entities.add(&format!("ADVANCED_FACE('',({bound}),{geometry},.T.)"))
 }
 
-fn curve(entities: &mut Entities, surface: &Mesh, direction: usize, controls: &[usize], points: &[String]) -> String {
+fn curve(entities: &mut Entities, surface: &Patch, direction: usize, controls: &[usize], points: &[String]) -> String {
     let (times, knots) = multiplicities(&surface.knots[direction]);
     let names: Vec<&str> = controls.iter().map(|k| &points[*k][..]).collect();
     let weights: Vec<f64> = controls.iter().map(|k| surface.control_points[*k][3]).collect();
@@ -107,7 +107,7 @@ fn curve(entities: &mut Entities, surface: &Mesh, direction: usize, controls: &[
     ))
 }
 
-fn nurbs(entities: &mut Entities, surface: &Mesh, grid: Grid, points: &[String]) -> String {
+fn nurbs(entities: &mut Entities, surface: &Patch, grid: Grid, points: &[String]) -> String {
     let [(times_u, knots_u), (times_v, knots_v)] = [0, 1].map(|direction| multiplicities(&surface.knots[direction]));
     let rows = |of_row: &dyn Fn(Vec<usize>) -> String| {
         let row = |i| format!("({})", of_row(grid.line(0, i).collect()));
@@ -159,7 +159,7 @@ mod tests {
     fn entities_have_a_name_each_and_refer_to_those_before() {
         let knots = || vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let point = |k: usize| [(k / 3) as f64, (k % 3) as f64, 0.0, 1.0];
-        let plane = Mesh { degree: [2, 2], knots: [knots(), knots()], control_points: (0..9).map(point).collect() };
+        let plane = Patch { degree: [2, 2], knots: [knots(), knots()], control_points: (0..9).map(point).collect() };
         let text = step(&plane, "a \"shell's\" plane, 5°");
         assert!(text.contains("PRODUCT('a \"shell''s\" plane, 5_',"));
         let (_, data) = text.split_once("DATA;\n").unwrap();

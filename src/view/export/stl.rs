@@ -1,14 +1,14 @@
 //! The deformed surface as triangles: binary STL, in mm.
 
 use crate::shell::{cross, norm, sub};
-use crate::spline::{Grid, Mesh, Spans, mid_surface_point};
+use crate::spline::{Grid, Patch, Spans, mid_surface_point};
 
 /// Length of the text in front.
 const HEAD_LEN: usize = 80;
 
 /// Formats a surface as binary STL, with 2 · (`points` − 1)² triangles for each element; `title` is what its head says, as far
 /// as it has room. Corners lie on the surface; neighbours share them exactly, and triangles without area are left out.
-pub fn stl(surface: &Mesh, points: usize, title: &str) -> Vec<u8> {
+pub fn stl(surface: &Patch, points: usize, title: &str) -> Vec<u8> {
     let [us, vs] = [0, 1].map(|direction| lines(surface, direction, points));
     let grid = Grid::new([us.len(), vs.len()]);
     let at = |k: usize| {
@@ -31,7 +31,7 @@ pub fn stl(surface: &Mesh, points: usize, title: &str) -> Vec<u8> {
 }
 
 /// Parameters of the lines of points in a direction.
-fn lines(surface: &Mesh, direction: usize, points: usize) -> Vec<f64> {
+fn lines(surface: &Patch, direction: usize, points: usize) -> Vec<f64> {
     let spans = Spans::of(&surface.knots[direction], surface.degree[direction]).bounds;
     let parts = points - 1;
     let of_span = |[from, to]: &[f64; 2]| {

@@ -4,7 +4,7 @@
 //! surface stays the one that was computed; it is smooth there as far as the support holds its tangents.
 
 use crate::scene::Scene;
-use crate::spline::{Grid, Mesh};
+use crate::spline::{Grid, Patch};
 use crate::state::State;
 use crate::view::fields::{Field, FieldPoint, ShellFields};
 
@@ -17,14 +17,14 @@ pub struct WholeShell<'a> {
     fields: ShellFields<'a>,
     /// Whether the model is cut across the length, and along the apex.
     cuts: [bool; 2],
-    undeformed: Mesh,
-    deformed: Mesh,
+    undeformed: Patch,
+    deformed: Patch,
 }
 
 impl<'a> WholeShell<'a> {
     /// Completes the shell of a state of a scene.
     pub fn new(scene: &'a Scene, state: &'a State) -> Self {
-        let model = &*state.mesh;
+        let model = state.mesh.lone();
         let (mut undeformed, mut deformed) = (model.clone(), moved(model, &state.displacement));
         let cuts = scene.symmetry.cuts();
         if cuts[0] {
@@ -38,16 +38,17 @@ impl<'a> WholeShell<'a> {
             let image = |[x, y, z, w]: [f64; 4]| [x, -y, z, w];
             [undeformed, deformed] = [undeformed, deformed].map(|mesh| with_image(&mesh, 1, Image::Before, image));
         }
-        Self { fields: ShellFields::new(scene, state), cuts, undeformed, deformed }
+        let fields = ShellFields::new(scene, model, &state.displacement, state.parameter);
+        Self { fields, cuts, undeformed, deformed }
     }
 
     /// The undeformed surface; its parameters are in [0, 1].
-    pub fn undeformed(&self) -> &Mesh {
+    pub fn undeformed(&self) -> &Patch {
         &self.undeformed
     }
 
     /// The deformed surface, with the knots of the undeformed one.
-    pub fn deformed(&self) -> &Mesh {
+    pub fn deformed(&self) -> &Patch {
         &self.deformed
     }
 
@@ -99,14 +100,14 @@ impl WholePoint<'_> {
 }
 
 /// Displacements that take the control points of one mesh to those of another, mm.
-pub(super) fn displacements(from: &Mesh, to: &Mesh) -> impl Iterator<Item = [f64; 3]> {
+pub(super) fn displacements(from: &Patch, to: &Patch) -> impl Iterator<Item = [f64; 3]> {
     from.points().zip(to.points()).map(|(from, to)| [0, 1, 2].map(|c| to[c] - from[c]))
 }
 
 /// The mesh with its control points moved, mm.
-fn moved(mesh: &Mesh, displacement: &[[f64; 3]]) -> Mesh {
+fn moved(mesh: &Patch, displacement: &[[f64; 3]]) -> Patch {
     let at = |([x, y, z, w], [dx, dy, dz]): (&[f64; 4], &[f64; 3])| [x + w * dx, y + w * dy, z + w * dz, *w];
-    Mesh { control_points: mesh.control_points.iter().zip(displacement).map(at).collect(), ..mesh.clone() }
+    Patch { control_points: mesh.control_points.iter().zip(displacement).map(at).collect(), ..mesh.clone() }
 }
 
 /// Where an image lies in the parameter.
@@ -118,7 +119,7 @@ enum Image {
 
 /// A surface on [0, 1]² and its image, joined along the last line in `direction` (or the first one, for an image before it);
 /// parameters of the whole are again in [0, 1].
-fn with_image(mesh: &Mesh, direction: usize, side: Image, image: impl Fn([f64; 4]) -> [f64; 4]) -> Mesh {
+fn with_image(mesh: &Patch, direction: usize, side: Image, image: impl Fn([f64; 4]) -> [f64; 4]) -> Patch {
     let degree = mesh.degree[direction];
     let half = |knot: &f64| if side == Image::After { 0.5 * knot } else { 0.5 + 0.5 * knot };
     let own: Vec<f64> = mesh.knots[direction].iter().map(half).collect();

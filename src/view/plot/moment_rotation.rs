@@ -147,7 +147,7 @@ fn draw_elements(
 
 /// The number of elements, as its logarithm to base 2.
 fn height(point: &PlottedPoint) -> f64 {
-    point.report.elements.iter().map(|count| *count as f64).product::<f64>().max(1.0).log2()
+    (point.report.elements.count() as f64).max(1.0).log2()
 }
 
 /// Every stair that is wide enough has its mesh written upon it.
@@ -161,10 +161,9 @@ fn draw_meshes(chart: &mut Chart, path: &[PlottedPoint], [x, y]: [&Axis; 2]) -> 
         }
         let to_deg = next.map_or(report.parameter, |next| next.parameter);
         if x.fraction(to_deg) - x.fraction(from_deg) > 0.09 {
-            let [n1, n2] = report.elements;
             let style = text(13).pos(Pos::new(HPos::Center, VPos::Bottom));
             let place = (0.5 * (from_deg + to_deg), height(&path[i]) + 0.03 * (top - bottom));
-            chart.draw_series([Text::new(format!("{n1} × {n2}"), place, style)])?;
+            chart.draw_series([Text::new(report.elements.to_string(), place, style)])?;
         }
         from_deg = to_deg;
     }

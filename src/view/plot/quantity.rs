@@ -3,6 +3,7 @@
 use super::run::PlottedPoint;
 use crate::record::Parameter;
 use crate::scene::Scene;
+use crate::spline::Elements;
 
 /// A number of each equilibrium of a run.
 #[derive(Clone, Debug)]
@@ -69,11 +70,9 @@ static ROWS: [Row; 20] = [
     row("total_iterations", "Newton iterations so far", "", |at| Some(at.so_far.iterations)),
     of_equilibria(row("iterations", "Newton iterations of the load step", "", |at| Some(at.in_step.iterations))),
     of_equilibria(row("factorizations", "factorizations of the load step", "", |at| Some(at.in_step.factorizations))),
-    of_equilibria(row("elements", "elements of the model", "", |at| {
-        Some(at.report.elements.iter().product::<usize>() as f64)
-    })),
-    of_equilibria(row("elements_1", "elements along u", "", |at| Some(at.report.elements[0] as f64))),
-    of_equilibria(row("elements_2", "elements along v", "", |at| Some(at.report.elements[1] as f64))),
+    of_equilibria(row("elements", "elements of the model", "", |at| Some(at.report.elements.count() as f64))),
+    of_equilibria(row("elements_1", "elements along u", "", |at| of_one(&at.report.elements, 0))),
+    of_equilibria(row("elements_2", "elements along v", "", |at| of_one(&at.report.elements, 1))),
     of_equilibria(row("unknowns", "free unknowns of the model", "", |at| Some(at.report.unknowns as f64))),
     of_equilibria(row("negative_pivots", "negative pivots", "", |at| Some(at.report.negative_pivots as f64))),
     of_equilibria(row("residual", "relative residual", "", |at| Some(at.report.residual))),
@@ -193,5 +192,13 @@ mod tests {
         assert_eq!(name("-probe.w_c").as_deref(), Some("−w_c (u)"));
         assert_eq!(name("moment"), None, "nothing turns");
         assert_eq!(quantity_named(&roof(), "-w_c").unwrap().in_file_name(), "minus-w_c");
+    }
+}
+
+/// Elements along u or v of a scene of one shell.
+fn of_one(elements: &Elements, direction: usize) -> Option<f64> {
+    match elements {
+        Elements::OfOne(counts) => Some(counts[direction] as f64),
+        Elements::OfEach(_) => None,
     }
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::shape::Shape;
 use crate::record::{Parameter, Record};
 use crate::scene::Scene;
+use crate::spline::Elements;
 use crate::study::{Summary, TapeSpring, equilibrium_path};
 
 /// A run, as the page has it.
@@ -52,7 +53,7 @@ struct Point {
     at: f64,
     value: Option<f64>,
     energy: f64,
-    elements: [usize; 2],
+    elements: Elements,
     unknowns: usize,
     stable: bool,
     jumped: bool,
@@ -174,7 +175,7 @@ fn points(records: &[Record], turns: bool, unprobed: bool) -> Vec<Point> {
                     (false, false) => point.probe,
                 },
                 energy: point.strain_energy_n_mm,
-                elements: point.elements,
+                elements: point.elements.clone(),
                 unknowns,
                 stable: point.negative_pivots == 0,
                 jumped: point.jumped,

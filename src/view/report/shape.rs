@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use crate::scene::Scene;
 use crate::shell::norm;
-use crate::spline::{Mesh, Spans, mid_surface_point};
+use crate::spline::Elements;
+use crate::spline::{Patch, Spans, mid_surface_point};
 use crate::state::State;
 use crate::view::colour::VIRIDIS;
 use crate::view::export::{WholePoint, WholeShell, base64};
@@ -57,7 +58,7 @@ struct ShownField {
 pub struct Frame {
     step: u64,
     label: String,
-    elements: [usize; 2],
+    elements: Elements,
     /// Coordinates of the points, the second direction fastest.
     points: String,
     /// Values at the points, field by field.
@@ -89,7 +90,7 @@ pub fn chosen_frames(steps: &[u64], wanted: impl Fn(u64) -> bool) -> Vec<u64> {
 impl Shape {
     /// Samples the states of a scene; `None` where there is none.
     pub fn new(scene: &Scene, states: &[FrameAt]) -> Option<Self> {
-        let finest = states.iter().max_by_key(|at| at.state.mesh.element_counts().iter().product::<usize>())?;
+        let finest = states.iter().max_by_key(|at| at.state.mesh.elements().count())?;
         let grid = places(WholeShell::new(scene, &finest.state).undeformed());
         let offered = offered(scene);
         let sampled: Vec<Sampled> = states.iter().map(|at| Sampled::new(scene, &at.state, &grid, &offered)).collect();
@@ -104,7 +105,7 @@ impl Shape {
         let frames = states.iter().zip(&sampled).map(|(at, frame)| Frame {
             step: at.step,
             label: at.label.clone(),
-            elements: at.state.mesh.element_counts(),
+            elements: at.state.mesh.elements(),
             points: pack_points(&frame.points),
             values: frame.values.iter().zip(&ranges).map(|(v, range)| packed(v.iter().map(|v| (*v, *range)))).collect(),
             lines: pack_points(&frame.lines),
@@ -164,7 +165,7 @@ impl Sampled {
 }
 
 /// Parameters of the points of a whole shell: every element of the mesh, divided so that there are not too many.
-fn places(mesh: &Mesh) -> [Vec<f64>; 2] {
+fn places(mesh: &Patch) -> [Vec<f64>; 2] {
     let counts = mesh.element_counts();
     let parts =
         (1..=8).rev().find(|parts| counts.iter().map(|count| count * parts + 1).product::<usize>() <= MOST_POINTS);
@@ -181,7 +182,7 @@ fn places(mesh: &Mesh) -> [Vec<f64>; 2] {
 }
 
 /// The ends of the elements in a direction and points that divide each into so many parts.
-fn divided(mesh: &Mesh, direction: usize, parts: usize) -> Vec<f64> {
+fn divided(mesh: &Patch, direction: usize, parts: usize) -> Vec<f64> {
     let bounds = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
     let inner =
         bounds.iter().flat_map(|[from, to]| (1..=parts).map(move |k| from + (to - from) * k as f64 / parts as f64));

@@ -65,5 +65,5 @@ fn in_words(report: &Report, loads_follow: bool) -> String {
     if report.iterations > 0 {
         words += &format!(", {}", count(report.iterations, "iteration"));
     }
-    words + &format!(", {} × {} elements", report.elements[0], report.elements[1])
+    words + &format!(", {} elements", report.elements)
 }

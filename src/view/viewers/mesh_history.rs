@@ -14,8 +14,9 @@ use crate::view::deformed_surface;
 /// by two.
 pub(super) fn cells_per_element(scene: &Scene, mesh: &Mesh) -> [usize; 2] {
     const MANY: usize = 48;
-    let (elements, cuts) = (mesh.element_counts(), scene.symmetry.cuts());
-    [0, 1].map(|direction| if elements[direction] << usize::from(cuts[direction]) < MANY { 2 } else { 1 })
+    let (elements, cuts) = (mesh.elements(), scene.symmetry.cuts());
+    let most = |direction: usize| elements.each().iter().map(|counts| counts[direction]).max().unwrap_or(0);
+    [0, 1].map(|direction| if most(direction) << usize::from(cuts[direction]) < MANY { 2 } else { 1 })
 }
 
 /// Bending strain at the bright end of the colours, in units of 1/R: a fold has 1, and up to 1.14 beside its middle.

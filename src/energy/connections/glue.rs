@@ -1,0 +1,72 @@
+//! The energy of a layer of glue between the faces of two shells.
+
+use super::coupled::{Derivatives, LOCAL, Local, PointLaw};
+use crate::shell::{FrameVector, TANGENTS, add, dot, scaled, sub};
+
+/// First component of the tangents among those of a surface.
+const FIRST_TANGENT: usize = 3;
+
+/// The point of an area at which two shells are glued.
+///
+/// ½ k |r|², r = x + c a₃ − (x′ + c′ a₃′) − g, with c and c′ the distances from the surfaces to the faces that are glued, and g the
+/// gap between the faces of the undeformed shells, carried along as components on a₁, a₂, a₃: fixed in space, a misfit
+/// would resist a rotation of the whole.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Glue {
+    /// k times the weight of the point, N/mm.
+    pub stiffness: f64,
+    /// c and c′, mm.
+    pub to_faces: [f64; 2],
+    /// Components of g on a₁, a₂ and a₃.
+    pub gap: [f64; 3],
+}
+
+impl Glue {
+    /// The stretch r of the layer, mm.
+    pub fn stretch(&self, [one, other]: &[Local; 2]) -> [f64; 3] {
+        let normals = [one, other].map(|side| FrameVector::normal([side[1], side[2]]).value);
+        let from = add(one[0], scaled(self.to_faces[0] - self.gap[2], normals[0]));
+        let from = sub(from, add(scaled(self.gap[0], one[1]), scaled(self.gap[1], one[2])));
+        sub(from, add(other[0], scaled(self.to_faces[1], normals[1])))
+    }
+}
+
+impl PointLaw for Glue {
+    fn energy(&self, sides: &[Local; 2]) -> f64 {
+        let stretch = self.stretch(sides);
+        0.5 * self.stiffness * dot(stretch, stretch)
+    }
+
+    fn add_derivatives(&self, sides: &[Local; 2], sums: &mut Derivatives) {
+        let stretch = self.stretch(sides);
+        let normals = [0, 1].map(|k| FrameVector::normal([sides[k][1], sides[k][2]]));
+        let shares = [self.to_faces[0] - self.gap[2], -self.to_faces[1]];
+        let unit = |c: usize, size: f64| [0, 1, 2].map(|k| if k == c { size } else { 0.0 });
+        // ∂r by each component.
+        let mut slopes = [[0.0; 3]; 2 * LOCAL];
+        for (k, sign) in [(0, 1.0), (1, -1.0)] {
+            for c in 0..3 {
+                slopes[k * LOCAL + c] = unit(c, sign);
+            }
+            for p in 0..TANGENTS {
+                let straight = if k == 0 { unit(p % 3, -self.gap[p / 3]) } else { [0.0; 3] };
+                slopes[k * LOCAL + FIRST_TANGENT + p] = add(straight, scaled(shares[k], normals[k].first[p]));
+            }
+        }
+        for p in 0..2 * LOCAL {
+            sums.gradient[p] += self.stiffness * dot(stretch, slopes[p]);
+            for q in 0..2 * LOCAL {
+                sums.hessian[p][q] += self.stiffness * dot(slopes[p], slopes[q]);
+            }
+        }
+        for k in 0..2 {
+            let from = k * LOCAL + FIRST_TANGENT;
+            for p in 0..TANGENTS {
+                for q in 0..TANGENTS {
+                    sums.hessian[from + p][from + q] +=
+                        self.stiffness * shares[k] * dot(stretch, normals[k].second[p][q]);
+                }
+            }
+        }
+    }
+}

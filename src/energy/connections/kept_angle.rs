@@ -1,0 +1,105 @@
+//! The energy that keeps the angle between two surfaces along an edge, and their displacements together where their control points
+//! are not shared (Herrema, Johnson, Proserpio, Wu, Kiendl & Hsu 2019, *Penalty coupling of non-matching isogeometric
+//! Kirchhoff–Love shell patches*).
+//!
+//! E = ½ α_r ∫ [(Δ a₃·a₃′)² + (Δ a_n·a₃′)²] ds + ½ α_d ∫ |Δ(x − x′)|² ds on the undeformed edge, with the normals a₃, a₃′ of
+//! the two surfaces, the normal a_n of the edge within the first one, and Δ for the change since the undeformed state. a₃·a₃′
+//! and a_n·a₃′ are cosine and sine of the angle between the surfaces; the second one makes the angle unique. α_r = c D/h
+//! and α_d = c A/h.
+
+use super::coupled::{Derivatives, LOCAL, Local, PointLaw};
+use crate::shell::{FrameVector, TANGENTS, dot, sub};
+
+/// The energy at a point of an edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct KeptAngle {
+    /// Direction (0 or 1) of the first surface that runs along the edge.
+    pub running: usize,
+    /// α_r times the weight of the point, N·mm.
+    pub rotation: f64,
+    /// α_d times the weight of the point, N/mm.
+    pub displacement: f64,
+    /// Cosine and sine of the angle between the undeformed surfaces.
+    pub angle: [f64; 2],
+    /// x − x′ of the undeformed surfaces, mm.
+    pub gap: [f64; 3],
+}
+
+/// First component of the tangents among those of a surface.
+const FIRST_TANGENT: usize = 3;
+
+impl KeptAngle {
+    /// Cosine and sine of the angle between two surfaces along an edge.
+    pub fn angle_of([one, other]: &[Local; 2], running: usize) -> [f64; 2] {
+        let normal = FrameVector::normal([other[1], other[2]]).value;
+        let tangents = [one[1], one[2]];
+        [FrameVector::normal(tangents).value, FrameVector::edge_normal(tangents, running).value]
+            .map(|vector| dot(vector, normal))
+    }
+
+    /// Angle by which the surfaces have turned against each other, radians.
+    pub fn opened(&self, sides: &[Local; 2]) -> f64 {
+        let [[cos, sin], [c, s]] = [Self::angle_of(sides, self.running), self.angle];
+        (sin * c - cos * s).atan2(cos * c + sin * s)
+    }
+
+    fn apart(&self, [one, other]: &[Local; 2]) -> [f64; 3] {
+        sub(sub(one[0], other[0]), self.gap)
+    }
+}
+
+impl PointLaw for KeptAngle {
+    fn energy(&self, sides: &[Local; 2]) -> f64 {
+        let angle = Self::angle_of(sides, self.running);
+        let turned: f64 = (0..2).map(|k| (angle[k] - self.angle[k]).powi(2)).sum();
+        let apart = self.apart(sides);
+        0.5 * (self.rotation * turned + self.displacement * dot(apart, apart))
+    }
+
+    fn add_derivatives(&self, sides: &[Local; 2], sums: &mut Derivatives) {
+        if self.displacement != 0.0 {
+            let apart = self.apart(sides);
+            for c in 0..3 {
+                let force = self.displacement * apart[c];
+                sums.gradient[c] += force;
+                sums.gradient[LOCAL + c] -= force;
+                for (p, q, sign) in
+                    [(c, c, 1.0), (LOCAL + c, LOCAL + c, 1.0), (c, LOCAL + c, -1.0), (LOCAL + c, c, -1.0)]
+                {
+                    sums.hessian[p][q] += sign * self.displacement;
+                }
+            }
+        }
+        if self.rotation != 0.0 {
+            let tangents = [sides[0][1], sides[0][2]];
+            let other = FrameVector::normal([sides[1][1], sides[1][2]]);
+            let vectors = [FrameVector::normal(tangents), FrameVector::edge_normal(tangents, self.running)];
+            for (vector, reference) in vectors.iter().zip(self.angle) {
+                add_product(sums, self.rotation, vector, &other, reference);
+            }
+        }
+    }
+}
+
+/// Adds the derivatives of ½ α (v·v′ − c)², where v depends on the tangents of the first surface and v′ on those of the other.
+fn add_product(sums: &mut Derivatives, alpha: f64, one: &FrameVector, other: &FrameVector, reference: f64) {
+    let change = dot(one.value, other.value) - reference;
+    let mut slope = [0.0; 2 * TANGENTS];
+    for p in 0..TANGENTS {
+        slope[p] = dot(one.first[p], other.value);
+        slope[TANGENTS + p] = dot(one.value, other.first[p]);
+    }
+    let place = |p: usize| if p < TANGENTS { FIRST_TANGENT + p } else { LOCAL + FIRST_TANGENT + p - TANGENTS };
+    for p in 0..2 * TANGENTS {
+        sums.gradient[place(p)] += alpha * change * slope[p];
+        for q in 0..2 * TANGENTS {
+            let bend = match (p.checked_sub(TANGENTS), q.checked_sub(TANGENTS)) {
+                (None, None) => dot(one.second[p][q], other.value),
+                (Some(p), Some(q)) => dot(one.value, other.second[p][q]),
+                (None, Some(q)) => dot(one.first[p], other.first[q]),
+                (Some(p), None) => dot(one.first[q], other.first[p]),
+            };
+            sums.hessian[place(p)][place(q)] += alpha * (slope[p] * slope[q] + change * bend);
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! What connects the shells of a structure, as terms: joints along edges, and bonds over areas.
+//!
+//! | file | what |
+//! |---|---|
+//! | `coupled` | energies at points at which two surfaces meet, and their sums |
+//! | `kept_angle` | the energy of a joint |
+//! | `glue` | the energy of a bond |
+//! | `edge_points`, `glued_points` | where they are summed up |
+//! | `state` | what joints and bonds show of a state |
+
+mod coupled;
+mod edge_points;
+mod glue;
+mod glued_points;
+mod kept_angle;
+mod state;
+
+use std::sync::Arc;
+
+use self::coupled::Coupling;
+use self::glue::Glue;
+use self::kept_angle::KeptAngle;
+use crate::energy::{At, Tangent, Term, Terms};
+use crate::model::{ModelError, edge_pairs, members};
+use crate::scene::Scene;
+use crate::spline::Mesh;
+
+pub use state::ConnectionState;
+
+/// The connections of a structure that have an energy.
+#[derive(Clone, Debug, Default)]
+pub struct Connections {
+    list: Vec<Connection>,
+}
+
+/// A joint or a bond, with its energy.
+#[derive(Clone, Debug)]
+struct Connection {
+    name: String,
+    energy: Energy,
+}
+
+#[derive(Clone, Debug)]
+enum Energy {
+    Joint(Arc<Coupling<KeptAngle>>),
+    Bond(Arc<Coupling<Glue>>),
+}
+
+impl Connections {
+    /// Finds the joints and bonds of a scene on a mesh.
+    ///
+    /// # Errors
+    /// Where edges do not meet, or faces do not lie together.
+    pub fn new(scene: &Scene, mesh: &Mesh) -> Result<Self, ModelError> {
+        let mut list = Vec::new();
+        if scene.joints.is_empty() && scene.bonds.is_empty() {
+            return Ok(Self { list });
+        }
+        let members = members(scene, mesh);
+        for pair in edge_pairs(scene, &members)? {
+            let points = edge_points::edge_points(&pair, &members);
+            if !points.is_empty() {
+                let energy = Energy::Joint(Arc::new(Coupling::new(points)));
+                list.push(Connection { name: pair.joint.name.clone(), energy });
+            }
+        }
+        for bond in &scene.bonds {
+            let points = glued_points::glued_points(bond, &members)?;
+            let energy = Energy::Bond(Arc::new(Coupling::new(points)));
+            list.push(Connection { name: bond.name.clone(), energy });
+        }
+        Ok(Self { list })
+    }
+}
+
+impl Terms {
+    /// Adds the terms of joints and bonds.
+    pub(super) fn push_connections(&mut self, connections: &Connections) {
+        for Connection { name, energy } in &connections.list {
+            match energy {
+                Energy::Joint(coupling) => self.push(&format!("joint \"{name}\""), Box::new(Shared(coupling.clone()))),
+                Energy::Bond(coupling) => self.push(&format!("bond \"{name}\""), Box::new(Shared(coupling.clone()))),
+            }
+        }
+    }
+}
+
+/// A term that others look at as well.
+#[derive(Debug)]
+struct Shared<T>(Arc<T>);
+
+impl<T: Term> Term for Shared<T> {
+    fn pairs(&self) -> Vec<[usize; 2]> {
+        self.0.pairs()
+    }
+
+    fn energy(&self, at: At) -> f64 {
+        self.0.energy(at)
+    }
+
+    /// The energy of a connection does not depend on the parameter.
+    fn put_in(&self, _: At, _: f64) -> f64 {
+        0.0
+    }
+
+    fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
+        self.0.add_forces(at, forces);
+    }
+
+    fn has_tangent(&self) -> bool {
+        self.0.has_tangent()
+    }
+
+    fn add_tangent(&self, at: At, tangent: &mut Tangent) {
+        self.0.add_tangent(at, tangent);
+    }
+}
