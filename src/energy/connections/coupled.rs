@@ -1,7 +1,8 @@
 //! Energies at points at which two surfaces meet, and their sums over control points.
 //!
-//! An energy at such a point is a function of the position x and the tangents a₁, a₂ of both surfaces, 18 numbers y. With
-//! y = Y + Σ N u, where each of x, a₁, a₂ has functions of its own (values and first derivatives), forces are −Σ N ∂E/∂y and the
+//! An energy at such a point is a function of the displacement u and the tangents a₁, a₂ of both surfaces, 18 numbers y: positions
+//! are rounded by a share of the size of the structure, which the stiffness of a thin layer would make forces of. With
+//! y = Y + Σ N u, where each of u, a₁, a₂ has functions of its own (values and first derivatives), forces are −Σ N ∂E/∂y and the
 //! tangent −Σ N ∂²E/∂y² N. Points of one pair of elements are summed up together; sums over groups are formed in one order, whatever
 //! the number of threads.
 
@@ -14,7 +15,7 @@ use crate::energy::{At, Tangent, Term};
 use crate::shell::{add, scaled};
 use crate::spline::{Patch, evaluate_surface, mid_surface_point};
 
-/// Position and tangents of a surface at a point.
+/// Displacement and tangents of a surface at a point.
 pub(super) type Local = [[f64; 3]; 3];
 
 /// Number of components of [`Local`].
@@ -47,9 +48,9 @@ pub(super) trait PointLaw: Debug + Send + Sync {
 pub(super) struct SurfaceSide {
     /// Control points, numbered as in the structure.
     pub controls: Vec<usize>,
-    /// Functions of x, a₁ and a₂.
+    /// Functions of u, a₁ and a₂.
     functions: [Vec<f64>; 3],
-    /// x, a₁ and a₂ of the undeformed surface.
+    /// No displacement, and a₁ and a₂ of the undeformed surface.
     pub undeformed: Local,
 }
 
@@ -61,11 +62,11 @@ impl SurfaceSide {
         Self {
             controls: patch.window(window).map(|point| first + point).collect(),
             functions: [value, one, two],
-            undeformed: [surface.position, surface.derivatives[0], surface.derivatives[1]],
+            undeformed: [[0.0; 3], surface.derivatives[0], surface.derivatives[1]],
         }
     }
 
-    /// x, a₁ and a₂ at a displacement of the control points.
+    /// u, a₁ and a₂ at a displacement of the control points.
     pub fn deformed(&self, displacement: &[[f64; 3]]) -> Local {
         let mut local = self.undeformed;
         for (a, control) in self.controls.iter().enumerate() {
@@ -85,7 +86,7 @@ pub(super) struct CoupledPoint<L> {
 }
 
 impl<L> CoupledPoint<L> {
-    /// x, a₁ and a₂ of both surfaces at a displacement of the control points.
+    /// u, a₁ and a₂ of both surfaces at a displacement of the control points.
     pub fn deformed(&self, displacement: &[[f64; 3]]) -> [Local; 2] {
         self.sides.each_ref().map(|side| side.deformed(displacement))
     }

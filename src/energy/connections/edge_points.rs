@@ -4,7 +4,7 @@ use super::coupled::{CoupledPoint, SurfaceSide};
 use super::kept_angle::KeptAngle;
 use crate::model::{EdgePair, Member, PairedEdge, gauss_points, is_tied_smoothly};
 use crate::scene::JointKind;
-use crate::shell::{norm, shell_stiffness, sub};
+use crate::shell::{norm, shell_stiffness};
 
 /// Knots that are closer are one.
 const SAME_KNOT: f64 = 1e-9;
@@ -33,7 +33,6 @@ pub(super) fn edge_points(pair: &EdgePair, members: &[Member]) -> Vec<CoupledPoi
             rotation: if keeps_angle { share(bending) } else { 0.0 },
             displacement: if pair.conforms { 0.0 } else { share(membrane) },
             angle: KeptAngle::angle_of(&undeformed, one.running()),
-            gap: sub(undeformed[0][0], undeformed[1][0]),
         };
         CoupledPoint { sides, law }
     };

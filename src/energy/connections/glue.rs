@@ -19,15 +19,23 @@ pub(super) struct Glue {
     pub to_faces: [f64; 2],
     /// Components of g on a₁, a₂ and a₃.
     pub gap: [f64; 3],
+    /// The part of r that is not displacement, of the undeformed shells, mm.
+    pub at_rest: [f64; 3],
 }
 
 impl Glue {
     /// The stretch r of the layer, mm.
-    pub fn stretch(&self, [one, other]: &[Local; 2]) -> [f64; 3] {
+    pub fn stretch(&self, sides: &[Local; 2]) -> [f64; 3] {
+        let moved = sub(sides[0][0], sides[1][0]);
+        add(moved, sub(self.across(sides), self.at_rest))
+    }
+
+    /// The part of r that is not displacement, mm.
+    pub fn across(&self, [one, other]: &[Local; 2]) -> [f64; 3] {
         let normals = [one, other].map(|side| FrameVector::normal([side[1], side[2]]).value);
-        let from = add(one[0], scaled(self.to_faces[0] - self.gap[2], normals[0]));
-        let from = sub(from, add(scaled(self.gap[0], one[1]), scaled(self.gap[1], one[2])));
-        sub(from, add(other[0], scaled(self.to_faces[1], normals[1])))
+        let own = scaled(self.to_faces[0] - self.gap[2], normals[0]);
+        let gap = add(scaled(self.gap[0], one[1]), scaled(self.gap[1], one[2]));
+        sub(sub(own, gap), scaled(self.to_faces[1], normals[1]))
     }
 }
 

@@ -4,7 +4,7 @@ use super::coupled::{CoupledPoint, SurfaceSide};
 use super::glue::Glue;
 use crate::model::{Member, ModelError, gauss_points};
 use crate::scene::{Bond, Material, OrthotropicLaw};
-use crate::shell::{cross, dot, norm, scaled, sub};
+use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::{Patch, Spans, SurfacePoint, mid_surface_point};
 use crate::units::place;
 
@@ -49,7 +49,7 @@ pub(super) fn glued_points(bond: &Bond, members: &[Member]) -> Result<Vec<Couple
             continue;
         }
         let area = weight * norm(cross(here.derivatives[0], here.derivatives[1]));
-        points.push(glued(sides, [at, found], sign, stiffness * area, thickness));
+        points.push(glued(sides, [at, found], sign, stiffness * area, thickness, [here.position, there.position]));
     }
     match points.is_empty() {
         true => Err(ModelError::NothingGlued {
@@ -87,19 +87,22 @@ fn glued(
     signs: [f64; 2],
     stiffness: f64,
     thickness: [f64; 2],
+    [here, there]: [[f64; 3]; 2],
 ) -> CoupledPoint<Glue> {
     let surfaces = [0, 1].map(|k| SurfaceSide::new(sides[k].patch, sides[k].points.start, at[k]));
     let undeformed = surfaces.each_ref().map(|side| side.undeformed);
     let to_faces = [0, 1].map(|k| 0.5 * signs[k] * thickness[k]);
-    let flat = Glue { stiffness, to_faces, gap: [0.0; 3] };
-    let gap = flat.stretch(&undeformed);
+    let flat = Glue { stiffness, to_faces, gap: [0.0; 3], at_rest: [0.0; 3] };
+    let apart = sub(here, there);
+    let gap = add(apart, flat.across(&undeformed));
     // Components of the gap on a₁, a₂ and a₃.
     let [_, a1, a2] = undeformed[0];
     let normal = cross(a1, a2);
     let square = dot(normal, normal);
     let components =
         [dot(gap, cross(a2, normal)) / square, dot(gap, cross(normal, a1)) / square, dot(gap, normal) / square.sqrt()];
-    CoupledPoint { sides: surfaces, law: Glue { gap: components, ..flat } }
+    let law = Glue { gap: components, ..flat };
+    CoupledPoint { sides: surfaces, law: Glue { at_rest: law.across(&undeformed), ..law } }
 }
 
 /// Quadrature points of a patch with their weights in the parameters: degree + 1 in each direction of each element, and more where

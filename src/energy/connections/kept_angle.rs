@@ -21,8 +21,6 @@ pub(super) struct KeptAngle {
     pub displacement: f64,
     /// Cosine and sine of the angle between the undeformed surfaces.
     pub angle: [f64; 2],
-    /// x − x′ of the undeformed surfaces, mm.
-    pub gap: [f64; 3],
 }
 
 /// First component of the tangents among those of a surface.
@@ -42,23 +40,19 @@ impl KeptAngle {
         let [[cos, sin], [c, s]] = [Self::angle_of(sides, self.running), self.angle];
         (sin * c - cos * s).atan2(cos * c + sin * s)
     }
-
-    fn apart(&self, [one, other]: &[Local; 2]) -> [f64; 3] {
-        sub(sub(one[0], other[0]), self.gap)
-    }
 }
 
 impl PointLaw for KeptAngle {
     fn energy(&self, sides: &[Local; 2]) -> f64 {
         let angle = Self::angle_of(sides, self.running);
         let turned: f64 = (0..2).map(|k| (angle[k] - self.angle[k]).powi(2)).sum();
-        let apart = self.apart(sides);
+        let apart = sub(sides[0][0], sides[1][0]);
         0.5 * (self.rotation * turned + self.displacement * dot(apart, apart))
     }
 
     fn add_derivatives(&self, sides: &[Local; 2], sums: &mut Derivatives) {
         if self.displacement != 0.0 {
-            let apart = self.apart(sides);
+            let apart = sub(sides[0][0], sides[1][0]);
             for c in 0..3 {
                 let force = self.displacement * apart[c];
                 sums.gradient[c] += force;
