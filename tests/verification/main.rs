@@ -21,6 +21,7 @@ mod links;
 mod mirrors;
 mod oddities;
 mod path;
+mod profiles;
 mod quadrature;
 mod quadrature_balance;
 mod reactions;
