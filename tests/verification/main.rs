@@ -17,6 +17,7 @@ mod foundation;
 mod free_strain;
 mod house;
 mod imports;
+mod laminates;
 mod links;
 mod mirrors;
 mod oddities;
