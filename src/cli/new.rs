@@ -11,7 +11,7 @@ use super::shipped::Shipped;
 /// Write a scene with comments, which runs as it is and is there to be changed
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// What it is of: tape-spring, plate, panel, annulus, sphere, nurbs, laminate; or the name of one of `foldline scenes`
+    /// What it is of: tape-spring, plate, panel, annulus, sphere, profile, nurbs, laminate; or the name of one of `foldline scenes`
     #[arg(value_parser = named)]
     kind: &'static Shipped,
     /// File to write; nothing is written over [default: KIND.toml]
@@ -26,7 +26,8 @@ macro_rules! templates {
 }
 
 /// One for each geometry, and a laminate.
-const TEMPLATES: &[Shipped] = templates! { "tape-spring" "plate" "panel" "annulus" "sphere" "nurbs" "laminate" };
+const TEMPLATES: &[Shipped] =
+    templates! { "tape-spring" "plate" "panel" "annulus" "sphere" "profile" "nurbs" "laminate" };
 
 /// Finds the template of a name, or else the scene that comes with the program.
 fn named(name: &str) -> Result<&'static Shipped, String> {

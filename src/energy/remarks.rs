@@ -196,7 +196,7 @@ fn side(scene: &Scene, patch: &Patch, sense: f64) -> String {
         Geometry::Plate { .. } | Geometry::Annulus { .. } => which("towards +z", "towards −z"),
         Geometry::TapeSpring { .. } | Geometry::CylinderPanel { .. } => which("away from the axis", "towards the axis"),
         Geometry::SphereZone { .. } => which("away from the centre", "towards the centre"),
-        Geometry::Nurbs(_) => {
+        Geometry::Profile { .. } | Geometry::Nurbs(_) => {
             let middle = mid_surface_point(patch, &[], parameters_of(&scene.geometry, [0.5; 2]));
             let normal = cross(middle.derivatives[0], middle.derivatives[1]);
             let unit = scaled(if out { 1.0 } else { -1.0 } / norm(normal), normal).map(rounded);

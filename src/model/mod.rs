@@ -5,6 +5,7 @@
 //! | `limits` | tolerances and limits |
 //! | `error` | why a scene cannot be made discrete |
 //! | `shape` | the surface of a scene in its fewest elements |
+//! | `profile` | a profile of lines and arcs as one curve |
 //! | `joint` | knot lines across which the surface is smooth |
 //! | `soundness`, `thinness`, `overhang` | whether a shell can have that surface |
 //! | `subdivision`, `start` | the mesh that a run starts from |
@@ -58,6 +59,7 @@ mod oddity;
 mod overhang;
 mod parametrize;
 mod placement;
+mod profile;
 mod quadrature;
 mod reactions;
 mod rigid_motion;

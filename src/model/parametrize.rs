@@ -3,7 +3,8 @@
 //! A rational quadratic segment of sweep s reaches the angle s/2 + 2 atan((2t − 1) tan(s/4)) at its parameter t: with
 //! the weights (1, cos(s/2), 1), the half-angle tangent about its middle is linear in t.
 
-use crate::scene::{Geometry, Region, Scene};
+use crate::model::profile::{profile_knots, profile_segments};
+use crate::scene::{Geometry, ProfilePiece, Region, Scene};
 use crate::spline::{Patch, Spans, segment_count};
 
 /// Finds the parameters of a point at fractions of the length or the angle in u and v.
@@ -14,6 +15,7 @@ pub fn parameters_of(geometry: &Geometry, fractions: [f64; 2]) -> [f64; 2] {
         Geometry::TapeSpring { arc_deg, .. }
         | Geometry::CylinderPanel { arc_deg, .. }
         | Geometry::Annulus { arc_deg, .. } => [u, on_arc(*arc_deg, v)],
+        Geometry::Profile { profile, .. } => [u, on_profile(profile, v)],
         Geometry::SphereZone { latitude_deg: [from, to], arc_deg, .. } => [on_arc(*arc_deg, u), on_arc(to - from, v)],
     }
 }
@@ -27,9 +29,25 @@ fn on_arc(arc_deg: f64, fraction: f64) -> f64 {
     if within <= 0.0 || within >= 1.0 || within == 0.5 {
         return (segment + within) / segments;
     }
-    let part = sweep / segments;
-    let t = 0.5 + 0.5 * (0.5 * (within - 0.5) * part).tan() / (0.25 * part).tan();
-    (segment + t) / segments
+    (segment + in_segment(sweep / segments, within)) / segments
+}
+
+/// Parameter of one segment of a sweep (radians) at a fraction of its angle.
+fn in_segment(sweep: f64, fraction: f64) -> f64 {
+    0.5 + 0.5 * (0.5 * (fraction - 0.5) * sweep).tan() / (0.25 * sweep).tan()
+}
+
+/// Finds the parameter at a fraction of the length of a profile, whose knots are at fractions of it.
+fn on_profile(profile: &[ProfilePiece], fraction: f64) -> f64 {
+    let segments = profile_segments(profile);
+    let ends = profile_knots(&segments);
+    // The start and the ends of segments stay what they are.
+    let Some(index) = ends.iter().position(|end| fraction < *end) else { return 1.0 };
+    let from = if index == 0 { 0.0 } else { ends[index - 1] };
+    let within = (fraction - from) / (ends[index] - from);
+    let is_curved = segments[index].turn != 0.0 && within > 0.0 && within != 0.5;
+    let t = if is_curved { in_segment(segments[index].turn.abs(), within) } else { within };
+    from + (ends[index] - from) * t
 }
 
 /// Lists sample parameters of a direction: the ends and the middles of its spans.

@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::model::ModelError;
 use crate::model::joint::smoothed;
+use crate::model::profile::profile_curve;
 use crate::model::soundness::{check_normals, check_seam, closed_directions};
 use crate::scene::{Geometry, NurbsPatch, Scene, Seam};
 use crate::spline::{
@@ -55,6 +56,10 @@ pub(super) fn shape(scene: &Scene) -> Result<Shape, ModelError> {
             product(&circular_arc(1.0, from, to, p), &profile, |turn, profile| {
                 [profile[1] * turn[1], profile[1] * turn[0], profile[0] * turn[2], profile[2] * turn[2]]
             })
+        }
+        Geometry::Profile { length_mm, profile, start_mm, direction_deg } => {
+            let across = profile_curve(profile, *start_mm, *direction_deg, q);
+            smoothed(translated(&straight_line(*length_mm, p), &across), [false; 2])?
         }
         Geometry::Nurbs(patch) => nurbs(patch, scene.mesh.degree)?,
     };

@@ -107,7 +107,11 @@ pub(super) fn has_centre(table: &Table, key: &str, geometry: &Geometry) -> Check
     if geometry.away_from_centre([0.0; 3]).is_some() {
         return Ok(());
     }
-    let shape = if matches!(geometry, Geometry::Plate { .. }) { "a plate" } else { "a nurbs surface" };
+    let shape = match geometry {
+        Geometry::Plate { .. } => "a plate",
+        Geometry::Profile { .. } => "a profile",
+        _ => "a nurbs surface",
+    };
     Err(table.wrong_at(
         key,
         format!("{shape} has no axis and no centre that \"radial\" could be away from"),

@@ -14,7 +14,7 @@ use super::shells::{ReadShell, Shells, check_structure};
 use super::structure::structure;
 use super::table::{Table, between};
 use super::tables::Tables;
-use super::{materials, meshes};
+use super::{materials, meshes, profiles};
 use crate::units::significant;
 
 /// Length of the layer in which a cylinder feels its held end, in units of sqrt(R t): pi decay lengths of
@@ -151,6 +151,7 @@ pub(super) fn material(tables: &Tables) -> Checked<Material> {
         return Err(table.wrong_at("offset_mm", problem, remedy));
     }
     let geometry = tables.one("geometry");
+    profiles::check_thin(geometry, thickness_mm)?;
     let radius_mm: Option<f64> = geometry.get("radius_mm");
     if let Some(radius_mm) = radius_mm.filter(|radius_mm| thickness_mm >= *radius_mm) {
         let thickness = table.place_of("thickness_mm").or(Some(table.place.clone()));

@@ -49,6 +49,18 @@ pub(super) struct Written<'t> {
 }
 
 impl<'t> Written<'t> {
+    /// Creates the table that an item of a list of inline tables is; spans count from `base`.
+    pub fn inline(section: &Section, number: usize, place: TextSpan, table: DeTable<'t>, base: &TextSpan) -> Self {
+        let entries = in_order_of_text(table).into_iter().map(|(key, value)| {
+            let start = base.span.start;
+            let span = start + key.span().start..start + key.span().end;
+            let place = TextSpan { source: base.source, span };
+            Entry { place, name: key.into_inner().into_owned(), value, base: base.clone() }
+        });
+        let (name, entries) = (section.name.to_owned(), entries.collect());
+        Self { name, number: Some(number), below: None, place, entries, own_line: false }
+    }
+
     /// Returns the entry with this key.
     pub fn entry(&self, name: &str) -> Option<&Entry<'t>> {
         self.entries.iter().find(|entry| entry.name == name)
@@ -86,6 +98,12 @@ impl<'t> Document<'t> {
             document.set(index + 1, setting.as_ref())?;
         }
         Ok(document)
+    }
+
+    /// The tables of a list in a document, by themselves.
+    pub fn of_inline(sections: &'static [Section], tables: Vec<Written<'t>>) -> Self {
+        let end = tables.last().map_or(TextSpan { source: 0, span: 0..0 }, |table| table.place.clone());
+        Self { sections, tables, of_shells: vec![], strays: vec![], end, text: "" }
     }
 
     /// The description of tables of this name.

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::data::{Geometry, Seam};
 use super::fault::Checked;
 use super::nurbs::nurbs;
+use super::profiles;
 use super::table::Table;
 
 /// The kind of geometry whose ends turn.
@@ -35,6 +36,9 @@ pub(super) fn geometry(table: &Table, folder: &Path) -> Checked<Geometry> {
                 return Err(table.wrong_at("latitude_deg", problem, "they must grow"));
             }
             check_seam(table, *arc_deg, *seam)?;
+        }
+        Geometry::Profile { profile, start_mm, direction_deg, .. } => {
+            profiles::check(table, profile, *start_mm, *direction_deg)?;
         }
         Geometry::TapeSpring { .. } | Geometry::Plate { .. } | Geometry::Nurbs(_) => {}
     }

@@ -15,7 +15,7 @@
 //! | `read`, `regions` | one entry to one value, within the limits of its key |
 //! | `table`, `tables` | one table, and all of them, with every default filled in |
 //! | `shells`, `connections` | the shells of a structure, and what connects them |
-//! | `geometries`, `nurbs`, `materials`, `supports`, `actions`, `histories`, `probes` | tables to data, and what must hold between their keys |
+//! | `geometries`, `nurbs`, `profiles`, `materials`, `supports`, `actions`, `histories`, `probes` | tables to data, and what must hold between their keys |
 //! | `meshes` | the mesh that a run starts with, and how it is refined |
 //! | `check`, `structure`, `stage_order`, `nearness` | tables to a scene; what must hold between tables, between supports and actions, between stages, between places |
 //! | `problem`, `fault` | what can be wrong, and where |
@@ -55,6 +55,7 @@ mod new_key;
 mod nurbs;
 mod probes;
 mod problem;
+mod profiles;
 mod read;
 mod refused;
 mod regions;
@@ -75,8 +76,9 @@ pub use data::{
     Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Bond, Component, Edge, EndRotation, Expectation,
     ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, Joint, JointKind, LengthLimit, Load,
     LoadSteps, LoadedArea, Material, MeshSpec, Motion, NumbersIn, NurbsPatch, OrthotropicLaw, Output,
-    ParametricDirection, Ply, Pose, Probe, ProbeKind, Quadrature, Reaction, Region, Scene, Seam, SectionTurns, Sense,
-    Shell, ShellEdge, Solver, Splitting, Stage, Strengths, Support, SurfaceDirection, Symmetry, SyncPolicy,
+    ParametricDirection, Ply, Pose, Probe, ProbeKind, ProfilePiece, Quadrature, Reaction, Region, Scene, Seam,
+    SectionTurns, Sense, Shell, ShellEdge, Solver, Splitting, Stage, Strengths, Support, SurfaceDirection, Symmetry,
+    SyncPolicy,
 };
 pub use difference::Difference;
 pub(crate) use difference::shown_values;

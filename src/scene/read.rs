@@ -14,6 +14,9 @@ use super::value::{as_float, integer_value, value_type};
 use super::{regions, stage_order};
 use crate::printable::breaks_a_line;
 
+/// Most inline tables of a value: pairs of them are compared.
+const MOST_TABLES: usize = 1000;
+
 /// An item of a value, and the key and entry that it belongs to.
 struct Item<'d, 't> {
     key: &'static Key,
@@ -40,6 +43,7 @@ pub(super) fn value(key: &'static Key, entry: &Entry<'_>) -> Checked<Value> {
             let rows = item.items(Length::Any)?;
             rows.iter().map(|row| row.numbers(Length::Exactly(*length), &Limits::ANY)).collect()
         }
+        Kind::Tables => item.tables(),
         Kind::Vector if item.is_list() => item.numbers(Length::Exactly(3), &Limits::ANY),
         Kind::Vector => item.number(&Limits::ANY),
         Kind::Count(limits) => item.whole(limits).map(Value::from),
@@ -82,6 +86,16 @@ impl<'d, 't> Item<'d, 't> {
         match length {
             Length::Exactly(length) if items.len() != length => Err(self.wrong_length(items.len())),
             _ => Ok(items.iter().map(|value| Item { value, ..*self }).collect()),
+        }
+    }
+
+    /// Nothing yet, if it is a list of inline tables: what they hold is read as tables are.
+    fn tables(&self) -> Checked<Value> {
+        let items = self.items(Length::Any)?;
+        match items.iter().find(|item| item.value.get_ref().as_table().is_none()) {
+            _ if items.is_empty() || items.len() > MOST_TABLES => Err(self.wrong_length(items.len())),
+            Some(other) => Err(other.wrong_type()),
+            None => Ok(Value::Null),
         }
     }
 

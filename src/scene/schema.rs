@@ -99,6 +99,9 @@ fn of_key(key: &Key) -> Value {
     let mut schema = of_values(&key.kind);
     schema["description"] = json!(format!("{} {}", key.meaning, key.presence.words()));
     schema["examples"] = json!([as_json(key.example)]);
+    if let Some(section) = key.items {
+        schema["items"] = of_table(section);
+    }
     if let Presence::Default(text) = key.presence {
         schema["default"] = as_json(text);
     }
@@ -122,6 +125,7 @@ fn of_values(kind: &Kind) -> Value {
         Kind::NumberOr(word) => either(within("number", &Limits::ANY), json!({ "const": word })),
         Kind::Numbers(length, limits) => list(*length, within("number", limits)),
         Kind::Rows(length) => list(Length::Any, list(Length::Exactly(*length), within("number", &Limits::ANY))),
+        Kind::Tables => json!({ "type": "array", "minItems": 1 }),
         Kind::Vector => {
             let number = within("number", &Limits::ANY);
             either(list(Length::Exactly(3), number.clone()), number)

@@ -7,10 +7,10 @@ use serde_json::{Map, Value};
 
 use super::document::{Document, Written};
 use super::entry::Entry;
-use super::fault::{CheckedWhole, Fault, TextSpan};
+use super::fault::{Checked, CheckedWhole, Fault, TextSpan};
 use super::keys::{Key, Presence, Section};
 use super::problem::Problem;
-use super::read;
+use super::{names, read};
 
 /// The content of one table.
 pub(super) struct Table {
@@ -51,7 +51,7 @@ impl Table {
         let mut take = |table: &mut Self, key: &'static Key| match table.take(document, key, written) {
             Ok(()) => true,
             Err(fault) => {
-                let fault = fault.in_item(section.many.then(|| table.title.clone()));
+                let fault = if section.many { fault.in_item(Some(table.title.clone())) } else { fault };
                 let means_it = |wrong: &Fault| wrong.item == fault.item && wrong.problem.meant() == Some(key.path());
                 let is_told = matches!(fault.problem, Problem::MissingKey { .. }) && wrong_names.iter().any(means_it);
                 faults.extend((!is_told).then_some(*fault));
@@ -86,7 +86,7 @@ impl Table {
                 let items = given.value.get_ref().as_array().into_iter().flatten();
                 let items = items.map(|item| given.place_of(item.span())).collect();
                 self.places.insert(key.name, (given.value_place(), items));
-                read::value(key, given)?
+                value(key, given)?
             }
             (None, Presence::Default(text)) => match Entry::of_default(key, text) {
                 Ok(entry) => read::value(key, &entry)?,
@@ -148,6 +148,31 @@ impl Table {
     pub fn wrong_at(&self, name: &str, problem: impl Into<String>, remedy: impl Into<String>) -> Box<Fault> {
         self.wrong(self.place_of(name).as_ref(), problem, remedy)
     }
+}
+
+/// The value of an entry; a list of inline tables is read as tables of a scene file are, and of what is wrong the first is told.
+fn value(key: &'static Key, entry: &Entry<'_>) -> Checked<Value> {
+    let value = read::value(key, entry)?;
+    let Some(section) = key.items else { return Ok(value) };
+    let items = entry.value.get_ref().as_array().into_iter().flatten().enumerate();
+    let written = items.filter_map(|(index, item)| {
+        let table = item.get_ref().as_table()?.clone();
+        Some(Written::inline(section, index + 1, entry.place_of(item.span()), table, &entry.base))
+    });
+    let document = Document::of_inline(std::slice::from_ref(section), written.collect());
+    if let Some(wrong_name) = names::check(&document).into_iter().next() {
+        return Err(Box::new(wrong_name));
+    }
+    let mut values = Vec::new();
+    for written in &document.tables {
+        match Table::read(&document, section, Some(written), &[]) {
+            Ok(table) => values.push(Value::Object(table.values)),
+            Err(faults) => {
+                return Err(faults.into_iter().next().map_or_else(|| missing(&document, key, None), Box::new));
+            }
+        }
+    }
+    Ok(values.into())
 }
 
 /// Values by key as the data of a scene, which have fields of the same names.

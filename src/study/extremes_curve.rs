@@ -91,7 +91,7 @@ pub(super) fn nudged(scene: &Scene) -> Scene {
         Geometry::TapeSpring { radius_mm, .. }
         | Geometry::CylinderPanel { radius_mm, .. }
         | Geometry::SphereZone { radius_mm, .. } => Some(radius_mm),
-        Geometry::Plate { length_mm, .. } => Some(length_mm),
+        Geometry::Plate { length_mm, .. } | Geometry::Profile { length_mm, .. } => Some(length_mm),
         Geometry::Annulus { outer_radius_mm, .. } => Some(outer_radius_mm),
         Geometry::Nurbs(patch) => {
             patch.control_points_mm.iter_mut().flatten().max_by(|a, b| a.abs().total_cmp(&b.abs()))

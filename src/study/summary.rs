@@ -1,7 +1,7 @@
 //! The summary of a run: what it found, compared with theory, and what it cost.
 
 use crate::record::{Outcome, Parameter, Reading, Record, Warning};
-use crate::scene::{Geometry, Scene, Stage};
+use crate::scene::{Geometry, ProfilePiece, Scene, Stage};
 use crate::spline::Elements;
 use crate::study::{Passed, PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
 use crate::units::{rounded, significant};
@@ -240,6 +240,11 @@ fn shell_in_words(scene: &Scene) -> String {
         Geometry::SphereZone { radius_mm, latitude_deg, arc_deg, .. } => {
             let [from, to, arc] = [latitude_deg[0], latitude_deg[1], *arc_deg].map(rounded);
             format!("sphere zone, R {} mm, latitudes {from}° to {to}°, arc {arc}°", mm(*radius_mm))
+        }
+        Geometry::Profile { length_mm, profile, .. } => {
+            let across: f64 = profile.iter().map(ProfilePiece::length_mm).sum();
+            let pieces = if profile.len() == 1 { "1 piece".into() } else { format!("{} pieces", profile.len()) };
+            format!("profile of {pieces}, L {} mm, {} mm across", mm(*length_mm), mm(across))
         }
         Geometry::Nurbs(_) => "NURBS surface".into(),
     };

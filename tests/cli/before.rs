@@ -115,7 +115,7 @@ fn a_support_that_does_not_hold_is_shown_with_its_lines() {
 #[test]
 fn new_scenes_are_checked_and_run_as_they_are() {
     let place = Sandbox::new();
-    for kind in ["tape-spring", "plate", "panel", "annulus", "sphere", "nurbs", "laminate"] {
+    for kind in ["tape-spring", "plate", "panel", "annulus", "sphere", "profile", "nurbs", "laminate"] {
         place.foldline(&format!("new {kind}")).ends(0).says(&[&format!("foldline run {kind}.toml")]);
         let text = String::from_utf8(place.read(&format!("{kind}.toml"))).unwrap();
         assert!(text.starts_with("# ") && text.matches("# ").count() >= 3, "{text}");

@@ -590,6 +590,47 @@ fn nurbs() {
     assert!(parse(&GENERAL.replace(PLATE, &surface(TWO_SPANS, "")), "scene.toml").is_ok());
 }
 
+/// Profiles: wrong names, units and values of pieces, arcs that are no arcs, and profiles that meet themselves.
+#[test]
+fn profiles() {
+    let profile = |pieces: &str| format!("kind = \"profile\"\nlength_mm = 300.0\nprofile = {pieces}");
+    const FLANGE: &str = "[{ line_mm = 8.0 }, { arc_deg = 105.0, radius_mm = 10.6 }]";
+    assert!(parse(&GENERAL.replace(PLATE, &profile(FLANGE)), "scene.toml").is_ok());
+    let wrong = [
+        profile("[]"),
+        profile("8.0"),
+        profile("[8.0, { arc_deg = 105.0, radius_mm = 10.6 }]"),
+        profile("[{ }]"),
+        profile("[{ line_mm = 0.0 }, { arc_deg = 105.0, radius_mm = 10.6 }]"),
+        profile("[{ line_mm = -8.0 }]"),
+        profile("[{ line_m = 0.008 }, { arc_deg = 105.0, radius_mm = 10.6 }]"),
+        profile("[{ line_mm = \"8 mm\" }]"),
+        profile("[{ lien_mm = 8.0 }]"),
+        profile("[{ line_mm = 8.0 }, { arc_deg = 105.0 }]"),
+        profile("[{ line_mm = 8.0 }, { radius_mm = 10.6 }]"),
+        profile("[{ line_mm = 8.0, arc_deg = 105.0, radius_mm = 10.6 }]"),
+        profile("[{ line_mm = 8.0 }, { arc_deg = 0.0, radius_mm = 10.6 }]"),
+        profile("[{ line_mm = 8.0 }, { arc_deg = -400.0, radius_mm = 10.6 }]"),
+        profile("[{ line_mm = 8.0 }, { arc_rad = 1.8, radius_mm = 10.6 }]"),
+        profile("[{ line_mm = 8.0 }, { arc_deg = nan, radius_mm = 10.6 }]"),
+        profile("[{ line_mm = 8.0 }, { arc_deg = 105.0, radius_mm = 0.05 }]"),
+        profile("[{ arc_deg = 180.0, radius_mm = 4.0 }, { arc_deg = 180.0, radius_mm = 4.0 }]"),
+        profile("[{ line_mm = 20.0 }, { arc_deg = 270.0, radius_mm = 4.0 }, { line_mm = 10.0 }]"),
+        profile("[{ arc_deg = 200.0, radius_mm = 4.0 }, { arc_deg = 200.0, radius_mm = 4.0 }]"),
+        format!("{}\nstart_mm = [0.0, 1.0, 2.0]", profile(FLANGE)),
+        format!("{}\ndirection_rad = 1.5", profile(FLANGE)),
+        format!("{}\nradius_mm = 10.0", profile(FLANGE)),
+        "kind = \"profile\"\nlength_mm = 300.0".to_owned(),
+    ];
+    let slips: Vec<(&str, &str)> = wrong.iter().map(|text| (PLATE, text.as_str())).collect();
+    let flange = GENERAL.replace(PLATE, &profile(FLANGE));
+    let radial = flange.replacen("component = \"z\"", "component = \"radial\"", 1);
+    let in_setting = parse_with_settings(&flange, "scene.toml", &["geometry.profile=[{line_mm=8}, {lin_mm=2}]"]);
+    let errors = [parse(&radial, "scene.toml").unwrap_err(), in_setting.unwrap_err()];
+    let others = errors.map(|error| report(&error)).join("\n");
+    pin("profiles", &format!("{}\n{others}", general_errors(&slips)));
+}
+
 /// Keys of another kind, keys that stand in the place of others, a spring without a middle.
 #[test]
 fn another_kind_is_meant() {

@@ -91,6 +91,11 @@ fn arcs(geometry: &Geometry) -> Option<String> {
         Geometry::SphereZone { latitude_deg: [from, to], arc_deg, .. } => {
             vec![("arc", *arc_deg), ("range of latitudes", to - from)]
         }
+        // A profile may have short arcs; where its widest is one, all are.
+        Geometry::Profile { profile, .. } => {
+            let widest = profile.iter().map(|piece| piece.turn_deg().abs()).fold(0.0, f64::max);
+            if widest > 0.0 { vec![("widest arc", widest)] } else { vec![] }
+        }
         Geometry::Plate { .. } | Geometry::Nurbs(_) => vec![],
     };
     let is_odd = |arc_deg: f64| arc_deg < LEAST_ARC_DEG || (arc_deg - TAU).abs() < 0.01;

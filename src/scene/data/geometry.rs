@@ -71,6 +71,19 @@ pub enum Geometry {
         #[serde(skip_serializing_if = "Option::is_none")]
         seam: Option<Seam>,
     },
+    /// Cylinder over a profile of straight pieces and arcs in the y-z plane whose tangent is continuous. u runs along x
+    /// from 0, v along the profile; the normal is on the left of the profile as seen with y to the right and z up, so that
+    /// a profile towards +y has it on +z. An arc of a positive angle turns to that side.
+    Profile {
+        /// Length along x.
+        length_mm: f64,
+        /// Its pieces, in order; at least one.
+        profile: Vec<ProfilePiece>,
+        /// y and z of the start of the profile.
+        start_mm: [f64; 2],
+        /// Direction of the profile at its start, from +y towards +z.
+        direction_deg: f64,
+    },
     /// Any surface of one patch.
     Nurbs(NurbsPatch),
 }
@@ -84,6 +97,7 @@ impl Geometry {
             Geometry::Plate { .. } => "plate",
             Geometry::Annulus { .. } => "annulus",
             Geometry::SphereZone { .. } => "sphere-zone",
+            Geometry::Profile { .. } => "profile",
             Geometry::Nurbs(_) => "nurbs",
         }
     }
@@ -95,7 +109,7 @@ impl Geometry {
             | Geometry::Annulus { seam, .. }
             | Geometry::SphereZone { seam, .. }
             | Geometry::Nurbs(NurbsPatch { seam, .. }) => *seam,
-            Geometry::TapeSpring { .. } | Geometry::Plate { .. } => None,
+            Geometry::TapeSpring { .. } | Geometry::Plate { .. } | Geometry::Profile { .. } => None,
         }
     }
 
@@ -106,7 +120,7 @@ impl Geometry {
             Geometry::TapeSpring { .. } | Geometry::CylinderPanel { .. } => Some([0.0, y, z]),
             Geometry::Annulus { .. } => Some([x, y, 0.0]),
             Geometry::SphereZone { .. } => Some([x, y, z]),
-            Geometry::Plate { .. } | Geometry::Nurbs(_) => None,
+            Geometry::Plate { .. } | Geometry::Profile { .. } | Geometry::Nurbs(_) => None,
         }
     }
 }
@@ -137,4 +151,40 @@ pub struct NurbsPatch {
     /// What the surface does where opposite edges coincide; given exactly where some do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seam: Option<Seam>,
+}
+
+/// A piece of a profile.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ProfilePiece {
+    /// A straight line in the direction that the profile has.
+    Line {
+        /// Its length.
+        line_mm: f64,
+    },
+    /// An arc that begins in the direction that the profile has.
+    Arc {
+        /// Its angle: positive to the left, the side of the normal, and negative to the right.
+        arc_deg: f64,
+        /// Its radius.
+        radius_mm: f64,
+    },
+}
+
+impl ProfilePiece {
+    /// Length along the piece, mm.
+    pub fn length_mm(&self) -> f64 {
+        match self {
+            Self::Line { line_mm } => *line_mm,
+            Self::Arc { arc_deg, radius_mm } => radius_mm * arc_deg.abs().to_radians(),
+        }
+    }
+
+    /// Angle by which it turns, degrees.
+    pub fn turn_deg(&self) -> f64 {
+        match self {
+            Self::Line { .. } => 0.0,
+            Self::Arc { arc_deg, .. } => *arc_deg,
+        }
+    }
 }

@@ -25,7 +25,7 @@ pub use boundary::{
 };
 pub use connection::{Bond, Joint, JointKind, ShellEdge};
 pub use expectation::{Expectation, ExpectedOutcome};
-pub use geometry::{Geometry, NurbsPatch, Seam};
+pub use geometry::{Geometry, NurbsPatch, ProfilePiece, Seam};
 pub use material::{Material, OrthotropicLaw, Ply, Strengths};
 pub use output::{NumbersIn, Output, SyncPolicy};
 pub use probe::{Axis, Component, Probe, ProbeKind, Reaction};

@@ -1,7 +1,7 @@
 //! Keys of `[geometry]`.
 
-use crate::scene::keys::Presence::{Follows, Unless};
-use crate::scene::keys::{Key, Kind, Length, Limit, Limits, choice};
+use crate::scene::keys::Presence::{Default, Follows, Unless};
+use crate::scene::keys::{Key, Kind, Length, Limit, Limits, Section, choice};
 
 /// A length of the shell: positive, and no more than a kilometre.
 pub(super) const SHELL_LENGTH: Limits = Limits {
@@ -12,6 +12,7 @@ pub(super) const SHELL_LENGTH: Limits = Limits {
 /// Kinds that may close in a full turn.
 const ROUND: &[&str] = &["cylinder-panel", "annulus", "sphere-zone"];
 const NURBS: &[&str] = &["nurbs"];
+const PROFILE: &[&str] = &["profile"];
 
 const fn geometry(name: &'static str, kind: Kind, example: &'static str) -> Key {
     Key::new("geometry", name, kind, example)
@@ -37,6 +38,12 @@ pub(super) static GEOMETRY: &[Key] = &[
              axis; v along the latitude towards +z; n outwards",
         ),
         choice(
+            "profile",
+            "cylinder over straight pieces and arcs in the y-z plane that go on in each other's direction: u along x from 0, v along \
+             the profile; n on its left, seen with y to the right and z up (on +z where it runs towards +y); mesh.elements are \
+             shared out over the pieces by their lengths, at least one for each, and more for an arc beyond 150 degrees",
+        ),
+        choice(
             "nurbs",
             "any smooth surface of one patch, without folds and poles; mesh.elements are shared out over the spans between \
              its knots by their lengths, at least one for each",
@@ -45,7 +52,7 @@ pub(super) static GEOMETRY: &[Key] = &[
         .means("Shape of the shell.")
         .also_called(&["type", "shape"]),
     geometry("length_mm", Kind::Number(SHELL_LENGTH), "300.0")
-        .of(&["tape-spring", "plate", "cylinder-panel"])
+        .of(&["tape-spring", "plate", "cylinder-panel", "profile"])
         .means("Length along the axis, or along x.")
         .also_called(&["l"]),
     geometry("width_mm", Kind::Number(SHELL_LENGTH), "50.0")
@@ -93,6 +100,27 @@ pub(super) static GEOMETRY: &[Key] = &[
         .means("Where the arc starts: from the top towards +y, or from the +x axis counterclockwise.")
         .or(Follows("half an arc before the top of a cylinder panel, and else 0.0"))
         .also_called(&["start_deg"]),
+    geometry("profile", Kind::Tables, "[{ line_mm = 8.0 }, { arc_deg = 105.0, radius_mm = 10.6 }]")
+        .list_of(&PIECE)
+        .of(PROFILE)
+        .means(
+            "The profile, piece by piece: { line_mm = 8.0 } goes straight on, { arc_deg = 105.0, radius_mm = 10.6 } turns to the \
+             left, the side of n, and an arc of a negative angle to the right. Fractions of v are those of its length.",
+        )
+        .also_called(&["pieces", "section", "cross_section"]),
+    geometry("start_mm", Kind::Numbers(Length::Exactly(2), Limits::ANY), "[0.0, -8.0]")
+        .of(PROFILE)
+        .means("y and z where the profile starts.")
+        .or(Default("[0.0, 0.0]"))
+        .also_called(&["origin", "from"]),
+    geometry("direction_deg", Kind::Number(Limits {
+        low: Limit::included(-360.0, "a direction is within a turn"),
+        high: Limit::included(360.0, "a direction is within a turn"),
+    }), "90.0")
+        .of(PROFILE)
+        .means("Direction of the profile at its start, from +y towards +z.")
+        .or(Default("0.0"))
+        .also_called(&["heading", "start_direction"]),
     geometry("degrees", Kind::Pair(Limits {
         low: Limit::included(1.0, "a surface of degree 0 falls apart"),
         high: Limit::included(5.0, "write a surface of a higher degree as one of degree 5 or less"),
@@ -143,3 +171,36 @@ const ANGLES: &[&str] = &["alpha", "α", "angle", "angle_deg", "arc_angle", "arc
 
 /// Why no pole belongs to a zone.
 const POLE: &str = "at a pole (90 degrees) an edge would collapse to a point; leave a small hole";
+
+const fn piece(name: &'static str, kind: Kind, example: &'static str) -> Key {
+    Key::new("geometry.profile", name, kind, example)
+}
+
+/// A piece of a profile.
+static PIECE: Section = Section {
+    name: "geometry.profile",
+    many: true,
+    required: true,
+    meaning: "A piece of the profile: a straight line or an arc.",
+    keys: &[
+        piece(
+            "arc_deg",
+            Kind::Number(Limits {
+                low: Limit::excluded(-360.0, "at a full turn the profile meets itself"),
+                high: Limit::excluded(360.0, "at a full turn the profile meets itself"),
+            }),
+            "105.0",
+        )
+        .means("Angle of an arc: positive to the left, the side of n, negative to the right.")
+        .or(Unless("line_mm"))
+        .also_called(ANGLES),
+        piece("radius_mm", Kind::Number(SHELL_LENGTH), "10.6")
+            .means("Radius of an arc.")
+            .or(Unless("line_mm"))
+            .also_called(&["r"]),
+        piece("line_mm", Kind::Number(SHELL_LENGTH), "8.0")
+            .means("Length of a straight piece.")
+            .or(Unless("arc_deg"))
+            .also_called(&["length", "l", "straight"]),
+    ],
+};

@@ -333,7 +333,7 @@ const NORMAL: Choice = choice(
 );
 const RADIAL: Choice = choice(
     "radial",
-    "away from the axis of a cylinder panel (x) or an annulus (z), or from the centre of a sphere zone; plate and nurbs have \
+    "away from the axis of a cylinder panel (x) or an annulus (z), or from the centre of a sphere zone; plate, profile and nurbs have \
      none",
 );
 const FREE: &str = "this component is free";

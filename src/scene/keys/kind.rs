@@ -20,6 +20,8 @@ pub enum Kind {
     Numbers(Length, Limits),
     /// A list of lists of this many finite numbers.
     Rows(usize),
+    /// A list of inline tables; what they have is in the key.
+    Tables,
     /// Components in x, y, z, or a size for the direction of the key `along`.
     Vector,
     /// A whole number.
@@ -61,6 +63,7 @@ impl Kind {
             Kind::Numbers(Length::Exactly(length), limits) => format!("a list of {length} numbers{}", each(limits)),
             Kind::Numbers(Length::Any, limits) => format!("a list of numbers{}", each(limits)),
             Kind::Rows(length) => format!("a list of lists of {length} numbers{}", within(&Limits::ANY)),
+            Kind::Tables => "a list of one or more tables in braces".into(),
             Kind::Vector => {
                 format!("a list of 3 numbers{0}, or one number{0} together with `along`", within(&Limits::ANY))
             }

@@ -77,6 +77,8 @@ pub struct Key {
     pub unit: Unit,
     /// Type and limits of its value.
     pub kind: Kind,
+    /// Where its value is a list of inline tables, what those are.
+    pub items: Option<&'static Section>,
     /// What holds where it is missing.
     pub presence: Presence,
     /// How far a change of it reaches into a run.
@@ -96,12 +98,17 @@ impl Key {
     pub(super) const fn new(section: &'static str, name: &'static str, kind: Kind, example: &'static str) -> Self {
         let (presence, reach) = (Presence::Required, Reach::Everything);
         let unit = Unit::of_name(name);
-        Self { section, kinds: &[], name, unit, kind, presence, reach, meaning: "", example, aliases: &[] }
+        Self { section, kinds: &[], name, unit, kind, items: None, presence, reach, meaning: "", example, aliases: &[] }
     }
 
     /// Its meaning.
     pub(super) const fn means(self, meaning: &'static str) -> Self {
         Self { meaning, ..self }
+    }
+
+    /// A list of inline tables like this one.
+    pub(super) const fn list_of(self, items: &'static Section) -> Self {
+        Self { items: Some(items), ..self }
     }
 
     /// Of tables of these kinds alone.
