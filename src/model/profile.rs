@@ -93,7 +93,7 @@ fn placed(piece: &ProfilePiece, [y, z]: [f64; 2], heading_deg: f64, degree: usiz
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{parameters_of, starting_mesh};
+    use crate::model::{parameters_of, starting_patch};
     use crate::scene::{Geometry, parse};
     use crate::shell::{cross, dot, norm};
     use crate::spline::mid_surface_point;
@@ -143,7 +143,7 @@ mod tests {
             let (start_mm, direction_deg) = ([-3.0, 5.0], -37.0);
             scene.geometry = Geometry::Profile { length_mm: 40.0, profile: profile.clone(), start_mm, direction_deg };
             scene.mesh.degree = [degree; 2];
-            let mesh = starting_mesh(&scene).unwrap();
+            let mesh = starting_patch(&scene).unwrap();
             assert_eq!(mesh.element_counts(), [3, 13]);
             let whole: f64 = profile.iter().map(ProfilePiece::length_mm).sum();
             for k in 0..=200 {

@@ -223,3 +223,33 @@ fn group_tangent<L: PointLaw>(points: &[CoupledPoint<L>], displacement: &[[f64; 
     }
     slopes
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// Checks gradient and Hessian of a law by finite differences, and that a rigid motion of both surfaces costs nothing.
+    pub fn check(law: &impl PointLaw, sides: &[Local; 2], size: f64) {
+        let step = 1e-6;
+        let moved = |p: usize, by: f64| {
+            let mut moved = *sides;
+            moved[p / LOCAL][p % LOCAL / 3][p % 3] += by;
+            moved
+        };
+        let derivatives = |sides: &[Local; 2]| {
+            let mut sums = Derivatives::zero();
+            law.add_derivatives(sides, &mut sums);
+            sums
+        };
+        let here = derivatives(sides);
+        for p in 0..2 * LOCAL {
+            let slope = (law.energy(&moved(p, step)) - law.energy(&moved(p, -step))) / (2.0 * step);
+            assert!((slope - here.gradient[p]).abs() < 1e-7 * size, "{p}: {slope} {}", here.gradient[p]);
+            let (after, before) = (derivatives(&moved(p, step)), derivatives(&moved(p, -step)));
+            for q in 0..2 * LOCAL {
+                let bend = (after.gradient[q] - before.gradient[q]) / (2.0 * step);
+                assert!((bend - here.hessian[p][q]).abs() < 1e-6 * size, "{p} {q}: {bend} {}", here.hessian[p][q]);
+            }
+        }
+    }
+}

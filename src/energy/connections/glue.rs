@@ -78,3 +78,44 @@ impl PointLaw for Glue {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::connections::coupled::tests::check;
+    use crate::shell::cross;
+
+    const SIDES: [Local; 2] = [
+        [[0.02, -0.01, 0.03], [1.1, 0.1, 0.05], [0.1, 0.9, -0.1]],
+        [[0.01, 0.02, -0.02], [1.05, 0.15, 0.0], [0.05, -1.0, 0.1]],
+    ];
+
+    fn law() -> Glue {
+        let flat = Glue { stiffness: 4.0, to_faces: [0.3, 0.2], gap: [0.02, -0.03, 0.05], at_rest: [0.0; 3] };
+        let at_rest = [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0; 3], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]];
+        Glue { at_rest: flat.across(&at_rest), ..flat }
+    }
+
+    #[test]
+    fn the_energy_of_a_layer_has_these_derivatives() {
+        check(&law(), &SIDES, 10.0);
+    }
+
+    /// Turned as one body about the origin, with a point 7 mm away, the layer is not stretched, whatever gap it had.
+    #[test]
+    fn a_rigid_motion_does_not_stretch_a_layer() {
+        let (sin, cos) = 0.7_f64.sin_cos();
+        let turn = |[x, y, z]: [f64; 3]| [cos * x + sin * z, y, cos * z - sin * x];
+        let rest = [[[7.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[7.02, 0.97, 0.55], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]];
+        let flat = Glue { stiffness: 1.0, to_faces: [0.3, 0.2], gap: [0.0; 3], at_rest: [0.0; 3] };
+        let undeformed = rest.map(|[_, a1, a2]: Local| [[0.0; 3], a1, a2]);
+        let [x, y] = [rest[0][0], rest[1][0]];
+        let gap = add(sub(x, y), flat.across(&undeformed));
+        let normal = cross(rest[0][1], rest[0][2]);
+        let law = Glue { gap: [gap[0], gap[1], dot(gap, normal)], ..flat };
+        let law = Glue { at_rest: law.across(&undeformed), ..law };
+        let moved = rest.map(|[x, a1, a2]| [sub(turn(x), x), turn(a1), turn(a2)]);
+        assert!(law.energy(&moved) < 1e-30, "{:e}", law.energy(&moved));
+        assert!(law.energy(&undeformed) < 1e-30);
+    }
+}

@@ -97,3 +97,38 @@ fn add_product(sums: &mut Derivatives, alpha: f64, one: &FrameVector, other: &Fr
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::connections::coupled::tests::check;
+
+    /// Two surfaces at 70 degrees along an edge, moved and turned against each other.
+    fn sides() -> [Local; 2] {
+        let (sin, cos) = 70_f64.to_radians().sin_cos();
+        [
+            [[0.02, -0.01, 0.03], [1.1, 0.1, 0.05], [0.1, 0.9, -0.1]],
+            [[0.01, 0.02, -0.02], [1.05, 0.15, 0.0], [0.05, 0.9 * cos + 0.1, 0.9 * sin]],
+        ]
+    }
+
+    #[test]
+    fn the_energy_of_a_joint_has_these_derivatives() {
+        for running in [0, 1] {
+            let angle = [0.3, -0.9];
+            check(&KeptAngle { running, rotation: 3.0, displacement: 5.0, angle }, &sides(), 10.0);
+        }
+    }
+
+    #[test]
+    fn an_angle_that_opens_is_told() {
+        let turned = |angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0; 3], [1.0, 0.0, 0.0], [0.0, cos, sin]]]
+        };
+        let law = KeptAngle { running: 0, rotation: 1.0, displacement: 0.0, angle: KeptAngle::angle_of(&turned(2.5), 0) };
+        assert_eq!(law.energy(&turned(2.5)), 0.0);
+        assert!((law.opened(&turned(2.6)).abs() - 0.1).abs() < 1e-14);
+        assert!((law.energy(&turned(2.6)) - (1.0 - 0.1_f64.cos())).abs() < 1e-14, "4 sin²(φ/2)/2");
+    }
+}
