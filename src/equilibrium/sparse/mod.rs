@@ -9,17 +9,23 @@
 //! | `structure` | which unknowns meet; what a factorization returns |
 //! | `envelope` | how far rows reach, and where to cut |
 //! | `chain`, `strips`, `strip_kernel` | rows in strips: their arrangement, the solver, its loops |
-//! | `supernodal` | any structure |
+//! | `graph`, `separator`, `dissection` | an order of elimination for any structure, by nested dissection |
+//! | `fronts`, `supernodal`, `dense` | any structure: its dense blocks, the solver, its products |
 
 mod chain;
+mod dense;
+mod dissection;
 mod envelope;
+mod fronts;
+mod graph;
+mod separator;
 mod strip_kernel;
 mod strips;
 mod structure;
 mod supernodal;
 
+pub use dense::DenseProduct;
 pub use structure::{Couplings, FactorError, NegativePivots};
-pub use supernodal::DenseProduct;
 
 use crate::energy::Build;
 use strips::StripSolver;
@@ -38,7 +44,7 @@ const STRIPS_PAY: f64 = 1.5;
 pub enum SparseSolver {
     /// Stores rows of the envelope in strips, eliminated from both ends.
     Strips(StripSolver),
-    /// Stores a factor in supernodes, for any structure.
+    /// Stores a factor in dense blocks of columns, for any structure.
     Supernodal(SupernodalSolver),
 }
 
@@ -53,8 +59,7 @@ impl SparseSolver {
         let solver = match strips.flops() < WORTH_ASKING_FLOPS {
             true => Self::Strips(strips.with_room()?),
             false => match SupernodalSolver::structure(couplings) {
-                Ok(other) if strips.flops() > STRIPS_PAY * other.flops() => Self::Supernodal(other.with_room()?),
-                // Where the analysis itself does not fit in memory, strips may.
+                other if strips.flops() > STRIPS_PAY * other.flops() => Self::Supernodal(other.with_room()?),
                 _ => Self::Strips(strips.with_room()?),
             },
         };
@@ -65,9 +70,11 @@ impl SparseSolver {
     }
 
     /// Creates the solver for any structure, whatever this one would be best served by.
-    #[cfg(test)]
+    ///
+    /// # Errors
+    /// Where the factor does not fit in memory.
     pub fn supernodal(couplings: &Couplings) -> Result<Self, FactorError> {
-        SupernodalSolver::structure(couplings)?.with_room().map(Self::Supernodal)
+        SupernodalSolver::structure(couplings).with_room().map(Self::Supernodal)
     }
 
     /// Number of values that a matrix takes: fewer than 2³².
@@ -156,7 +163,7 @@ impl SparseSolver {
     pub fn most_threads(&self) -> usize {
         match self {
             Self::Strips(solver) => solver.most_threads(),
-            Self::Supernodal(_) => 1,
+            Self::Supernodal(solver) => solver.most_threads(),
         }
     }
 
