@@ -2,7 +2,7 @@
 //! elimination, and so on in either part (George, *SIAM J. Numer. Anal.* 10, 1973, p. 345; Lipton, Rose & Tarjan, ibid. 16,
 //! 1979, p. 346). On a surface of n vertices the factor has O(n log n) numbers and takes O(n^1.5) operations.
 
-use crate::equilibrium::sparse::graph::Graph;
+use crate::equilibrium::sparse::graph::{Graph, OUTSIDE};
 use crate::equilibrium::sparse::separator::separate;
 
 /// Number of unknowns up to which a part is eliminated as one dense block. On 128 × 64 cubic elements, of 60, 100, 150 and
@@ -35,7 +35,7 @@ fn components(graph: &Graph, names: &[u32]) -> Vec<Block> {
     if components.len() == 1 {
         return vec![connected(graph, names)];
     }
-    let mut renamed = vec![0; graph.len()];
+    let mut renamed = vec![OUTSIDE; graph.len()];
     let one = |vertices: &Vec<u32>| connected(&graph.part(vertices, &mut renamed), &named(vertices, names));
     components.iter().map(one).collect()
 }
@@ -59,7 +59,7 @@ fn connected(graph: &Graph, names: &[u32]) -> Block {
     };
     let [one, other, separator] = [of_side(0), of_side(1), of_side(2)];
     let below = |vertices: Vec<u32>| {
-        let part = graph.part(&vertices, &mut vec![0; graph.len()]);
+        let part = graph.part(&vertices, &mut vec![OUTSIDE; graph.len()]);
         components(&part, &named(&vertices, names))
     };
     let (mut one, other) = match graph.len() > SHARED {

@@ -98,11 +98,9 @@ impl Graph {
         self.weights.iter().map(|weight| *weight as usize).sum()
     }
 
-    /// The graph of some vertices, ascending, which are numbered anew in their order. `renamed` is room for as many numbers
-    /// as this graph has vertices.
+    /// The graph of some vertices, ascending, which are numbered anew in their order. `renamed` is [`OUTSIDE`] for each
+    /// vertex of this graph, before and after.
     pub fn part(&self, vertices: &[u32], renamed: &mut [u32]) -> Self {
-        const OUTSIDE: u32 = u32::MAX;
-        renamed.fill(OUTSIDE);
         for (new, vertex) in vertices.iter().enumerate() {
             renamed[*vertex as usize] = new as u32;
         }
@@ -113,6 +111,7 @@ impl Graph {
             part.starts.push(part.neighbours.len() as u32);
             part.weights.push(self.weights[*vertex as usize]);
         }
+        vertices.iter().for_each(|vertex| renamed[*vertex as usize] = OUTSIDE);
         part
     }
 
@@ -163,3 +162,5 @@ impl Graph {
 
 /// Distance of vertices to which there is no way.
 pub(super) const FAR: u32 = u32::MAX;
+/// Number of a vertex that is not in a part of the graph.
+pub(super) const OUTSIDE: u32 = u32::MAX;
