@@ -62,7 +62,7 @@ fn coil(material: &Material, with_edges: bool) -> f64 {
 
 /// The radius of the circle through three points of the middle line at fractions of the length of the model.
 fn measured(state: &State, along: [f64; 3], across: f64) -> f64 {
-    let [a, b, c] = along.map(|u| mid_surface_point(&state.mesh, &state.displacement, [u, across]).position);
+    let [a, b, c] = along.map(|u| mid_surface_point(state.mesh.lone(), &state.displacement, [u, across]).position);
     let side = |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
     let [x, y, z] = [side(a, b), side(b, c), side(c, a)];
     let s = (x + y + z) / 2.0;
@@ -130,7 +130,7 @@ fn fold_of_a_cross_ply_spring() {
     near(fold(false), 28.965, 1e-4);
     let state = run(spring.clone()).pop().unwrap().0;
     let radius = measured(&state, [0.9, 0.95, 1.0], 0.0);
-    println!("fold {radius} mm, {} with edges, {} without, {:?}", fold(true), fold(false), state.mesh.element_counts());
+    println!("fold {radius} mm, {} with edges, {} without, {:?}", fold(true), fold(false), state.mesh.elements());
     near(radius, fold(true), 5e-3);
 }
 
