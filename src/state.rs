@@ -1,5 +1,6 @@
 //! What a checkpoint holds: plain data, all that decides the future of a run.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::digest::Feed;
@@ -250,6 +251,24 @@ impl State {
             refinement: None,
             estimate: None,
         }
+    }
+
+    /// The state of one shell of a structure alone; a state of one shell is returned as it is. What it remembers of the way is left
+    /// out.
+    pub fn of_shell(&self, shell: usize) -> Cow<'_, State> {
+        if self.mesh.patches.len() == 1 {
+            return Cow::Borrowed(self);
+        }
+        let displacement = self.displacement[self.mesh.range(shell)].to_vec();
+        let alone = Self::undeformed(self.mesh.patches[shell].clone());
+        Cow::Owned(Self {
+            displacement,
+            step: self.step,
+            stage: self.stage,
+            parameter: self.parameter,
+            turns: self.turns.clone(),
+            ..alone
+        })
     }
 
     /// Content hash of everything that decides the future of a run; independent of how a log encodes the state.

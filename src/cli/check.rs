@@ -107,7 +107,7 @@ fn line<'l>(
     let done = step.as_ref().and_then(|step| step.as_ref().ok());
     Line {
         scene: name,
-        box_mm: size.box_mm,
+        box_mm: size.box_mm(),
         smallest_radius_mm: size.radius_mm,
         thickness_mm: size.thickness_mm,
         youngs_moduli_mpa: size.moduli_mpa,

@@ -49,6 +49,9 @@ pub(super) struct Arguments {
     /// For mcap: when viewers show what a stage did [default: steps]
     #[arg(long, value_name = "TIMES")]
     times: Option<Times>,
+    /// Shell of a structure of several, by its name; exports for viewers (mcap) have all shells
+    #[arg(long, value_name = "NAME")]
+    shell: Option<String>,
     /// Only print which fields there are, with units and meanings
     #[arg(long)]
     list_fields: bool,
@@ -57,14 +60,15 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Writes the files, and names them.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let Self { log, to, output, every, steps, fields, points, times, list_fields } = self;
+        let Self { log, to, output, every, steps, fields, points, times, shell, list_fields } = self;
         let asked = Asked::open(&log)?;
         let (Some(format), false) = (to, list_fields) else { return print(&list_of_fields(&asked.scene)) };
+        let shell = if format == Format::Mcap { 0 } else { chosen_shell(&asked.scene, &log, shell)? };
         if format != Format::Mcap {
             if times.is_some() {
                 return Err(Failure::TimesOfNoViewer);
             }
-            chosen_fields(&asked.scene, &fields)?;
+            chosen_fields(&asked.scene.of_shell(shell), &fields)?;
         }
         let steps = match every {
             Some(n) => Steps::Every(n),
@@ -76,7 +80,7 @@ impl Arguments {
         if let (Target::File(file), true) = (&target, ends.len() > 1 && !format.holds_many_steps()) {
             return Err(Failure::StepsInOneFile { file: file.clone(), steps: ends.len() });
         }
-        let export = Export { asked, log: &log, format, fields: &fields, points, target };
+        let export = Export { asked, log: &log, format, fields: &fields, points, shell, target };
         match format {
             Format::Npz => export.write_arrays(&ends),
             Format::Mcap => export.write_for_viewers(&ends, times.unwrap_or(Times::Steps)),
@@ -92,7 +96,21 @@ struct Export<'a> {
     format: Format,
     fields: &'a [String],
     points: usize,
+    /// The shell that is written, by its place in the scene.
+    shell: usize,
     target: Target,
+}
+
+/// Finds the shell that is to be written; a structure of several has one chosen by name.
+fn chosen_shell(scene: &Scene, log: &Path, name: Option<String>) -> Result<usize, Failure> {
+    let known: Vec<String> = scene.shells.iter().map(|shell| shell.name.clone()).collect();
+    match name {
+        None if known.is_empty() => Ok(0),
+        name => {
+            let found = name.as_ref().and_then(|name| known.iter().position(|known| known == name));
+            found.ok_or_else(|| Failure::NoSuchShell { log: log.to_path_buf(), name, known })
+        }
+    }
 }
 
 impl Export<'_> {
@@ -102,6 +120,7 @@ impl Export<'_> {
         let files = ends.iter().flat_map(|end| self.files_of(end)).chain(self.series_files());
         refuse_what_is_there(&files.collect::<Vec<_>>())?;
         self.each_state(ends, |scene, state, record| {
+            let (scene, state) = (&*scene.of_shell(self.shell), &*state.of_shell(self.shell));
             let contents = self.contents(&WholeShell::new(scene, state), scene, &Instant::of(record))?;
             write(&self.files_of(record).into_iter().zip(contents).collect::<Vec<_>>())
         })?;
@@ -118,6 +137,7 @@ impl Export<'_> {
     fn write_arrays(&self, ends: &[Record]) -> Result<(), Failure> {
         let mut groups: Vec<StatesOnMesh> = Vec::new();
         self.each_state(ends, |scene, state, record| {
+            let (scene, state) = (&*scene.of_shell(self.shell), &*state.of_shell(self.shell));
             let shell = WholeShell::new(scene, state);
             let state = (Instant::of(record), shell.displacement().collect());
             match groups.last_mut().filter(|group| group.mesh == *shell.undeformed()) {

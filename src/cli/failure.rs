@@ -88,6 +88,13 @@ pub(super) enum Failure {
         "these logs have no curve in common, since the ends of some turn and those of others do not: choose one with --x and --y"
     )]
     NoCommonCurve,
+    #[error(
+        "{} has {}; there are {}: choose one with --shell",
+        log.display(),
+        name.as_ref().map_or_else(|| "several shells, and this format takes one".to_owned(), |name| format!("no shell \"{name}\"")),
+        if known.is_empty() { "none with a name".to_owned() } else { known.join(", ") }
+    )]
+    NoSuchShell { log: PathBuf, name: Option<String>, known: Vec<String> },
     #[error("{} has no probe to draw the load factor over: choose a curve with --x and --y", log.display())]
     NoProbe { log: PathBuf },
     #[error(
@@ -234,6 +241,7 @@ impl Failure {
             | Failure::NoCommonCurve
             | Failure::TooManyFrames { .. }
             | Failure::NoProbe { .. }
+            | Failure::NoSuchShell { .. }
             | Failure::StepsInOneFile { .. }
             | Failure::MeshesInOneFile { .. }
             | Failure::FieldsForViewers { .. }

@@ -65,6 +65,11 @@ pub trait Term: Debug + Send + Sync {
     /// would be lost.
     fn add_tangent(&self, _at: At, _tangent: &mut Tangent) {}
 
+    /// Adds to `tangent` what changes in the derivatives of the forces per unit of the parameter, where the shell moves at these rates
+    /// by linear theory and keeps its geometry: the part that the stresses make which the rates cause, and that of loads. A term of
+    /// the caller's own adds none, as by default.
+    fn add_stress_stiffness(&self, _at: At, _rates: &[[f64; 3]], _tangent: &mut Tangent) {}
+
     /// Adds the derivatives of the forces with respect to the parameter where the shell does not move, N.
     fn add_rates(&self, _at: At, _rates: &mut [[f64; 3]]) {}
 
@@ -189,6 +194,25 @@ impl Tangent<'_> {
                 if has_skew && j <= i {
                     skew[3 * d + c] += half;
                 }
+            }
+        }
+    }
+}
+
+impl Tangent<'_> {
+    /// Adds ∂f_i/∂u_j, and for two control points its transpose ∂f_j/∂u_i as well, N/mm: for terms that are symmetric by the way in
+    /// which they are summed up.
+    ///
+    /// # Panics
+    /// Where the control points neither share an element nor are among the term's own [`Term::pairs`].
+    pub(super) fn add_symmetric(&mut self, [i, j]: [usize; 2], slope: [[f64; 3]; 3]) {
+        let Some(block) = self.pattern.block(i.min(j), i.max(j)) else {
+            panic!("the term \"{}\" couples control points {i} and {j}, but does not list the pair", self.term)
+        };
+        let stiffness = self.stiffness.block_mut(block);
+        for c in 0..3 {
+            for d in 0..3 {
+                stiffness[if i <= j { 3 * c + d } else { 3 * d + c }] -= slope[c][d];
             }
         }
     }
@@ -359,6 +383,15 @@ impl Terms {
             Tangent { pattern, stiffness, skew: &mut skew, term: name, symmetry: None }.take(&**term, at);
         }
         skew
+    }
+
+    /// Adds the symmetric part of what stresses add to the tangent per unit of the parameter ([`Term::add_stress_stiffness`]).
+    pub fn add_stress_stiffness(&self, at: At, rates: &[[f64; 3]], pattern: &BlockPattern, stiffness: &mut Blocks) {
+        let mut skew = if self.have_skew() { Blocks::zeros(pattern) } else { Blocks::default() };
+        for Named { name, term } in self.list.iter().filter(|named| named.term.has_tangent()) {
+            let mut tangent = Tangent { pattern, stiffness, skew: &mut skew, term: name, symmetry: None };
+            term.add_stress_stiffness(at, rates, &mut tangent);
+        }
     }
 
     /// Strokes of all actions over a straight motion, N·mm.

@@ -13,9 +13,9 @@ use crate::shell::sub;
 
 /// The equations along a path, in the buffers of a workspace.
 pub(super) struct Equations<'w> {
-    discretization: &'w Discretization,
-    tangent: &'w mut TangentStiffness,
-    assembled: &'w mut Assembled,
+    pub(super) discretization: &'w Discretization,
+    pub(super) tangent: &'w mut TangentStiffness,
+    pub(super) assembled: &'w mut Assembled,
     /// Largest force met before, N.
     largest_force: f64,
     /// Number of negative pivots, where residual, stiffness and factor are already those of the state that is asked for

@@ -17,11 +17,13 @@
 //! | `newton` | equilibrium at a value of the parameter |
 //! | `equations`, `continuation` | equilibrium along a path |
 //! | `stability`, `condition` | the lowest eigenvalue and its mode; the spread of all |
+//! | `buckling` | load factors and modes of linear buckling |
 //! | `linear_release` | energy that a state out of balance releases |
 //! | `solved`, `solve_error` | the result of a solve, and why there is none |
 //! | `timing` | the parts of an iteration one by one |
 
 mod assembly;
+mod buckling;
 mod condition;
 mod configuration;
 mod continuation;
@@ -46,6 +48,7 @@ mod vector;
 mod workspace;
 
 pub use assembly::Assembled;
+pub use buckling::{BucklingError, BucklingMode, BucklingModes, linear_buckling};
 pub use condition::Condition;
 pub use configuration::{Configuration, Coordinates};
 pub use continuation::{Continuation, ContinuedPoint, Direction, Sense};

@@ -12,11 +12,11 @@ use crate::units::significant;
 /// Samples of each span for the box.
 const SAMPLES: usize = 8;
 
-/// Lengths, thinness and stiffness of the whole shell, whatever part of it is modelled.
+/// Lengths, thinness and stiffness of the whole shell, whatever part of it is modelled; of a structure, of all shells.
 #[derive(Clone, Debug)]
 pub struct Size {
-    /// Extents of the surface in x, y and z, mm.
-    pub box_mm: [f64; 3],
+    /// Least and largest coordinates in x, y and z, mm.
+    bounds_mm: [[f64; 2]; 3],
     /// Lengths of the lines through the middle along u and v, mm.
     pub sides_mm: [f64; 2],
     /// Smallest radius of curvature except at tips, mm; `None` for a plane.
@@ -33,13 +33,20 @@ impl Size {
     /// # Errors
     /// Where the scene has no starting mesh.
     pub fn of(scene: &Scene) -> Result<Self, ModelError> {
+        let sizes = (1..scene.shell_count()).map(|shell| Self::of_shell(scene, shell));
+        let first = Self::of_shell(scene, 0)?;
+        sizes.into_iter().try_fold(first, |all, one| Ok(all.and(one?)))
+    }
+
+    fn of_shell(scene: &Scene, shell: usize) -> Result<Self, ModelError> {
+        let scene = scene.of_shell(shell).into_owned();
         let mesh = starting_patch(&Scene { symmetry: Symmetry::None, ..scene.clone() })?;
         let Extent { radius_mm, .. } = Extent::of(&mesh, &scene.material);
         let sides_mm = [0, 1].map(|direction| side_mm(&mesh, direction));
         let longest = sides_mm[0].max(sides_mm[1]);
         let moduli = laws(&scene.material).into_iter().flat_map(|(_, moduli)| moduli);
         Ok(Self {
-            box_mm: box_mm(&mesh),
+            bounds_mm: bounds_mm(&mesh),
             sides_mm,
             // Rounding curves a plane.
             radius_mm: (radius_mm < FLAT * longest).then_some(radius_mm),
@@ -48,9 +55,30 @@ impl Size {
         })
     }
 
-    /// Largest extent of the surface, mm.
+    /// Sizes of two shells of one structure as one: the box of both, the sides of the longer one, the smallest radius and thickness.
+    fn and(self, other: Self) -> Self {
+        let longest = |size: &Self| size.sides_mm[0].max(size.sides_mm[1]);
+        let radii = [self.radius_mm, other.radius_mm].into_iter().flatten();
+        Self {
+            bounds_mm: [0, 1, 2].map(|c| {
+                let ([low, high], [other_low, other_high]) = (self.bounds_mm[c], other.bounds_mm[c]);
+                [low.min(other_low), high.max(other_high)]
+            }),
+            sides_mm: if longest(&self) >= longest(&other) { self.sides_mm } else { other.sides_mm },
+            radius_mm: radii.reduce(f64::min),
+            thickness_mm: self.thickness_mm.min(other.thickness_mm),
+            moduli_mpa: [self.moduli_mpa[0].min(other.moduli_mpa[0]), self.moduli_mpa[1].max(other.moduli_mpa[1])],
+        }
+    }
+
+    /// Extents in x, y and z, mm.
+    pub fn box_mm(&self) -> [f64; 3] {
+        self.bounds_mm.map(|[low, high]| high - low)
+    }
+
+    /// Largest extent, mm.
     pub fn largest_mm(&self) -> f64 {
-        self.box_mm.into_iter().fold(0.0, f64::max)
+        self.box_mm().into_iter().fold(0.0, f64::max)
     }
 
     /// Smallest radius over thickness.
@@ -67,7 +95,7 @@ impl Display for Size {
         let shown = |value: f64| significant(value, 3);
         // A plane has a thickness of rounding.
         let least = 1e-9 * self.largest_mm();
-        let [x, y, z] = self.box_mm.map(|length| shown(if length < least { 0.0 } else { length }));
+        let [x, y, z] = self.box_mm().map(|length| shown(if length < least { 0.0 } else { length }));
         write!(f, "box {x} × {y} × {z} mm, ")?;
         let longest = self.sides_mm[0].max(self.sides_mm[1]);
         match self.radius_mm {
@@ -98,8 +126,8 @@ pub(super) fn laws(material: &Material) -> Vec<(String, Vec<f64>)> {
     }
 }
 
-/// Extents of a surface along the axes, mm, from samples of each span and its ends.
-fn box_mm(mesh: &Patch) -> [f64; 3] {
+/// Least and largest coordinates of a surface along the axes, mm, from samples of each span and its ends.
+fn bounds_mm(mesh: &Patch) -> [[f64; 2]; 3] {
     let [us, vs] = [0, 1].map(|direction| {
         let spans = Spans::of(&mesh.knots[direction], mesh.degree[direction]).bounds;
         let within = |[from, to]: [f64; 2]| (0..=SAMPLES).map(move |k| from + (to - from) * k as f64 / SAMPLES as f64);
@@ -112,5 +140,5 @@ fn box_mm(mesh: &Patch) -> [f64; 3] {
             *bound = [bound[0].min(x), bound[1].max(x)];
         }
     }
-    bounds.map(|[low, high]| high - low)
+    bounds
 }

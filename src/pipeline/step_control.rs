@@ -103,10 +103,10 @@ pub fn next_stage(scene: &Scene, state: &State) -> Option<Stage> {
     if !evaluated && has(Stage::EvaluateIndicators) {
         return Some(Stage::EvaluateIndicators);
     }
-    if has(Stage::RefineKnots) && state.marked.iter().any(|knots| !knots.is_empty()) {
+    if has(Stage::RefineKnots) && state.marked.iter().flatten().any(|knots| !knots.is_empty()) {
         return Some(Stage::RefineKnots);
     }
-    if has(Stage::CoarsenKnots) && state.superfluous.iter().any(|knots| !knots.is_empty()) {
+    if has(Stage::CoarsenKnots) && state.superfluous.iter().flatten().any(|knots| !knots.is_empty()) {
         return Some(Stage::CoarsenKnots);
     }
     (!has_reached(scene, state, scene.load.target())).then_some(Stage::Solve)

@@ -297,7 +297,7 @@ mod tests {
                     let unless = |other: &Key| other.presence == Presence::Unless(key.name);
                     matches!(key.presence, Presence::InsteadOf(_)) || section.keys.iter().any(unless)
                 };
-                let beside = |key: &&Key| !instead(key) && key.name != "kind";
+                let beside = |key: &&Key| !instead(key) && (key.name != "kind" || section.kind_key().is_none());
                 let lines = section.keys_of(kind).filter(beside).map(|key| format!("{} = {}\n", key.name, key.example));
                 let kind_line = kind.map_or(String::new(), |kind| format!("kind = \"{kind}\"\n"));
                 let text = format!("{}\n{kind_line}{}", section.title(), lines.collect::<String>());

@@ -104,6 +104,21 @@ impl PointReference {
         Self { free: Strains { membrane: covariant(free.membrane), bending: covariant(bending) }, ..self }
     }
 
+    /// Returns the point with the stresses of further strains on it, in the same geometry: its stress-free strains are smaller by them.
+    pub(crate) fn stressed(self, strains: &Strains) -> Self {
+        let less = |free: [f64; 3], strains: [f64; 3]| [0, 1, 2].map(|i| free[i] - strains[i]);
+        let Strains { membrane, bending } = self.free;
+        let free = Strains { membrane: less(membrane, strains.membrane), bending: less(bending, strains.bending) };
+        Self { free, ..self }
+    }
+
+    /// Difference of the strains at two displacements over a step.
+    pub(crate) fn strain_rates(&self, after: &[[f64; 3]; 5], before: &[[f64; 3]; 5], step: f64) -> Strains {
+        let (after, before) = (self.strains(after), self.strains(before));
+        let rate = |after: [f64; 3], before: [f64; 3]| [0, 1, 2].map(|i| (after[i] - before[i]) / step);
+        Strains { membrane: rate(after.membrane, before.membrane), bending: rate(after.bending, before.bending) }
+    }
+
     /// Returns the point without its stiffness against stretching.
     pub fn bending_alone(self) -> Self {
         Self { membrane: [[0.0; 3]; 3], ..self }

@@ -1,7 +1,7 @@
 //! The summary of a run: what it found, compared with theory, and what it cost.
 
 use crate::record::{Outcome, Parameter, Reading, Record, Warning};
-use crate::scene::{Geometry, ProfilePiece, Scene, Stage};
+use crate::scene::{Geometry, ProfilePiece, Scene, Shell, Stage};
 use crate::spline::Elements;
 use crate::study::{Passed, PathPoint, Snap, TapeSpring, equilibrium_path, snaps};
 use crate::units::{rounded, significant};
@@ -181,7 +181,7 @@ impl Summary {
         Self {
             spring: TapeSpring::of_scene(scene),
             driven_by: Parameter::of(scene),
-            shell: shell_in_words(scene),
+            shell: shells_in_words(scene),
             probes: records
                 .iter()
                 .rev()
@@ -221,6 +221,17 @@ impl Summary {
     /// Number of stages that ran.
     pub fn stages(&self) -> usize {
         self.work.iter().map(|work| work.runs).sum()
+    }
+}
+
+fn shells_in_words(scene: &Scene) -> String {
+    match scene.shells.is_empty() {
+        true => shell_in_words(scene),
+        false => {
+            let named =
+                |(index, shell): (usize, &Shell)| format!("{}: {}", shell.name, shell_in_words(&scene.of_shell(index)));
+            scene.shells.iter().enumerate().map(named).collect::<Vec<_>>().join("\n")
+        }
     }
 }
 

@@ -92,14 +92,18 @@ const ARROWS: usize = 4;
 impl Marks {
     /// The supports and loads of a scene in a state, and the undeformed outline.
     pub fn of(scene: &Scene, state: &State) -> Self {
-        let shell = WholeShell::new(scene, state);
-        let place = Place::new(scene, &shell, state.parameter);
-        let mut marks = Self { outline: outline(shell.undeformed()), outline_name: "undeformed", ..Self::default() };
-        place.mark_supports(&mut marks);
-        for action in &scene.actions {
-            let factor = action.history.at(state.parameter);
-            if factor != 0.0 {
-                marks.arrows.extend(place.loads(&action.kind, factor));
+        let mut marks = Self { outline_name: "undeformed", ..Self::default() };
+        for index in 0..scene.shell_count() {
+            let (scene, state) = (scene.of_shell(index), state.of_shell(index));
+            let shell = WholeShell::new(&scene, &state);
+            let place = Place::new(&scene, &shell, state.parameter);
+            marks.outline.extend(outline(shell.undeformed()));
+            place.mark_supports(&mut marks);
+            for action in &scene.actions {
+                let factor = action.history.at(state.parameter);
+                if factor != 0.0 {
+                    marks.arrows.extend(place.loads(&action.kind, factor));
+                }
             }
         }
         marks
@@ -107,11 +111,14 @@ impl Marks {
 
     /// The supports of a scene on a mode, which is the shell of `state` moved, and the outline of the equilibrium.
     pub fn of_mode(scene: &Scene, state: &State, moved: &State) -> Self {
-        let equilibrium = WholeShell::new(scene, state);
-        let shell = WholeShell::new(scene, moved);
-        let outline = outline(equilibrium.deformed());
-        let mut marks = Self { outline, outline_name: "equilibrium", ..Self::default() };
-        Place::new(scene, &shell, state.parameter).mark_supports(&mut marks);
+        let mut marks = Self { outline_name: "equilibrium", ..Self::default() };
+        for index in 0..scene.shell_count() {
+            let (scene, state, moved) = (scene.of_shell(index), state.of_shell(index), moved.of_shell(index));
+            let equilibrium = WholeShell::new(&scene, &state);
+            let shell = WholeShell::new(&scene, &moved);
+            marks.outline.extend(outline(equilibrium.deformed()));
+            Place::new(&scene, &shell, state.parameter).mark_supports(&mut marks);
+        }
         marks.arrows.clear();
         marks
     }

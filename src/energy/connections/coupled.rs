@@ -12,7 +12,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::energy::{At, Tangent, Term};
-use crate::shell::{add, scaled};
+use crate::shell::{add, dot, scaled};
 use crate::spline::{Patch, evaluate_surface, mid_surface_point};
 
 /// Displacement and tangents of a surface at a point.
@@ -41,6 +41,23 @@ pub(super) trait PointLaw: Debug + Send + Sync {
 
     /// Adds the derivatives of the energy.
     fn add_derivatives(&self, sides: &[Local; 2], sums: &mut Derivatives);
+
+    /// Returns the law with the forces on it that rates of both surfaces cause, in the same geometry.
+    fn stressed(&self, sides: &[Local; 2], rates: &[Local; 2]) -> Self
+    where
+        Self: Sized;
+}
+
+/// Share of the rates along which laws differentiate what strains them.
+const SLIGHTLY: f64 = 1e-4;
+
+/// Both surfaces after a small motion at these rates, forwards and backwards, and its length.
+pub(super) fn moved(sides: &[Local; 2], rates: &[Local; 2]) -> ([Local; 2], [Local; 2], f64) {
+    let tangents =
+        |local: &[Local; 2]| local.iter().flat_map(|side| &side[1..]).map(|a| dot(*a, *a)).sum::<f64>().sqrt();
+    let step = SLIGHTLY * tangents(sides) / tangents(rates).max(f64::MIN_POSITIVE);
+    let at = |step: f64| [0, 1].map(|side| [0, 1, 2].map(|k| add(sides[side][k], scaled(step, rates[side][k]))));
+    (at(step), at(-step), 2.0 * step)
 }
 
 /// A point of one surface.
@@ -68,7 +85,13 @@ impl SurfaceSide {
 
     /// u, a₁ and a₂ at a displacement of the control points.
     pub fn deformed(&self, displacement: &[[f64; 3]]) -> Local {
-        let mut local = self.undeformed;
+        let rates = self.rates(displacement);
+        [0, 1, 2].map(|k| add(self.undeformed[k], rates[k]))
+    }
+
+    /// Rates of u, a₁ and a₂ at rates of the control points.
+    fn rates(&self, displacement: &[[f64; 3]]) -> Local {
+        let mut local = [[0.0; 3]; 3];
         for (a, control) in self.controls.iter().enumerate() {
             for k in 0..3 {
                 local[k] = add(local[k], scaled(self.functions[k][a], displacement[*control]));
@@ -156,12 +179,36 @@ impl<L: PointLaw> Term for Coupling<L> {
     }
 
     fn add_tangent(&self, at: At, tangent: &mut Tangent) {
-        let sums = self.of_groups(|points| group_tangent(points, at.displacement));
-        for (group, slopes) in self.groups.iter().zip(sums) {
+        let add = |point: &CoupledPoint<L>, sums: &mut Derivatives| {
+            point.law.add_derivatives(&point.deformed(at.displacement), sums);
+        };
+        self.add_groups(&add, tangent);
+    }
+
+    fn add_stress_stiffness(&self, at: At, rates: &[[f64; 3]], tangent: &mut Tangent) {
+        let add = |point: &CoupledPoint<L>, sums: &mut Derivatives| {
+            let sides = point.deformed(at.displacement);
+            let of_rates = point.sides.each_ref().map(|side| side.rates(rates));
+            let mut without = Derivatives::zero();
+            point.law.add_derivatives(&sides, &mut without);
+            point.law.stressed(&sides, &of_rates).add_derivatives(&sides, sums);
+            for (sum, other) in sums.hessian.as_flattened_mut().iter_mut().zip(without.hessian.as_flattened()) {
+                *sum -= other;
+            }
+        };
+        self.add_groups(&add, tangent);
+    }
+}
+
+impl<L: PointLaw> Coupling<L> {
+    /// Adds the derivatives of all points to a tangent.
+    fn add_groups(&self, add: &(dyn Fn(&CoupledPoint<L>, &mut Derivatives) + Sync), tangent: &mut Tangent) {
+        let sums = self.of_groups(|points| GroupTangent::of(points, add));
+        for (group, sums) in self.groups.iter().zip(sums) {
             let controls: Vec<usize> = self.points[group.start].controls().collect();
-            for (i, row) in controls.iter().zip(slopes.chunks(controls.len())) {
-                for (j, slope) in controls.iter().zip(row) {
-                    tangent.add([*i, *j], *slope);
+            for (a, i) in controls.iter().enumerate() {
+                for (b, j) in controls.iter().enumerate().skip(a) {
+                    tangent.add_symmetric([*i, *j], sums.slope(a, b));
                 }
             }
         }
@@ -189,39 +236,65 @@ fn group_forces<L: PointLaw>(points: &[CoupledPoint<L>], displacement: &[[f64; 3
     forces
 }
 
-/// Derivatives of the forces of a group, `slopes[a · controls + b][c][d]`, N/mm.
-fn group_tangent<L: PointLaw>(points: &[CoupledPoint<L>], displacement: &[[f64; 3]]) -> Vec<[[f64; 3]; 3]> {
-    let count = points.first().map_or(0, |point| point.controls().count());
-    let mut slopes = vec![[[0.0; 3]; 3]; count * count];
-    for point in points {
-        let mut sums = Derivatives::zero();
-        point.law.add_derivatives(&point.deformed(displacement), &mut sums);
-        let functions: Vec<(usize, [f64; 3])> = point
-            .sides
-            .iter()
-            .enumerate()
-            .flat_map(|(side, of)| (0..of.controls.len()).map(move |a| (side, [0, 1, 2].map(|k| of.functions[k][a]))))
-            .collect();
-        for (b, (side, of_b)) in functions.iter().enumerate() {
-            // H N_b: 18 × 3.
-            let mut half = [[0.0; 3]; 2 * LOCAL];
-            for (row, half) in sums.hessian.iter().zip(&mut half) {
-                for l in 0..3 {
-                    (0..3).for_each(|d| half[d] += row[side * LOCAL + 3 * l + d] * of_b[l]);
-                }
-            }
-            for (a, (side, of_a)) in functions.iter().enumerate() {
-                let slope = &mut slopes[a * count + b];
-                for k in 0..3 {
-                    for c in 0..3 {
-                        let row = &half[side * LOCAL + 3 * k + c];
-                        (0..3).for_each(|d| slope[c][d] -= of_a[k] * row[d]);
-                    }
+/// Derivatives of the forces of a group by the displacements of its control points.
+struct GroupTangent {
+    controls: usize,
+    /// Of the forces c on a by the displacements d of b: `numbers[((b · 3 + d) · 3 + c) · controls + a]`, N/mm.
+    numbers: Vec<f64>,
+}
+
+impl GroupTangent {
+    fn of<L: PointLaw>(points: &[CoupledPoint<L>], add: &dyn Fn(&CoupledPoint<L>, &mut Derivatives)) -> Self {
+        let controls = points.first().map_or(0, |point| point.controls().count());
+        let mut tangent = Self { controls, numbers: vec![0.0; 9 * controls * controls] };
+        for point in points {
+            let mut sums = Derivatives::zero();
+            add(point, &mut sums);
+            let mut b = 0;
+            for (side, of_side) in point.sides.iter().enumerate() {
+                for index in 0..of_side.controls.len() {
+                    let functions = [0, 1, 2].map(|l| of_side.functions[l][index]);
+                    tangent.add_column(point, b, &half(&sums.hessian, side, functions));
+                    b += 1;
                 }
             }
         }
+        tangent
     }
-    slopes
+
+    /// Subtracts Σ_k N_k(a) (H N_b)_{kc,d} for every control point a.
+    fn add_column<L>(&mut self, point: &CoupledPoint<L>, b: usize, half: &[[f64; 3]; 2 * LOCAL]) {
+        let mut first = 0;
+        for (side, of_side) in point.sides.iter().enumerate() {
+            let length = of_side.controls.len();
+            for k in 0..3 {
+                for c in 0..3 {
+                    for d in 0..3 {
+                        let share = half[side * LOCAL + 3 * k + c][d];
+                        let from = ((b * 3 + d) * 3 + c) * self.controls + first;
+                        let sums = &mut self.numbers[from..from + length];
+                        sums.iter_mut().zip(&of_side.functions[k]).for_each(|(sum, n)| *sum -= share * n);
+                    }
+                }
+            }
+            first += length;
+        }
+    }
+
+    fn slope(&self, a: usize, b: usize) -> [[f64; 3]; 3] {
+        [0, 1, 2].map(|c| [0, 1, 2].map(|d| self.numbers[((b * 3 + d) * 3 + c) * self.controls + a]))
+    }
+}
+
+/// Multiplies a Hessian by the functions of one control point.
+fn half(hessian: &[[f64; 2 * LOCAL]; 2 * LOCAL], side: usize, functions: [f64; 3]) -> [[f64; 3]; 2 * LOCAL] {
+    let mut half = [[0.0; 3]; 2 * LOCAL];
+    for (row, half) in hessian.iter().zip(&mut half) {
+        for l in 0..3 {
+            (0..3).for_each(|d| half[d] += row[side * LOCAL + 3 * l + d] * functions[l]);
+        }
+    }
+    half
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The energy of a layer of glue between the faces of two shells.
 
-use super::coupled::{Derivatives, LOCAL, Local, PointLaw};
+use super::coupled::{Derivatives, LOCAL, Local, PointLaw, moved};
 use crate::shell::{FrameVector, TANGENTS, add, dot, scaled, sub};
 
 /// First component of the tangents among those of a surface.
@@ -43,6 +43,12 @@ impl PointLaw for Glue {
     fn energy(&self, sides: &[Local; 2]) -> f64 {
         let stretch = self.stretch(sides);
         0.5 * self.stiffness * dot(stretch, stretch)
+    }
+
+    fn stressed(&self, sides: &[Local; 2], rates: &[Local; 2]) -> Self {
+        let (after, before, step) = moved(sides, rates);
+        let rate = scaled(1.0 / step, sub(self.stretch(&after), self.stretch(&before)));
+        Self { at_rest: sub(self.at_rest, rate), ..*self }
     }
 
     fn add_derivatives(&self, sides: &[Local; 2], sums: &mut Derivatives) {
@@ -106,7 +112,10 @@ mod tests {
     fn a_rigid_motion_does_not_stretch_a_layer() {
         let (sin, cos) = 0.7_f64.sin_cos();
         let turn = |[x, y, z]: [f64; 3]| [cos * x + sin * z, y, cos * z - sin * x];
-        let rest = [[[7.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[7.02, 0.97, 0.55], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]];
+        let rest = [
+            [[7.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            [[7.02, 0.97, 0.55], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]],
+        ];
         let flat = Glue { stiffness: 1.0, to_faces: [0.3, 0.2], gap: [0.0; 3], at_rest: [0.0; 3] };
         let undeformed = rest.map(|[_, a1, a2]: Local| [[0.0; 3], a1, a2]);
         let [x, y] = [rest[0][0], rest[1][0]];

@@ -105,26 +105,28 @@ fn glued(
     CoupledPoint { sides: surfaces, law: Glue { at_rest: law.across(&undeformed), ..law } }
 }
 
-/// Quadrature points of a patch with their weights in the parameters: degree + 1 in each direction of each element, and more where
-/// elements of the other patch are shorter.
+/// Quadrature points of a patch with their weights in the parameters: as many as the degree in each direction of each element, and more
+/// where elements of the other patch are shorter.
 fn points_of(patch: &Patch, other: &Patch) -> Vec<([f64; 2], f64)> {
     let finest = |patch: &Patch, direction: usize| {
         let spans = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
-        let middle = |[from, to]: &[f64; 2]| 0.5 * (from + to);
-        let length = |span: &[f64; 2]| {
-            let at = if direction == 0 { [middle(span), 0.5] } else { [0.5, middle(span)] };
-            (span[1] - span[0]) * norm(mid_surface_point(patch, &[], at).derivatives[direction])
-        };
+        let length = |[from, to]: &[f64; 2]| (to - from) * norm(tangent_at(patch, direction, 0.5 * (from + to)));
         spans.iter().map(length).fold(f64::INFINITY, f64::min)
     };
-    let shortest = finest(other, 0).min(finest(other, 1));
     let [along, across] = [0, 1].map(|direction| {
-        let parts = (finest(patch, direction) / shortest).ceil().clamp(1.0, 4.0) as usize;
+        // Elements of the other patch in the direction that runs alike.
+        let own = tangent_at(patch, direction, 0.5);
+        let alike = |other_direction: usize| {
+            let tangent = tangent_at(other, other_direction, 0.5);
+            dot(own, tangent).abs() / norm(tangent)
+        };
+        let shortest = finest(other, if alike(0) >= alike(1) { 0 } else { 1 });
+        let parts = (finest(patch, direction) / shortest - 1e-9).ceil().clamp(1.0, 4.0) as usize;
         let spans = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
         let pieces = move |[from, to]: [f64; 2]| {
             (0..parts).map(move |k| [k, k + 1].map(|k| from + (to - from) * k as f64 / parts as f64))
         };
-        let count = patch.degree[direction] + 1;
+        let count = patch.degree[direction];
         spans
             .into_iter()
             .map(|span| pieces(span).flat_map(|piece| gauss_points(piece, count)).collect::<Vec<_>>())
@@ -140,6 +142,11 @@ fn points_of(patch: &Patch, other: &Patch) -> Vec<([f64; 2], f64)> {
         }
     }
     points
+}
+
+/// The tangent of a patch in a direction, in the middle of the other one.
+fn tangent_at(patch: &Patch, direction: usize, at: f64) -> [f64; 3] {
+    mid_surface_point(patch, &[], if direction == 0 { [at, 0.5] } else { [0.5, at] }).derivatives[direction]
 }
 
 /// A patch on which nearest points are searched.

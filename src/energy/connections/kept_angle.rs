@@ -7,7 +7,7 @@
 //! and a_n·a₃′ are cosine and sine of the angle between the surfaces; the second one makes the angle unique. α_r = c D/h
 //! and α_d = c A/h.
 
-use super::coupled::{Derivatives, LOCAL, Local, PointLaw};
+use super::coupled::{Derivatives, LOCAL, Local, PointLaw, moved};
 use crate::shell::{FrameVector, TANGENTS, dot, sub};
 
 /// The energy at a point of an edge.
@@ -48,6 +48,13 @@ impl PointLaw for KeptAngle {
         let turned: f64 = (0..2).map(|k| (angle[k] - self.angle[k]).powi(2)).sum();
         let apart = sub(sides[0][0], sides[1][0]);
         0.5 * (self.rotation * turned + self.displacement * dot(apart, apart))
+    }
+
+    /// Forces of the displacement add nothing to the tangent: they do not turn.
+    fn stressed(&self, sides: &[Local; 2], rates: &[Local; 2]) -> Self {
+        let (after, before, step) = moved(sides, rates);
+        let [after, before] = [after, before].map(|sides| Self::angle_of(&sides, self.running));
+        Self { angle: [0, 1].map(|k| self.angle[k] - (after[k] - before[k]) / step), ..*self }
     }
 
     fn add_derivatives(&self, sides: &[Local; 2], sums: &mut Derivatives) {
@@ -126,7 +133,8 @@ mod tests {
             let (sin, cos) = angle.sin_cos();
             [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0; 3], [1.0, 0.0, 0.0], [0.0, cos, sin]]]
         };
-        let law = KeptAngle { running: 0, rotation: 1.0, displacement: 0.0, angle: KeptAngle::angle_of(&turned(2.5), 0) };
+        let law =
+            KeptAngle { running: 0, rotation: 1.0, displacement: 0.0, angle: KeptAngle::angle_of(&turned(2.5), 0) };
         assert_eq!(law.energy(&turned(2.5)), 0.0);
         assert!((law.opened(&turned(2.6)).abs() - 0.1).abs() < 1e-14);
         assert!((law.energy(&turned(2.6)) - (1.0 - 0.1_f64.cos())).abs() < 1e-14, "4 sin²(φ/2)/2");

@@ -114,4 +114,8 @@ impl<T: Term> Term for Shared<T> {
     fn add_tangent(&self, at: At, tangent: &mut Tangent) {
         self.0.add_tangent(at, tangent);
     }
+
+    fn add_stress_stiffness(&self, at: At, rates: &[[f64; 3]], tangent: &mut Tangent) {
+        self.0.add_stress_stiffness(at, rates, tangent);
+    }
 }

@@ -73,23 +73,12 @@ impl Term for FollowingLoads {
     }
 
     fn add_tangent(&self, at: At, tangent: &mut Tangent) {
-        for following in &self.0 {
-            let factor = following.history.at(at.parameter);
-            for points in following.points.chunk_by(|one, other| one.controls[0] == other.controls[0]) {
-                let Some(first) = points.first() else { continue };
-                let controls = &first.controls;
-                let mut element = ElementTangent::new(controls.len());
-                for point in points {
-                    let (_, slopes) = following.kind.work(point.deformed(at.displacement));
-                    element.add(factor, point, &slopes);
-                }
-                for (a, i) in controls.iter().enumerate() {
-                    for (b, j) in controls.iter().enumerate() {
-                        tangent.add([*i, *j], element.block(a, b));
-                    }
-                }
-            }
-        }
+        self.add_slopes(at, |history| history.at(at.parameter), tangent);
+    }
+
+    /// The loads grow; what their motion changes is of second order.
+    fn add_stress_stiffness(&self, at: At, _: &[[f64; 3]], tangent: &mut Tangent) {
+        self.add_slopes(at, |history| history.rate(at.parameter), tangent);
     }
 
     fn add_rates(&self, at: At, rates: &mut [[f64; 3]]) {
@@ -106,6 +95,28 @@ impl Term for FollowingLoads {
 
     fn factors(&self, parameter: f64) -> Vec<f64> {
         self.0.iter().map(|following| following.history.at(parameter)).collect()
+    }
+}
+
+impl FollowingLoads {
+    fn add_slopes(&self, at: At, factor: impl Fn(&History) -> f64, tangent: &mut Tangent) {
+        for following in &self.0 {
+            let factor = factor(&following.history);
+            for points in following.points.chunk_by(|one, other| one.controls[0] == other.controls[0]) {
+                let Some(first) = points.first() else { continue };
+                let controls = &first.controls;
+                let mut element = ElementTangent::new(controls.len());
+                for point in points {
+                    let (_, slopes) = following.kind.work(point.deformed(at.displacement));
+                    element.add(factor, point, &slopes);
+                }
+                for (a, i) in controls.iter().enumerate() {
+                    for (b, j) in controls.iter().enumerate() {
+                        tangent.add([*i, *j], element.block(a, b));
+                    }
+                }
+            }
+        }
     }
 }
 

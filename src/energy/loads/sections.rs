@@ -244,7 +244,32 @@ impl Term for TurningCouple {
     }
 
     fn add_tangent(&self, at: At, tangent: &mut Tangent) {
-        let factor = self.history.at(at.parameter);
+        self.add_slopes(at, self.history.at(at.parameter), tangent);
+    }
+
+    /// The load grows; what its motion changes is of second order.
+    fn add_stress_stiffness(&self, at: At, _: &[[f64; 3]], tangent: &mut Tangent) {
+        self.add_slopes(at, self.history.rate(at.parameter), tangent);
+    }
+
+    fn add_rates(&self, at: At, rates: &mut [[f64; 3]]) {
+        self.add(at.displacement, self.history.rate(at.parameter), rates);
+    }
+
+    /// The mean of the forces before and after times the motion.
+    fn strokes(&self, _: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
+        let mean = scaled(0.5, add(self.turned(from), self.turned(to)));
+        let stroke = |((point, _), force): (&(usize, [f64; 3]), &f64)| force * dot(mean, sub(to[*point], from[*point]));
+        vec![self.points.iter().zip(&self.forces).map(stroke).sum()]
+    }
+
+    fn factors(&self, parameter: f64) -> Vec<f64> {
+        vec![self.history.at(parameter)]
+    }
+}
+
+impl TurningCouple {
+    fn add_slopes(&self, at: At, factor: f64, tangent: &mut Tangent) {
         let [one, other] = self.axes(at.displacement);
         let [a, b, c] = self.direction;
         let axis = |k: usize| [0, 1, 2].map(|i| f64::from(u8::from(i == k)));
@@ -261,20 +286,5 @@ impl Term for TurningCouple {
                 tangent.add([*point, *moved], slope);
             }
         }
-    }
-
-    fn add_rates(&self, at: At, rates: &mut [[f64; 3]]) {
-        self.add(at.displacement, self.history.rate(at.parameter), rates);
-    }
-
-    /// The mean of the forces before and after times the motion.
-    fn strokes(&self, _: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
-        let mean = scaled(0.5, add(self.turned(from), self.turned(to)));
-        let stroke = |((point, _), force): (&(usize, [f64; 3]), &f64)| force * dot(mean, sub(to[*point], from[*point]));
-        vec![self.points.iter().zip(&self.forces).map(stroke).sum()]
-    }
-
-    fn factors(&self, parameter: f64) -> Vec<f64> {
-        vec![self.history.at(parameter)]
     }
 }

@@ -36,6 +36,9 @@ pub fn oddities(scene: &Scene, size: &Size) -> Vec<String> {
     if scene.output.units == NumbersIn::Own {
         return Vec::new();
     }
+    if !scene.shells.is_empty() {
+        return (0..scene.shells.len()).flat_map(|shell| of_shell(scene, shell)).collect();
+    }
     let found = [
         lengths::odd(scene, size),
         material::odd(&scene.material),
@@ -45,4 +48,13 @@ pub fn oddities(scene: &Scene, size: &Size) -> Vec<String> {
         places::odd(scene),
     ];
     found.into_iter().flatten().collect()
+}
+
+/// What looks odd about one shell of a structure; its loads and supports are those of the structure.
+fn of_shell(scene: &Scene, shell: usize) -> Vec<String> {
+    let alone = scene.of_shell(shell);
+    let Ok(size) = Size::of(&alone) else { return Vec::new() };
+    let found = [lengths::odd(&alone, &size), material::odd(&alone.material), elements::odd(&alone, &size)];
+    let name = scene.shell_name(shell).unwrap_or_default();
+    found.into_iter().flatten().map(|odd| format!("shell \"{name}\": {odd}")).collect()
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Geometry, Material, MeshSpec, Scene};
+use super::{Geometry, Material, MeshSpec, Region, Scene, Support};
 
 /// A shell of a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -84,6 +84,15 @@ impl Pose {
     }
 }
 
+impl Support {
+    /// What the support is on one shell: a section of several shells is one on the edge of each.
+    fn of_shell(&self, shell: usize) -> Option<Self> {
+        let edges = self.also.iter().filter(|also| also.shell == shell).map(|also| Region::Edge(also.edge));
+        let on = (self.shell == shell).then_some(self.on).into_iter().chain(edges).next()?;
+        Some(Self { on, shell: 0, also: Vec::new(), ..self.clone() })
+    }
+}
+
 impl Scene {
     /// Direction away from the axis or the centre of the shell at a point; `None` where the geometry has neither.
     pub fn away_from_centre(&self, point: [f64; 3]) -> Option<[f64; 3]> {
@@ -104,7 +113,7 @@ impl Scene {
     /// A scene of one shell is returned as it is.
     pub fn of_shell(&self, shell: usize) -> Cow<'_, Scene> {
         let Some(own) = self.shells.get(shell) else { return Cow::Borrowed(self) };
-        let supports = self.supports.iter().filter(|support| support.shell == shell).cloned();
+        let supports = self.supports.iter().filter_map(|support| support.of_shell(shell));
         let actions = self.actions.iter().filter(|action| action.shell.is_none_or(|on| on == shell)).cloned();
         let probes = self.probes.iter().filter(|probe| probe.shell == shell).cloned();
         Cow::Owned(Scene {

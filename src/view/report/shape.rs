@@ -88,8 +88,11 @@ pub fn chosen_frames(steps: &[u64], wanted: impl Fn(u64) -> bool) -> Vec<u64> {
 }
 
 impl Shape {
-    /// Samples the states of a scene; `None` where there is none.
+    /// Samples the states of a scene; `None` where there is none, and where it has several shells, which the page does not draw.
     pub fn new(scene: &Scene, states: &[FrameAt]) -> Option<Self> {
+        if scene.shell_count() > 1 {
+            return None;
+        }
         let finest = states.iter().max_by_key(|at| at.state.mesh.elements().count())?;
         let grid = places(WholeShell::new(scene, &finest.state).undeformed());
         let offered = offered(scene);
