@@ -9,8 +9,8 @@ use super::failure::{EXIT_CODES, Failure};
 use super::log_file::scene_at;
 use super::output::{file_name, path_in_line, print, print_as_it_is, refuse_what_is_there, write_files};
 use super::pictured::cells_per_element;
-use crate::history::{StabilityReport, States, stability_at};
-use crate::record::Record;
+use crate::history::{BucklingReport, StabilityReport, States, buckling_at, stability_at};
+use crate::record::{Parameter, Record};
 use crate::scene::Scene;
 use crate::shell::{add, norm, scaled, sub};
 use crate::state::State;
@@ -33,16 +33,26 @@ pub(super) struct Arguments {
     /// shell
     #[arg(short, long, value_name = "DIR", requires = "step", value_parser = file_name())]
     output: Option<PathBuf>,
+    /// This many modes of linear buckling about the equilibrium of --step (0: the undeformed shell), by the load factors at which they
+    /// occur; in the folder of --output, buckling-1.svg and buckling-1.vtu and so on
+    #[arg(long, value_name = "N", requires = "step", num_args = 0..=1, default_missing_value = "1")]
+    buckling: Option<std::num::NonZero<usize>>,
 }
 
 impl Arguments {
     /// Finds the modes and prints them.
     pub(super) fn run(self) -> Result<(), Failure> {
         if let Some(folder) = &self.output {
-            refuse_what_is_there(&pictures(folder))?;
+            let modes = 1..=self.buckling.map_or(0, std::num::NonZero::get);
+            let files: Vec<PathBuf> = modes.flat_map(|mode| mode_files(folder, &format!("buckling-{mode}"))).collect();
+            let files = if files.is_empty() { mode_files(folder, "mode").to_vec() } else { files };
+            refuse_what_is_there(&files)?;
         }
         let asked = Asked::open(&self.log)?;
         let Some(step) = self.step else { return self.all(&asked) };
+        if let Some(count) = self.buckling {
+            return self.buckle(&asked, step, count.get());
+        }
         let mut ends = Ends::default();
         asked.stages_of_step(step)?.iter().for_each(|record| ends.take(record));
         let no_end = || Failure::NoSuchStep { log: self.log.clone(), step, known: asked.steps() };
@@ -55,6 +65,36 @@ impl Arguments {
             Some(folder) => draw(folder, &scene, &record, &report),
             None => Ok(()),
         }
+    }
+
+    /// Prints the modes of linear buckling about the end of a load step.
+    fn buckle(&self, asked: &Asked, step: u64, count: usize) -> Result<(), Failure> {
+        let index = match step {
+            0 => None,
+            _ => {
+                let mut ends = Ends::default();
+                asked.stages_of_step(step)?.iter().for_each(|record| ends.take(record));
+                let no_end = || Failure::NoSuchStep { log: self.log.clone(), step, known: asked.steps() };
+                Some(ends.stages().pop().ok_or_else(no_end)?)
+            }
+        };
+        let first = index.unwrap_or(0);
+        let log = asked.log.part(first..first + 1).map_err(asked.changed())?;
+        let scene = scene_at(&log, &self.log, first, &[])?;
+        let failed = |source| Failure::Stability { log: self.log.clone(), index: first, source: Box::new(source) };
+        let report = buckling_at(&mut States::of(&log), index, &scene, count).map_err(failed)?;
+        print(&buckling_in_words(&scene, &report))?;
+        let Some(folder) = &self.output else { return Ok(()) };
+        let mut written = String::new();
+        for (number, mode) in report.modes.modes.iter().enumerate() {
+            let files = mode_files(folder, &format!("buckling-{}", number + 1));
+            let title = format!("Buckling mode {}, at {}", number + 1, at_factor(&scene, &report, mode.factor));
+            let texts = drawn(&scene, &report.state, &mode.shape, &title, "linear buckling")?;
+            let files: Vec<_> = files.into_iter().zip(texts.map(String::into_bytes)).collect();
+            write_files(&files)?;
+            written += &files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>();
+        }
+        print_as_it_is(&written)
     }
 
     fn all(&self, asked: &Asked) -> Result<(), Failure> {
@@ -105,34 +145,75 @@ fn in_full(record: &Record, report: &StabilityReport) -> String {
     )
 }
 
+/// The parameter of the scene at a change of it from a state.
+fn at_factor(scene: &Scene, report: &BucklingReport, factor: f64) -> String {
+    Parameter::of(scene).shown(report.state.parameter + factor)
+}
+
+/// The modes of linear buckling, a line each.
+fn buckling_in_words(scene: &Scene, report: &BucklingReport) -> String {
+    let BucklingReport { state, modes, .. } = report;
+    let about = match state.step {
+        0 => "the undeformed shell".to_owned(),
+        step => format!("load step {step}, {}", Parameter::of(scene).shown(state.parameter)),
+    };
+    let mut text = format!("linear buckling about {about}\n mode   {:>14}   moves most at\n", "at");
+    for (number, mode) in modes.modes.iter().enumerate() {
+        let at = significant(state.parameter + mode.factor, 7);
+        text += &format!("{:>5}   {at:>14}   {}\n", number + 1, place(state.mesh.point(mode.largest_at)));
+    }
+    if modes.modes.is_empty() {
+        text += "no mode was found as the load grows\n";
+    }
+    if modes.counted > modes.modes.len() {
+        text += &format!(
+            "{} lie at or below the last of these: they are a cluster; ask for more modes\n",
+            count(modes.counted, "mode")
+        );
+    }
+    if let Some(reversed) = modes.reversed {
+        let at = significant(state.parameter + reversed, 7);
+        text += &format!("under the reversed load the first mode lies near {at}\n");
+    }
+    if scene.symmetry.copies() > 1 {
+        text += "a part of a symmetric shell is modelled: modes without its symmetry are not seen\n";
+    }
+    text
+}
+
 /// The shell with the mode added to its displacement.
 fn draw(folder: &Path, scene: &Scene, record: &Record, report: &StabilityReport) -> Result<(), Failure> {
-    let mesh = &report.state.mesh;
-    let corner = mesh.point(0);
-    let size = mesh.points().map(|point| norm(sub(point, corner))).fold(0.0, f64::max);
-    let mode: Vec<[f64; 3]> = report.mode.shape.iter().map(|mode| scaled(SHOWN_AMPLITUDE * size, *mode)).collect();
-    let displacement = report.state.displacement.iter().zip(&mode).map(|(u, mode)| add(*u, *mode)).collect();
-    let moved = State { displacement, ..report.state.clone() };
-    let samples = mode_surface(scene, &report.state, &mode, cells_per_element(mesh))?;
     let at = record.report.driven_by.shown_short(record.report.parameter);
-    let eigenvalue = significant(report.mode.eigenvalue, 4);
-    let picture = Picture {
-        title: format!("Mode of the lowest eigenvalue, {eigenvalue} N/mm"),
-        subtitle: format!(
-            "load step {}, {at}; a mode has no size: its motion is drawn as {:.0} % of the shell",
-            record.report.step,
-            100.0 * SHOWN_AMPLITUDE
-        ),
-        marks: Marks::of_mode(scene, &report.state, &moved),
-        ..Picture::default()
-    };
-    let texts = [mesh_picture(&samples, &picture), vtu(&samples)];
-    let files: Vec<_> = pictures(folder).into_iter().zip(texts.map(String::into_bytes)).collect();
+    let title = format!("Mode of the lowest eigenvalue, {} N/mm", significant(report.mode.eigenvalue, 4));
+    let texts =
+        drawn(scene, &report.state, &report.mode.shape, &title, &format!("load step {}, {at}", record.report.step))?;
+    let files: Vec<_> = mode_files(folder, "mode").into_iter().zip(texts.map(String::into_bytes)).collect();
     write_files(&files)?;
     print_as_it_is(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
 }
 
+/// A mode as a picture, and for ParaView.
+fn drawn(scene: &Scene, state: &State, shape: &[[f64; 3]], title: &str, of: &str) -> Result<[String; 2], Failure> {
+    let mesh = &state.mesh;
+    let corner = mesh.point(0);
+    let size = mesh.points().map(|point| norm(sub(point, corner))).fold(0.0, f64::max);
+    let mode: Vec<[f64; 3]> = shape.iter().map(|mode| scaled(SHOWN_AMPLITUDE * size, *mode)).collect();
+    let displacement = state.displacement.iter().zip(&mode).map(|(u, mode)| add(*u, *mode)).collect();
+    let moved = State { displacement, ..state.clone() };
+    let samples = mode_surface(scene, state, &mode, cells_per_element(mesh))?;
+    let picture = Picture {
+        title: title.to_owned(),
+        subtitle: format!(
+            "{of}; a mode has no size: its motion is drawn as {:.0} % of the shell",
+            100.0 * SHOWN_AMPLITUDE
+        ),
+        marks: Marks::of_mode(scene, state, &moved),
+        ..Picture::default()
+    };
+    Ok([mesh_picture(&samples, &picture), vtu(&samples)])
+}
+
 /// The files of a mode.
-fn pictures(folder: &Path) -> [PathBuf; 2] {
-    ["mode.svg", "mode.vtu"].map(|file| folder.join(file))
+fn mode_files(folder: &Path, name: &str) -> [PathBuf; 2] {
+    ["svg", "vtu"].map(|ending| folder.join(format!("{name}.{ending}")))
 }

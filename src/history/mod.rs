@@ -37,5 +37,5 @@ pub use probes::{ProbeError, RedefinedProbe, read_probes, redefined_probes, remo
 pub use replay::{ReplayError, Replayed, Verdict, replay_stage, verdict};
 pub use resume::{Basis, BasisError, NothingKept, ResumePlan, basis, plan, restored_scene};
 pub use snap::{SnapError, SnapReport, find_snap, first_loss_of_stability, no_jump};
-pub use stability::{StabilityError, StabilityReport, stability_at};
+pub use stability::{BucklingReport, StabilityError, StabilityReport, buckling_at, stability_at};
 pub use states::{RemakeError, States};

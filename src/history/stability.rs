@@ -1,8 +1,13 @@
 //! How stable the states of a log are.
 
-use crate::equilibrium::{Configuration, SoftMode, SolveError, Workspace, WorkspaceError, soft_mode};
+use crate::equilibrium::{
+    BucklingError, BucklingModes, Configuration, SoftMode, SolveError, Workspace, WorkspaceError, linear_buckling,
+    soft_mode,
+};
 use crate::history::logged_scene::{LoggedSceneError, check_terms};
 use crate::history::states::{RemakeError, States};
+use crate::model::ModelError;
+use crate::pipeline::Stages;
 use crate::scene::Scene;
 use crate::state::State;
 
@@ -34,6 +39,43 @@ pub enum StabilityError {
     /// The stiffness has no factor.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// The shells cannot be made discrete.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// There is no linear buckling of the state.
+    #[error(transparent)]
+    Buckling(#[from] BucklingError),
+}
+
+/// The lowest modes of linear buckling about a state in a log.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct BucklingReport {
+    /// The state.
+    pub state: State,
+    /// The modes.
+    pub modes: BucklingModes,
+}
+
+/// Computes `count` modes of linear buckling about the state that stage `index` made, or about the undeformed shells where there is no
+/// index.
+///
+/// # Errors
+/// Where the state is not available or not stable, was made with other terms, or nothing depends on the load factor.
+pub fn buckling_at(
+    states: &mut States,
+    index: Option<usize>,
+    scene: &Scene,
+    count: usize,
+) -> Result<BucklingReport, StabilityError> {
+    check_terms(states.log(), index.unwrap_or(0), states.own_terms())?;
+    let state = match index {
+        Some(index) => states.at(index)?,
+        None => Stages::with_terms(scene.clone(), states.own_terms().to_vec()).start()?,
+    };
+    let mut work = Workspace::with_terms(scene, &state.mesh, states.own_terms())?;
+    let modes = linear_buckling(&mut work, Configuration::of(&state), count)?;
+    Ok(BucklingReport { state, modes })
 }
 
 /// Computes the softest mode of the state that stage `index` made.

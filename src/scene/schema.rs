@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value, json};
 
 use super::data::Stage;
-use super::key_table::SECTIONS;
+use super::key_table::{OF_A_SHELL, SECTIONS};
 use super::keys::{Choice, Form, Key, Kind, Length, Limits, Presence, Section};
 use super::regions::EDGES;
 
@@ -17,10 +17,23 @@ pub fn json_schema() -> String {
 
 /// The schema of a file of some tables.
 pub(super) fn of_scene(sections: &[Section]) -> Value {
+    let has_shells = sections.iter().any(|section| section.name == "shell");
+    let of_file = |section: &Section| match section.name {
+        "shell" => of_shells(section, sections),
+        _ => of_section(section),
+    };
     let properties: Map<String, Value> =
-        sections.iter().map(|section| (section.name.into(), of_section(section))).collect();
-    let required: Vec<&str> = sections.iter().filter(|section| section.required).map(|section| section.name).collect();
+        sections.iter().map(|section| (section.name.into(), of_file(section))).collect();
+    // What each shell of a structure has of its own is required where there is only one.
+    let of_one = |section: &&Section| has_shells && OF_A_SHELL.contains(&section.name);
+    let names = |of_shell: bool| -> Vec<&str> {
+        let required = sections.iter().filter(|section| section.required && of_one(section) == of_shell);
+        required.map(|section| section.name).collect()
+    };
+    let (required, alone) = (names(false), names(true));
+    let shells = if has_shells { json!([{ "required": ["shell"] }, { "required": alone }]) } else { json!([{}]) };
     json!({
+        "anyOf": shells,
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "A scene of foldline",
         "type": "object",
@@ -28,6 +41,15 @@ pub(super) fn of_scene(sections: &[Section]) -> Value {
         "required": required,
         "additionalProperties": false,
     })
+}
+
+/// The shells of a structure, with the tables below each of them.
+fn of_shells(section: &Section, sections: &[Section]) -> Value {
+    let mut table = of_table(section);
+    for own in sections.iter().filter(|own| OF_A_SHELL.contains(&own.name)) {
+        table["properties"][own.name] = of_section(own);
+    }
+    json!({ "type": "array", "description": section.meaning, "items": table })
 }
 
 fn of_section(section: &Section) -> Value {

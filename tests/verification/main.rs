@@ -30,6 +30,7 @@ mod refinement;
 mod roofs;
 mod soft_mode;
 mod spring_path;
+mod structures;
 mod support;
 mod surfaces;
 mod terms;
