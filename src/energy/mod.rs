@@ -2,7 +2,8 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `term` | what a term is, and the sum of all other than the shell |
+//! | `term` | what a term is |
+//! | `terms` | the sum of all terms other than the shell |
 //! | `shell`, `kernel` | the shell, and its elements |
 //! | `loads` | the actions of a scene |
 //! | `connections` | joints and bonds of a structure |
@@ -22,6 +23,7 @@ mod loads;
 mod remarks;
 mod shell;
 mod term;
+mod terms;
 
 pub use balance::Balance;
 pub use connections::{ConnectionState, Connections};
@@ -33,7 +35,8 @@ pub(crate) use load_balance::check_balance;
 pub(crate) use remarks::remarks;
 pub(crate) use shell::with_locked;
 pub use shell::{ElementSums, Shell, ShellElements, strain_energy};
-pub use term::{At, Tangent, Term, TermSource, Terms};
+pub use term::{At, Tangent, Term, TermSource};
+pub use terms::Terms;
 
 /// Name of the build of the element kernel that this machine runs.
 pub fn kernel_name() -> &'static str {

@@ -1,13 +1,11 @@
-//! Energies and loads, each a [`Term`], and the sum of all terms other than the shell.
+//! Energies and loads, each a [`Term`], and the matrix that takes their tangents.
 
 use std::fmt::Debug;
-use std::sync::Arc;
 
 use crate::digest::Hash;
-use crate::energy::Connections;
 use crate::model::{BlockPattern, Blocks, ModelError, Tables};
 use crate::scene::Scene;
-use crate::shell::{add, dot};
+use crate::shell::dot;
 use crate::spline::Mesh;
 
 /// The configuration of the shell that a term is evaluated at.
@@ -125,6 +123,18 @@ pub struct Tangent<'a> {
     symmetry: Option<Symmetry>,
 }
 
+impl<'a> Tangent<'a> {
+    /// Starts from sums of the terms before; `skew` is empty where all terms have symmetric tangents.
+    pub(super) fn adding_to(
+        pattern: &'a BlockPattern,
+        stiffness: &'a mut Blocks,
+        skew: &'a mut Blocks,
+        term: &'a str,
+    ) -> Self {
+        Self { pattern, stiffness, skew, term, symmetry: None }
+    }
+}
+
 impl Tangent<'_> {
     /// Returns the symmetric part of −∂f/∂u, N/mm, for terms that fill it in themselves on blocks of this pattern.
     ///
@@ -143,13 +153,12 @@ impl Tangent<'_> {
     pub fn of(term: &dyn Term, at: At, pattern: &BlockPattern) -> [Blocks; 2] {
         let mut stiffness = Blocks::zeros(pattern);
         let mut skew = if term.has_skew() { Blocks::zeros(pattern) } else { Blocks::default() };
-        Tangent { pattern, stiffness: &mut stiffness, skew: &mut skew, term: "one term", symmetry: None }
-            .take(term, at);
+        Tangent::adding_to(pattern, &mut stiffness, &mut skew, "one term").take(term, at);
         [stiffness, skew]
     }
 
     /// Takes the tangent of a term, and checks that it is as symmetric as the term claims.
-    fn take(mut self, term: &dyn Term, at: At) {
+    pub(super) fn take(mut self, term: &dyn Term, at: At) {
         self.symmetry = (!term.has_skew()).then(Symmetry::default);
         term.add_tangent(at, &mut self);
         self.check();
@@ -239,174 +248,5 @@ impl Symmetry {
 
     fn is_broken(&self) -> bool {
         self.difference.abs() > SYMMETRIC * self.size
-    }
-}
-
-/// All terms on a mesh other than the shell.
-#[derive(Debug, Default)]
-pub struct Terms {
-    list: Vec<Named>,
-    /// Sources of the terms of the caller's own.
-    own: Vec<Arc<dyn TermSource>>,
-}
-
-#[derive(Debug)]
-struct Named {
-    name: String,
-    term: Box<dyn Term>,
-}
-
-impl Terms {
-    /// Makes the terms of a scene's actions and those of the caller's own.
-    ///
-    /// # Errors
-    /// Where one of them does not fit the mesh.
-    pub fn new(scene: &Scene, mesh: &Mesh, tables: &[Tables], own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
-        Self::with_connections(scene, mesh, tables, own, &Connections::new(scene, mesh)?)
-    }
-
-    /// Makes the terms where the joints and bonds are known.
-    ///
-    /// # Errors
-    /// As for [`Self::new`].
-    pub(super) fn with_connections(
-        scene: &Scene,
-        mesh: &Mesh,
-        tables: &[Tables],
-        own: &[Arc<dyn TermSource>],
-        connections: &Connections,
-    ) -> Result<Self, ModelError> {
-        let mut terms = Self { own: own.to_vec(), ..Self::of_actions(scene, mesh)? };
-        terms.push_connections(connections);
-        for source in own {
-            terms.push(source.name(), source.on(scene, mesh, tables)?);
-        }
-        Ok(terms)
-    }
-
-    /// Makes the terms where no tables of the mesh are at hand; they are built if there are terms of the caller's own.
-    ///
-    /// # Errors
-    /// As for [`Self::new`].
-    pub fn on(scene: &Scene, mesh: &Mesh, own: &[Arc<dyn TermSource>]) -> Result<Self, ModelError> {
-        match own.is_empty() {
-            true if scene.joints.is_empty() && scene.bonds.is_empty() => Self::of_actions(scene, mesh),
-            _ => Self::new(scene, mesh, &Tables::of_structure(scene, mesh), own),
-        }
-    }
-
-    /// Makes the part of the terms that acts where both parameters of the surface are below `limits`.
-    ///
-    /// # Errors
-    /// Where a term does not fit the mesh or cannot be divided.
-    pub fn below(&self, scene: &Scene, mesh: &Mesh, tables: &[Tables], limits: [f64; 2]) -> Result<Self, ModelError> {
-        let mut part = Self::of_actions_below(scene, mesh, limits)?;
-        for source in &self.own {
-            part.push(source.name(), source.below(scene, mesh, tables, limits)?);
-        }
-        Ok(part)
-    }
-
-    pub(super) fn push(&mut self, name: &str, term: Box<dyn Term>) {
-        self.list.push(Named { name: name.to_owned(), term });
-    }
-
-    /// Iterates over the terms.
-    pub fn iter(&self) -> impl Iterator<Item = &dyn Term> {
-        self.list.iter().map(|named| &*named.term)
-    }
-
-    /// Whether there are no terms.
-    pub fn is_empty(&self) -> bool {
-        self.list.is_empty()
-    }
-
-    /// Whether the tangent of any term has a skew part.
-    pub fn have_skew(&self) -> bool {
-        self.iter().any(Term::has_skew)
-    }
-
-    /// Pairs of control points that a term couples though they share no element.
-    pub fn pairs(&self) -> Vec<[usize; 2]> {
-        self.iter().flat_map(Term::pairs).collect()
-    }
-
-    /// Energy that each term stores in the model, N·mm.
-    pub fn energies(&self, at: At) -> Vec<f64> {
-        self.iter().map(|term| term.energy(at)).collect()
-    }
-
-    /// Energy that all terms store in the model, N·mm.
-    pub fn energy(&self, at: At) -> f64 {
-        self.iter().map(|term| term.energy(at)).sum::<f64>() + 0.0
-    }
-
-    /// Forces of all terms on the control points, N.
-    pub fn forces(&self, at: At) -> Vec<[f64; 3]> {
-        let [mut forces, internal] = self.forces_apart(at);
-        forces.iter_mut().zip(internal).for_each(|(sum, force)| *sum = add(*sum, force));
-        forces
-    }
-
-    /// Forces on the control points, N: first those of loads, then those of terms that store energy, which are empty
-    /// where no term does.
-    pub fn forces_apart(&self, at: At) -> [Vec<[f64; 3]>; 2] {
-        let none = || vec![[0.0; 3]; at.displacement.len()];
-        let (mut of_loads, mut internal) = (none(), Vec::new());
-        for term in self.iter() {
-            match term.factors(at.parameter).is_empty() {
-                false => term.add_forces(at, &mut of_loads),
-                true => {
-                    internal.resize(at.displacement.len(), [0.0; 3]);
-                    term.add_forces(at, &mut internal);
-                }
-            }
-        }
-        [of_loads, internal]
-    }
-
-    /// Derivatives of the forces with respect to the parameter where the shell does not move, N.
-    pub fn rates(&self, at: At) -> Vec<[f64; 3]> {
-        let mut rates = vec![[0.0; 3]; at.displacement.len()];
-        self.iter().for_each(|term| term.add_rates(at, &mut rates));
-        rates
-    }
-
-    /// Adds the symmetric part of the tangent to a stiffness, and returns the skew part, which is empty where there is
-    /// none.
-    ///
-    /// # Panics
-    /// Where a term couples control points without saying so, or has a skew part without saying so.
-    pub fn add_tangent(&self, at: At, pattern: &BlockPattern, stiffness: &mut Blocks) -> Blocks {
-        let mut skew = if self.have_skew() { Blocks::zeros(pattern) } else { Blocks::default() };
-        for Named { name, term } in self.list.iter().filter(|named| named.term.has_tangent()) {
-            Tangent { pattern, stiffness, skew: &mut skew, term: name, symmetry: None }.take(&**term, at);
-        }
-        skew
-    }
-
-    /// Adds the symmetric part of what stresses add to the tangent per unit of the parameter ([`Term::add_stress_stiffness`]).
-    pub fn add_stress_stiffness(&self, at: At, rates: &[[f64; 3]], pattern: &BlockPattern, stiffness: &mut Blocks) {
-        let mut skew = if self.have_skew() { Blocks::zeros(pattern) } else { Blocks::default() };
-        for Named { name, term } in self.list.iter().filter(|named| named.term.has_tangent()) {
-            let mut tangent = Tangent { pattern, stiffness, skew: &mut skew, term: name, symmetry: None };
-            term.add_stress_stiffness(at, rates, &mut tangent);
-        }
-    }
-
-    /// Strokes of all actions over a straight motion, N·mm.
-    pub fn strokes(&self, mesh: &Mesh, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
-        self.iter().flat_map(|term| term.strokes(mesh, from, to)).collect()
-    }
-
-    /// Work of the actions over strokes, with their factors at one value of the parameter, N·mm.
-    pub fn work(&self, strokes: &[f64], parameter: f64) -> f64 {
-        let factors = self.iter().flat_map(|term| term.factors(parameter));
-        factors.zip(strokes).map(|(factor, stroke)| factor * stroke).sum()
-    }
-
-    /// Work of the actions over strokes, with the means of their factors at two values of the parameter, N·mm.
-    pub fn mean_work(&self, strokes: &[f64], parameters: [f64; 2]) -> f64 {
-        0.5 * parameters.map(|parameter| self.work(strokes, parameter)).iter().sum::<f64>()
     }
 }

@@ -4,30 +4,6 @@ use crate::model::limits::{MOST_CONTROL_POINTS, SMOOTH};
 use crate::spline::Elements;
 use crate::units::significant;
 
-impl ModelError {
-    /// The tables of a scene that the error is about: their kind, and a name where it is one of them; `None` where it is about
-    /// none, or about several kinds.
-    pub fn concerns(&self) -> Option<(&'static str, Option<&str>)> {
-        match self {
-            Self::FreeMotion { .. } | Self::NothingFree { .. } => Some(("support", None)),
-            Self::NotAnEdge { support }
-            | Self::NotASymmetryPlane { support, .. }
-            | Self::NotItsOwnImage { support, .. }
-            | Self::MaterialNotMirrored { support, .. }
-            | Self::SectionShared { support, .. }
-            | Self::Contradiction { support, .. }
-            | Self::NoFreeMotion { support }
-            | Self::TooFewPoints { support, .. }
-            | Self::Unbalanced { support, .. } => Some(("support", Some(support))),
-            Self::NotALine { action } | Self::Overhang { action, .. } | Self::LoadNotMirrored { action, .. } => {
-                Some(("action", Some(action)))
-            }
-            Self::NotASection { probe } => Some(("probe", Some(probe))),
-            _ => None,
-        }
-    }
-}
-
 /// Reasons why a scene cannot be made discrete.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `limits` | tolerances and limits |
-//! | `error` | why a scene cannot be made discrete |
+//! | `error`, `concerned` | why a scene cannot be made discrete, and the tables that this is about |
 //! | `shape` | the surface of a scene in its fewest elements |
 //! | `profile` | a profile of lines and arcs as one curve |
 //! | `joint` | knot lines across which the surface is smooth |
@@ -37,6 +37,7 @@
 mod block_pattern;
 mod blocks;
 mod body;
+mod concerned;
 mod connectivity;
 mod direction;
 mod edge;

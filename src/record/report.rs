@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::record::{CriticalPoint, Warning};
+use crate::record::{ConnectionReading, CriticalPoint, Reading, Warning};
 use crate::scene::{Parameter, Scene, Stage};
 use crate::spline::Elements;
 use crate::state::State;
@@ -124,32 +124,6 @@ pub fn released_in_words(energy_n_mm: Option<f64>, loads_follow: bool, decimals:
         None if loads_follow => "energy released not known: the loads have no potential".into(),
         None => "energy released not known: less than the rule of work resolves".into(),
     }
-}
-
-/// The value of a probe of the scene at an equilibrium.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Reading {
-    /// Name of the probe.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// Unit of the value.
-    pub unit: String,
-    /// Where it is, as parameters (u, v) in [0, 1], for a largest value.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub at: Option<[f64; 2]>,
-}
-
-/// A joint or a bond at an equilibrium.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ConnectionReading {
-    /// Its name in the scene.
-    pub name: String,
-    /// Its share of the energy that the structure stores.
-    pub energy_share: f64,
-    /// Of a joint that keeps an angle, the largest angle by which it has opened, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub opened_deg: Option<f64>,
 }
 
 fn is_nothing(energy: &f64) -> bool {

@@ -13,7 +13,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::adapt::Blocked;
-use crate::record::report::ConnectionReading;
+use crate::record::ConnectionReading;
 use crate::spline::Elements;
 use crate::state::State;
 use crate::units::{count, signed, significant};

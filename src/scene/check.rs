@@ -3,23 +3,18 @@
 use std::path::Path;
 
 use super::connections::connections;
-use super::data::{ArcLength, EndRotation, Geometry, Load, LoadSteps, Material, Scene, Solver, Symmetry};
+use super::data::{ArcLength, EndRotation, Geometry, Load, LoadSteps, Scene, Solver, Symmetry};
 use super::document::Document;
 use super::error::SceneError;
 use super::fault::{Checked, CheckedWhole, Faults, Source};
 use super::key_table::SECTIONS;
+use super::meshes;
 use super::meshes::Refinable;
 use super::problem::Problem;
 use super::shells::{ReadShell, Shells, check_structure};
 use super::structure::structure;
 use super::table::{Table, between};
 use super::tables::Tables;
-use super::{materials, meshes, profiles};
-use crate::units::significant;
-
-/// Length of the layer in which a cylinder feels its held end, in units of sqrt(R t): pi decay lengths of
-/// sqrt(R t)/(3(1 - nu^2))^(1/4), after which 4 % are left (Timoshenko & Woinowsky-Krieger, section 114), at nu = 0.3.
-const BOUNDARY_LAYER: f64 = 2.4;
 
 /// Parses and checks a scene in TOML; errors call the text `file_name`.
 ///
@@ -113,52 +108,6 @@ fn with_shells(tables: &Tables, shells: Option<Shells>, chooses_mesh: bool, mut 
         output,
         expect,
     })
-}
-
-/// Refuses a spring that the boundary layers of its two ends fill: between rigid ends so near to each other no fold forms.
-pub(super) fn check_length(table: &Table, geometry: &Geometry, material: &Material, load: &Load) -> Checked<()> {
-    let (Geometry::TapeSpring { length_mm, radius_mm, .. }, Load::EndRotation(_)) = (geometry, load) else {
-        return Ok(());
-    };
-    let layer_mm = BOUNDARY_LAYER * (radius_mm * material.thickness_mm()).sqrt();
-    if *length_mm >= 2.0 * layer_mm {
-        return Ok(());
-    }
-    let problem = format!(
-        "a spring of {length_mm} mm is all boundary layer: each end takes {BOUNDARY_LAYER} sqrt(R t) = {} mm of it",
-        significant(layer_mm, 3)
-    );
-    let remedy = format!(
-        "make it longer than {} mm, by far; radius_mm is {radius_mm}: are the two exchanged?",
-        significant(2.0 * layer_mm, 3)
-    );
-    Err(table.wrong_at("length_mm", problem, remedy))
-}
-
-/// The material of a shell, which is thin.
-pub(super) fn material(tables: &Tables) -> Checked<Material> {
-    let table = tables.one("material");
-    let material = materials::material(table, tables.all("ply").collect())?;
-    let thickness_mm = material.thickness_mm();
-    if material.offset_mm().abs() > thickness_mm {
-        let problem = format!(
-            "offset_mm = {} puts the surface farther from the middle of the thickness than the whole thickness, \
-             {thickness_mm} mm",
-            material.offset_mm()
-        );
-        let remedy =
-            "half the thickness puts it on top; where the shell lies farther off, draw the geometry nearer to it";
-        return Err(table.wrong_at("offset_mm", problem, remedy));
-    }
-    let geometry = tables.one("geometry");
-    profiles::check_thin(geometry, thickness_mm)?;
-    let radius_mm: Option<f64> = geometry.get("radius_mm");
-    if let Some(radius_mm) = radius_mm.filter(|radius_mm| thickness_mm >= *radius_mm) {
-        let thickness = table.place_of("thickness_mm").or(Some(table.place.clone()));
-        let problem = Problem::NotThin { thickness_mm, radius_mm };
-        return Err(between(problem, thickness, geometry.place_of("radius_mm"), table));
-    }
-    Ok(material)
 }
 
 fn load(tables: &Tables, shells: Option<&Shells>) -> Checked<Load> {

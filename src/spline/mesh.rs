@@ -1,9 +1,10 @@
 //! The surfaces of a structure: one patch for each shell, with all control points in one list.
 
+use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use crate::digest::{Feed, Hash};
@@ -134,7 +135,7 @@ impl Mesh {
 }
 
 /// Numbers of elements in each direction, of the only patch or of each patch.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Elements {
     /// Along u and v of the only patch.
@@ -161,6 +162,21 @@ impl Elements {
     pub fn with_sign(&self, times: &str) -> String {
         let of_patch = |[along, across]: &[usize; 2]| format!("{along}{times}{across}");
         self.each().iter().map(of_patch).collect::<Vec<_>>().join(" + ")
+    }
+}
+
+/// Viewers want a type that is plain: a list, of numbers or of lists of numbers.
+impl JsonSchema for Elements {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Elements".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "array", "items": { "type": ["integer", "array"], "items": { "type": "integer" } } })
     }
 }
 

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use self::coupled::Coupling;
 use self::glue::Glue;
 use self::kept_angle::KeptAngle;
-use crate::energy::{At, Tangent, Term, Terms};
+use crate::energy::{At, Tangent, Term};
 use crate::model::{ModelError, edge_pairs, members};
 use crate::scene::Scene;
 use crate::spline::Mesh;
@@ -71,17 +71,15 @@ impl Connections {
         }
         Ok(Self { list })
     }
-}
 
-impl Terms {
-    /// Adds the terms of joints and bonds.
-    pub(super) fn push_connections(&mut self, connections: &Connections) {
-        for Connection { name, energy } in &connections.list {
-            match energy {
-                Energy::Joint(coupling) => self.push(&format!("joint \"{name}\""), Box::new(Shared(coupling.clone()))),
-                Energy::Bond(coupling) => self.push(&format!("bond \"{name}\""), Box::new(Shared(coupling.clone()))),
+    /// Returns the term of each joint and bond, and what messages call it.
+    pub(super) fn terms(&self) -> impl Iterator<Item = (String, Box<dyn Term>)> {
+        self.list.iter().map(|Connection { name, energy }| match energy {
+            Energy::Joint(coupling) => {
+                (format!("joint \"{name}\""), Box::new(Shared(coupling.clone())) as Box<dyn Term>)
             }
-        }
+            Energy::Bond(coupling) => (format!("bond \"{name}\""), Box::new(Shared(coupling.clone())) as Box<dyn Term>),
+        })
     }
 }
 

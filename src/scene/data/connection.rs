@@ -4,16 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::Edge;
-
-/// An edge of a shell of a structure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ShellEdge {
-    /// The shell, by its place in the list.
-    pub shell: usize,
-    /// Its edge.
-    pub edge: Edge,
-}
+use super::place::ShellEdge;
 
 /// A connection of two shells along an edge of each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

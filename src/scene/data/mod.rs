@@ -4,6 +4,8 @@
 //! |---|---|
 //! | `geometry` | the undeformed surface |
 //! | `material` | law and thickness |
+//! | `mesh` | spline space and quadrature |
+//! | `place` | places on the surface |
 //! | `boundary` | supports and actions |
 //! | `probe` | what reports read |
 //! | `expectation` | how a run is to end |
@@ -15,21 +17,27 @@ mod connection;
 mod expectation;
 mod geometry;
 mod material;
+mod mesh;
 mod output;
+mod place;
 mod probe;
 mod structure;
 
 pub use boundary::{
-    Action, ActionKind, Edge, ForceVector, FreeWord, History, Hold, LoadedArea, Motion, ParametricDirection, Region,
-    SectionTurns, Support, SurfaceDirection,
+    Action, ActionKind, ForceVector, FreeWord, History, Hold, LoadedArea, Motion, SectionTurns, Support,
+    SurfaceDirection,
 };
-pub use connection::{Bond, Joint, JointKind, ShellEdge};
+pub use connection::{Bond, Joint, JointKind};
 pub use expectation::{Expectation, ExpectedOutcome};
 pub use geometry::{Geometry, NurbsPatch, ProfilePiece, Seam};
 pub use material::{Material, OrthotropicLaw, Ply, Strengths};
+pub use mesh::{MeshSpec, Quadrature};
 pub use output::{NumbersIn, Output, SyncPolicy};
-pub use probe::{Axis, Component, Probe, ProbeKind, Reaction};
+pub use place::{Axis, Edge, ParametricDirection, Region, ShellEdge};
+pub use probe::{Component, Probe, ProbeKind, Reaction};
 pub use structure::{Pose, Shell};
+
+use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
@@ -83,49 +91,42 @@ pub struct Scene {
     pub expect: Option<Expectation>,
 }
 
-/// The spline space and quadrature that the run starts with. Pairs are (along the length, along the arc).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MeshSpec {
-    /// Polynomial degree each way, 2 to 5.
-    pub degree: [usize; 2],
-    /// Elements each way **over the whole shell**, whatever the symmetry: a quarter model of an 8 × 4
-    /// mesh has 4 × 2 elements.
-    pub elements: [usize; 2],
-    /// Integration rule.
-    pub quadrature: Quadrature,
-}
+impl Scene {
+    /// Direction away from the axis or the centre of the shell at a point; `None` where the geometry has neither.
+    pub fn away_from_centre(&self, point: [f64; 3]) -> Option<[f64; 3]> {
+        self.geometry.away_from_centre(self.pose.own(point)).map(|direction| self.pose.turned(direction))
+    }
 
-/// The integration rule on an element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Quadrature {
-    /// Gauss–Legendre with degree + 1 points each way.
-    Full,
-    /// Gauss–Legendre with degree + 2 points each way.
-    FullPlusOne,
-    /// Gauss–Legendre with degree + 3 points each way.
-    FullPlusTwo,
-    /// Gauss–Legendre with degree points each way; degree + 1 in a direction that has one element.
-    Reduced,
-    /// Gauss–Legendre with degree − 1 points (at least 2) where the spline is smooth, degree next to edges and repeated
-    /// knots; degree + 1 in a direction that has one element.
-    Patch,
-    /// As `Patch`, with as many points more for stretching as leave constant membrane forces in balance on the mesh in hand.
-    Balanced,
-}
+    /// Number of shells.
+    pub fn shell_count(&self) -> usize {
+        self.shells.len().max(1)
+    }
 
-impl Quadrature {
-    /// The word for the rule in scenes and logs.
-    pub fn name(self) -> &'static str {
-        match self {
-            Quadrature::Full => "full",
-            Quadrature::FullPlusOne => "full-plus-one",
-            Quadrature::FullPlusTwo => "full-plus-two",
-            Quadrature::Reduced => "reduced",
-            Quadrature::Patch => "patch",
-            Quadrature::Balanced => "balanced",
-        }
+    /// Name of a shell; `None` where the scene has one shell, which has no name.
+    pub fn shell_name(&self, shell: usize) -> Option<&str> {
+        self.shells.get(shell).map(|shell| &*shell.name)
+    }
+
+    /// The scene of one shell alone, with the supports, actions and probes that are its own, and the actions on all shells.
+    /// A scene of one shell is returned as it is.
+    pub fn of_shell(&self, shell: usize) -> Cow<'_, Scene> {
+        let Some(own) = self.shells.get(shell) else { return Cow::Borrowed(self) };
+        let supports = self.supports.iter().filter_map(|support| support.of_shell(shell));
+        let actions = self.actions.iter().filter(|action| action.shell.is_none_or(|on| on == shell)).cloned();
+        let probes = self.probes.iter().filter(|probe| probe.shell == shell).cloned();
+        Cow::Owned(Scene {
+            geometry: own.geometry.clone(),
+            material: own.material.clone(),
+            mesh: own.mesh.clone(),
+            pose: own.pose,
+            supports: supports.collect(),
+            actions: actions.collect(),
+            probes: probes.collect(),
+            shells: Vec::new(),
+            joints: Vec::new(),
+            bonds: Vec::new(),
+            ..self.clone()
+        })
     }
 }
 

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Region;
-use super::boundary::is_first;
+use super::place::{Axis, Region, is_first};
 
 /// A quantity of the scene that every equilibrium reports by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,18 +69,6 @@ pub enum Component {
     Normal,
     /// Away from the axis or the centre of the undeformed shell ([`super::Geometry::away_from_centre`]).
     Radial,
-}
-
-/// An axis of the global frame, as a component of a vector.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Axis {
-    /// Along x.
-    X,
-    /// Along y.
-    Y,
-    /// Along z.
-    Z,
 }
 
 /// A component of a reaction: of its force or its moment.

@@ -1,10 +1,10 @@
 //! Structures of several shells.
 
-use std::borrow::Cow;
-
 use serde::{Deserialize, Serialize};
 
-use super::{Geometry, Material, MeshSpec, Region, Scene, Support};
+use super::geometry::Geometry;
+use super::material::Material;
+use super::mesh::MeshSpec;
 
 /// A shell of a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -81,53 +81,5 @@ impl Pose {
     pub fn own(&self, point: [f64; 3]) -> [f64; 3] {
         let arm = [0, 1, 2].map(|c| point[c] - self.position_mm[c]);
         self.axes.map(|axis| (0..3).map(|c| axis[c] * arm[c]).sum())
-    }
-}
-
-impl Support {
-    /// What the support is on one shell: a section of several shells is one on the edge of each.
-    fn of_shell(&self, shell: usize) -> Option<Self> {
-        let edges = self.also.iter().filter(|also| also.shell == shell).map(|also| Region::Edge(also.edge));
-        let on = (self.shell == shell).then_some(self.on).into_iter().chain(edges).next()?;
-        Some(Self { on, shell: 0, also: Vec::new(), ..self.clone() })
-    }
-}
-
-impl Scene {
-    /// Direction away from the axis or the centre of the shell at a point; `None` where the geometry has neither.
-    pub fn away_from_centre(&self, point: [f64; 3]) -> Option<[f64; 3]> {
-        self.geometry.away_from_centre(self.pose.own(point)).map(|direction| self.pose.turned(direction))
-    }
-
-    /// Number of shells.
-    pub fn shell_count(&self) -> usize {
-        self.shells.len().max(1)
-    }
-
-    /// Name of a shell; `None` where the scene has one shell, which has no name.
-    pub fn shell_name(&self, shell: usize) -> Option<&str> {
-        self.shells.get(shell).map(|shell| &*shell.name)
-    }
-
-    /// The scene of one shell alone, with the supports, actions and probes that are its own, and the actions on all shells.
-    /// A scene of one shell is returned as it is.
-    pub fn of_shell(&self, shell: usize) -> Cow<'_, Scene> {
-        let Some(own) = self.shells.get(shell) else { return Cow::Borrowed(self) };
-        let supports = self.supports.iter().filter_map(|support| support.of_shell(shell));
-        let actions = self.actions.iter().filter(|action| action.shell.is_none_or(|on| on == shell)).cloned();
-        let probes = self.probes.iter().filter(|probe| probe.shell == shell).cloned();
-        Cow::Owned(Scene {
-            geometry: own.geometry.clone(),
-            material: own.material.clone(),
-            mesh: own.mesh.clone(),
-            pose: own.pose,
-            supports: supports.collect(),
-            actions: actions.collect(),
-            probes: probes.collect(),
-            shells: Vec::new(),
-            joints: Vec::new(),
-            bonds: Vec::new(),
-            ..self.clone()
-        })
     }
 }
