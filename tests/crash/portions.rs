@@ -9,7 +9,7 @@ use crate::bounds::measured;
 use crate::long::write_long;
 use crate::program::Sandbox;
 
-const COMMITS: u64 = 50_000;
+const COMMITS: u64 = 60_000;
 
 /// Runs a command that takes less memory than the log is long: one that held the log, or its states, would not.
 #[track_caller]
@@ -40,8 +40,8 @@ fn no_command_holds_a_long_log() {
     let table = |log: &str| place.foldline(&format!("inspect {log}")).ends(0).out.replace(log, "the log");
     assert!(table("long.mcap") == table("recovered.mcap"));
 
-    place.foldline("verify thin.mcap").ends(0).says(&["thinned (1..10): 11 of 50000 stages have their state"]);
-    place.foldline("inspect thin.mcap").ends(0).says(&["stages with their state: 0–9, 49999"]);
+    place.foldline("verify thin.mcap").ends(0).says(&["thinned (1..10): 11 of 60000 stages have their state"]);
+    place.foldline("inspect thin.mcap").ends(0).says(&["stages with their state: 0–9, 59999"]);
     // No run made these states, and none makes them again.
     let again = "the state was thinned out; made again from stage 10 on, stage 10 comes out otherwise";
     place.foldline("plot thin.mcap -o none --step 40000").ends(1).says(&[again]);
