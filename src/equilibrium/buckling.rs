@@ -35,6 +35,11 @@ const SLIGHTLY: f64 = 1e-4;
 /// How far beyond a load factor the modes below it are counted, relative.
 const BEYOND: f64 = 1e-6;
 
+/// A matrix by its values, times a vector.
+type Product<'a> = dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a;
+/// A right hand side, replaced by the solution.
+type Solution<'a> = dyn Fn(&mut Vec<f64>) + 'a;
+
 /// A mode of linear buckling.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -165,8 +170,8 @@ impl Subspace {
         count: usize,
         stiffness: &[f64],
         stress: &[f64],
-        multiply: &dyn Fn(&[f64], &[f64]) -> Vec<f64>,
-        solve: &dyn Fn(&mut Vec<f64>),
+        multiply: &Product,
+        solve: &Solution,
     ) -> Vec<(f64, Vec<f64>)> {
         let mut last: Vec<f64> = Vec::new();
         let mut factors = Vec::new();
@@ -192,12 +197,7 @@ impl Subspace {
 
     /// Turns the vectors into the best approximations of modes among their sums (Rayleigh and Ritz), orthonormal in K, and returns
     /// their load factors.
-    fn project(
-        &mut self,
-        stiffness: &[f64],
-        stress: &[f64],
-        multiply: &dyn Fn(&[f64], &[f64]) -> Vec<f64>,
-    ) -> Vec<f64> {
+    fn project(&mut self, stiffness: &[f64], stress: &[f64], multiply: &Product) -> Vec<f64> {
         let size = self.vectors.len();
         let [k, s] = [stiffness, stress].map(|matrix| {
             let images: Vec<Vec<f64>> = self.vectors.iter().map(|vector| multiply(matrix, vector)).collect();

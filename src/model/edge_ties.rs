@@ -25,11 +25,14 @@ pub(crate) fn is_tied_smoothly(pair: &EdgePair) -> bool {
     pair.joint.kind == JointKind::Smooth && pair.conforms && Lines::of(pair).shares().is_some()
 }
 
+/// Control points of the structure with their homogeneous coordinates.
+type Line = Vec<(usize, [f64; 4])>;
+
 /// Lines of control points across a joint, on either side from the edge inwards.
 struct Lines<'a> {
     pair: &'a EdgePair<'a>,
-    /// Lines in the order of the first edge, as (control point in the structure, homogeneous coordinates).
-    sides: [Vec<Vec<(usize, [f64; 4])>>; 2],
+    /// Lines in the order of the first edge.
+    sides: [Vec<Line>; 2],
 }
 
 impl<'a> Lines<'a> {
@@ -92,7 +95,7 @@ impl<'a> Lines<'a> {
                 terms.fold((0.0, 0.0), |(sum, size), term| (sum + term, size + term.abs()))
             };
             // Inwards on one side is outwards on the other.
-            let sign = if order % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if order.is_multiple_of(2) { 1.0 } else { -1.0 };
             (0..4).all(|c| {
                 let (a, size) = sum(one, &factors[0], c);
                 let (b, other_size) = sum(other, &factors[1], c);
@@ -173,7 +176,7 @@ impl Supports {
                 return;
             }
             let factors = [0, 1].map(|k| derivative_at_start(&lines.knots(k), degree, order));
-            let scale = if order % 2 == 0 { 1.0 } else { -1.0 } * ratio.powi(order as i32);
+            let scale = if order.is_multiple_of(2) { 1.0 } else { -1.0 } * ratio.powi(order as i32);
             let size = factors[0].iter().fold(0.0_f64, |most, factor| most.max(factor.abs()));
             for index in (0..count).filter(|index| !((held[0] && *index < 2) || (held[1] && index + 2 >= count))) {
                 for c in 0..3 {

@@ -107,7 +107,8 @@ mod tests {
     /// Derivatives by finite differences, link by link.
     #[test]
     fn derivatives_are_those_of_the_vectors() {
-        let vectors: [fn([[f64; 3]; 2]) -> FrameVector; 3] =
+        type Vector = fn([[f64; 3]; 2]) -> FrameVector;
+        let vectors: [Vector; 3] =
             [FrameVector::normal, |a| FrameVector::edge_normal(a, 0), |a| FrameVector::edge_normal(a, 1)];
         let step = 1e-6;
         for vector in vectors {

@@ -256,8 +256,7 @@ fn what_cannot_be_connected_is_refused() {
     assert!(matches!(far, ModelError::NothingGlued { gap: Some(gap), .. } if (gap - 0.2).abs() < 1e-6), "{far}");
     let crossing = start(&boom.replace("start_mm = [-0.05, -8.0]", "start_mm = [0.0, -8.0]"));
     assert!(matches!(crossing, ModelError::ShellsCross { by, .. } if (by - 0.05).abs() < 1e-6), "{crossing}");
-    let flat =
-        start(&boom.replace("about = \"y\"", "about = \"x\"").replace("forces_along = \"x\"", "forces_along = \"x\""));
+    let flat = start(&boom.replace("about = \"y\"", "about = \"x\""));
     assert!(matches!(flat, ModelError::SectionWithoutExtent { .. }), "{flat}");
     for (before, after, says) in [
         ("\"arm.u-start\"]", "\"arm.u-strat\"]", "no edge of a shell"),

@@ -174,6 +174,14 @@ impl Quantity {
     }
 }
 
+/// Elements along u or v of a scene of one shell.
+fn of_one(elements: &Elements, direction: usize) -> Option<f64> {
+    match elements {
+        Elements::OfOne(counts) => Some(counts[direction] as f64),
+        Elements::OfEach(_) => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -192,13 +200,5 @@ mod tests {
         assert_eq!(name("-probe.w_c").as_deref(), Some("−w_c (u)"));
         assert_eq!(name("moment"), None, "nothing turns");
         assert_eq!(quantity_named(&roof(), "-w_c").unwrap().in_file_name(), "minus-w_c");
-    }
-}
-
-/// Elements along u or v of a scene of one shell.
-fn of_one(elements: &Elements, direction: usize) -> Option<f64> {
-    match elements {
-        Elements::OfOne(counts) => Some(counts[direction] as f64),
-        Elements::OfEach(_) => None,
     }
 }
