@@ -147,7 +147,8 @@ fn in_full(record: &Record, report: &StabilityReport) -> String {
 
 /// The parameter of the scene at a change of it from a state.
 fn at_factor(scene: &Scene, report: &BucklingReport, factor: f64) -> String {
-    Parameter::of(scene).shown(report.state.parameter + factor)
+    let at = report.state.parameter + factor;
+    Parameter::of(scene).shown(format!("{at:.5e}").parse().unwrap_or(at))
 }
 
 /// The modes of linear buckling, a line each.

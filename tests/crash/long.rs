@@ -21,7 +21,7 @@ use crate::flips::{Random, seed};
 use crate::memory::peak;
 use crate::program::{Said, Sandbox, scene};
 
-const SCENE: &str = r#"
+pub const SCENE: &str = r#"
 [geometry]
 kind = "tape-spring"
 length_mm = 300.0
@@ -61,7 +61,7 @@ pub fn write_long(path: &Path, commits: u64) {
 }
 
 /// The same of another scene.
-fn write_long_of(text: &str, path: &Path, commits: u64) {
+pub fn write_long_of(text: &str, path: &Path, commits: u64) {
     let scene = scene(text);
     let mut stages = Stages::new(scene.clone());
     let start = stages.start().unwrap();

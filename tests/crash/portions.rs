@@ -6,10 +6,10 @@ use std::fs;
 use foldline::journal::{Completeness, Log};
 
 use crate::bounds::measured;
-use crate::long::write_long;
+use crate::long::{SCENE, write_long_of};
 use crate::program::Sandbox;
 
-const COMMITS: u64 = 60_000;
+const COMMITS: u64 = 50_000;
 
 /// Runs a command that takes less memory than the log is long: one that held the log, or its states, would not.
 #[track_caller]
@@ -24,7 +24,8 @@ fn in_less_than(length: u64, place: &Sandbox, arguments: &str) {
 fn no_command_holds_a_long_log() {
     let place = Sandbox::new();
     let path = place.file("long.mcap");
-    write_long(&path, COMMITS);
+    // With states as long as reports, as those of small meshes are.
+    write_long_of(&SCENE.replace("[4, 2]", "[8, 4]"), &path, COMMITS);
     let length = fs::metadata(&path).unwrap().len();
     for command in [
         "inspect long.mcap",
@@ -40,8 +41,8 @@ fn no_command_holds_a_long_log() {
     let table = |log: &str| place.foldline(&format!("inspect {log}")).ends(0).out.replace(log, "the log");
     assert!(table("long.mcap") == table("recovered.mcap"));
 
-    place.foldline("verify thin.mcap").ends(0).says(&["thinned (1..10): 11 of 60000 stages have their state"]);
-    place.foldline("inspect thin.mcap").ends(0).says(&["stages with their state: 0–9, 59999"]);
+    place.foldline("verify thin.mcap").ends(0).says(&["thinned (1..10): 11 of 50000 stages have their state"]);
+    place.foldline("inspect thin.mcap").ends(0).says(&["stages with their state: 0–9, 49999"]);
     // No run made these states, and none makes them again.
     let again = "the state was thinned out; made again from stage 10 on, stage 10 comes out otherwise";
     place.foldline("plot thin.mcap -o none --step 40000").ends(1).says(&[again]);
@@ -52,7 +53,7 @@ fn no_command_holds_a_long_log() {
 fn a_long_log_that_is_damaged() {
     let place = Sandbox::new();
     let path = place.file("long.mcap");
-    write_long(&path, COMMITS / 2);
+    write_long_of(SCENE, &path, COMMITS / 2);
     let good = place.read("long.mcap");
     let half = COMMITS as usize / 4;
     let chunk = Log::from_bytes(good.clone()).unwrap().entries()[half].bytes.clone();

@@ -174,22 +174,20 @@ fn a_trac_boom_is_as_stiff_as_by_another_solver() {
     assert!((z / 72_887.8 - 1.0).abs() < 5e-3, "{z}");
 }
 
-/// Linear buckling of the boom held at its end, by an independent solver: 828.61, 828.74, 840.79 N·mm on 60 elements along it, and 825.40,
-/// 825.45, 836.61 on 90.
+/// Linear buckling of the boom held at its end, by an independent solver: 825.40, 825.45, 836.61 N·mm on 90 elements along it.
 #[test]
 #[ignore = "half a minute"]
 fn a_trac_boom_buckles_where_another_solver_says() {
     let mut boom = scene("structures/trac-boom.toml");
-    for (elements, expected) in [([60, 12], [828.61, 828.74, 840.79]), ([90, 15], [825.40, 825.45, 836.61])] {
-        boom.shells.iter_mut().for_each(|shell| shell.mesh.elements = elements);
-        let start = Stages::new(boom.clone()).start().unwrap();
-        let mut work = Workspace::new(&boom, &start.mesh).unwrap();
-        let found = linear_buckling(&mut work, Configuration::of(&start), 3).unwrap();
-        let moments: Vec<f64> = found.modes.iter().map(|mode| 700.0 * mode.factor).collect();
-        println!("{elements:?}: {moments:?}, counted {}", found.counted);
-        for (found, expected) in moments.iter().zip(expected) {
-            assert!((found / expected - 1.0).abs() < 1e-2, "{moments:?}");
-        }
+    boom.shells.iter_mut().for_each(|shell| shell.mesh.elements = [90, 15]);
+    let start = Stages::new(boom.clone()).start().unwrap();
+    let mut work = Workspace::new(&boom, &start.mesh).unwrap();
+    let found = linear_buckling(&mut work, Configuration::of(&start), 3).unwrap();
+    let moments: Vec<f64> = found.modes.iter().map(|mode| 700.0 * mode.factor).collect();
+    println!("{moments:?}, counted {}", found.counted);
+    assert_eq!(found.counted, 3);
+    for (found, expected) in moments.iter().zip([825.40, 825.45, 836.61]) {
+        assert!((found / expected - 1.0).abs() < 1e-2, "{moments:?}");
     }
 }
 
