@@ -24,10 +24,7 @@ impl Finest {
     /// Elements each way of each patch.
     pub fn elements(&self) -> Elements {
         let counts = |parts: &[Vec<usize>; 2]| parts.each_ref().map(|parts| parts.iter().sum());
-        match &self.0[..] {
-            [patch] => Elements::OfOne(counts(patch)),
-            patches => Elements::OfEach(patches.iter().map(counts).collect()),
-        }
+        self.0.iter().map(counts).collect()
     }
 
     /// The mesh itself.

@@ -53,10 +53,7 @@ impl Arguments {
         if let Some(count) = self.buckling {
             return self.buckle(&asked, step, count.get());
         }
-        let mut ends = Ends::default();
-        asked.stages_of_step(step)?.iter().for_each(|record| ends.take(record));
-        let no_end = || Failure::NoSuchStep { log: self.log.clone(), step, known: asked.steps() };
-        let index = ends.stages().pop().ok_or_else(no_end)?;
+        let index = self.end_of(&asked, step)?;
         let record = asked.log.record(index).map_err(asked.changed())?;
         let log = asked.log.part(index..index + 1).map_err(asked.changed())?;
         let (report, scene) = self.report(&mut States::of(&log), index)?;
@@ -67,16 +64,19 @@ impl Arguments {
         }
     }
 
+    /// The stage whose equilibrium a load step ended with.
+    fn end_of(&self, asked: &Asked, step: u64) -> Result<usize, Failure> {
+        let mut ends = Ends::default();
+        asked.stages_of_step(step)?.iter().for_each(|record| ends.take(record));
+        let no_end = || Failure::NoSuchStep { log: self.log.clone(), step, known: asked.steps() };
+        ends.stages().pop().ok_or_else(no_end)
+    }
+
     /// Prints the modes of linear buckling about the end of a load step.
     fn buckle(&self, asked: &Asked, step: u64, count: usize) -> Result<(), Failure> {
         let index = match step {
             0 => None,
-            _ => {
-                let mut ends = Ends::default();
-                asked.stages_of_step(step)?.iter().for_each(|record| ends.take(record));
-                let no_end = || Failure::NoSuchStep { log: self.log.clone(), step, known: asked.steps() };
-                Some(ends.stages().pop().ok_or_else(no_end)?)
-            }
+            _ => Some(self.end_of(asked, step)?),
         };
         let first = index.unwrap_or(0);
         let log = asked.log.part(first..first + 1).map_err(asked.changed())?;
@@ -87,12 +87,9 @@ impl Arguments {
         let Some(folder) = &self.output else { return Ok(()) };
         let mut written = String::new();
         for (number, mode) in report.modes.modes.iter().enumerate() {
-            let files = mode_files(folder, &format!("buckling-{}", number + 1));
             let title = format!("Buckling mode {}, at {}", number + 1, at_factor(&scene, &report, mode.factor));
             let texts = drawn(&scene, &report.state, &mode.shape, &title, "linear buckling")?;
-            let files: Vec<_> = files.into_iter().zip(texts.map(String::into_bytes)).collect();
-            write_files(&files)?;
-            written += &files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>();
+            written += &write_mode(folder, &format!("buckling-{}", number + 1), texts)?;
         }
         print_as_it_is(&written)
     }
@@ -188,9 +185,14 @@ fn draw(folder: &Path, scene: &Scene, record: &Record, report: &StabilityReport)
     let title = format!("Mode of the lowest eigenvalue, {} N/mm", significant(report.mode.eigenvalue, 4));
     let texts =
         drawn(scene, &report.state, &report.mode.shape, &title, &format!("load step {}, {at}", record.report.step))?;
-    let files: Vec<_> = mode_files(folder, "mode").into_iter().zip(texts.map(String::into_bytes)).collect();
+    print_as_it_is(&write_mode(folder, "mode", texts)?)
+}
+
+/// Writes the files of a mode; returns their paths, a line each.
+fn write_mode(folder: &Path, name: &str, texts: [String; 2]) -> Result<String, Failure> {
+    let files: Vec<_> = mode_files(folder, name).into_iter().zip(texts.map(String::into_bytes)).collect();
     write_files(&files)?;
-    print_as_it_is(&files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect::<String>())
+    Ok(files.iter().map(|(path, _)| format!("{}\n", path_in_line(path))).collect())
 }
 
 /// A mode as a picture, and for ParaView.

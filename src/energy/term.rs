@@ -179,9 +179,7 @@ impl Tangent<'_> {
     /// # Panics
     /// Where the control points neither share an element nor are among the term's own [`Term::pairs`].
     pub fn add(&mut self, [i, j]: [usize; 2], slope: [[f64; 3]; 3]) {
-        let Some(block) = self.pattern.block(i.min(j), i.max(j)) else {
-            panic!("the term \"{}\" couples control points {i} and {j}, but does not list the pair", self.term)
-        };
+        let block = self.block([i, j]);
         if let Some(symmetry) = &mut self.symmetry {
             symmetry.see([i, j], &slope);
         }
@@ -209,15 +207,20 @@ impl Tangent<'_> {
 }
 
 impl Tangent<'_> {
+    fn block(&self, [i, j]: [usize; 2]) -> usize {
+        let block = self.pattern.block(i.min(j), i.max(j));
+        block.unwrap_or_else(|| {
+            panic!("the term \"{}\" couples control points {i} and {j}, but does not list the pair", self.term)
+        })
+    }
+
     /// Adds ∂f_i/∂u_j, and for two control points its transpose ∂f_j/∂u_i as well, N/mm: for terms that are symmetric by the way in
     /// which they are summed up.
     ///
     /// # Panics
     /// Where the control points neither share an element nor are among the term's own [`Term::pairs`].
     pub(super) fn add_symmetric(&mut self, [i, j]: [usize; 2], slope: [[f64; 3]; 3]) {
-        let Some(block) = self.pattern.block(i.min(j), i.max(j)) else {
-            panic!("the term \"{}\" couples control points {i} and {j}, but does not list the pair", self.term)
-        };
+        let block = self.block([i, j]);
         let stiffness = self.stiffness.block_mut(block);
         for c in 0..3 {
             for d in 0..3 {

@@ -19,7 +19,7 @@ use crate::equilibrium::assembly::subtract;
 use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::equations::Equations;
 use crate::equilibrium::solve_error::SolveError;
-use crate::equilibrium::vector::product;
+use crate::equilibrium::vector::{product, scale_to_one};
 use crate::equilibrium::workspace::Workspace;
 use crate::model::{BLOCK, Blocks, PointTable};
 use crate::shell::{Hessian, PointReference, add, dot, norm, scaled};
@@ -140,10 +140,7 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
         }
         let modes = positive.into_iter().map(|(factor, vector)| {
             let mut shape = placement.velocity(vector, &[]);
-            let lengths: Vec<f64> = shape.iter().map(|moved| norm(*moved)).collect();
-            let largest_at = (0..lengths.len()).fold(0, |best, i| if lengths[i] > lengths[best] { i } else { best });
-            let largest = lengths[largest_at];
-            shape.iter_mut().for_each(|moved| *moved = scaled(1.0 / largest, *moved));
+            let (largest_at, _) = scale_to_one(&mut shape);
             BucklingMode { factor: *factor, shape, largest_at }
         });
         let reversed = found.iter().map(|(factor, _)| *factor).filter(|factor| *factor < 0.0).reduce(f64::max);

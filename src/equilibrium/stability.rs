@@ -12,10 +12,9 @@ use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::metric::Metric;
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::tangent_stiffness::TangentStiffness;
-use crate::equilibrium::vector::product;
+use crate::equilibrium::vector::{product, scale_to_one};
 use crate::equilibrium::workspace::{Formed, Workspace};
 use crate::model::{Blocks, Placement};
-use crate::shell::dot;
 
 /// Largest number of inverse iterations. Near a critical point the lowest eigenvalue lies far from the next, and a
 /// handful suffice; of eigenvalues that are nearly equal any mixture of modes will do.
@@ -62,10 +61,7 @@ pub fn soft_mode(work: &mut Workspace, at: Configuration) -> Result<SoftMode, So
     let (vector, eigenvalue, iterations) = slicing.iterate(start, SETTLED);
     let factorizations = slicing.tried;
     let mut shape = placement.velocity(&vector, &[]);
-    let lengths: Vec<f64> = shape.iter().map(|u| dot(*u, *u).sqrt()).collect();
-    let largest_at = (0..lengths.len()).fold(0, |best, i| if lengths[i] > lengths[best] { i } else { best });
-    let largest = lengths[largest_at];
-    shape.iter_mut().for_each(|u| *u = u.map(|value| value / largest));
+    let (largest_at, largest) = scale_to_one(&mut shape);
     let free = vector.iter().map(|value| value / largest).collect();
     Ok(SoftMode { eigenvalue, shape, free, largest_at, iterations, factorizations })
 }

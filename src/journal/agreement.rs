@@ -2,6 +2,7 @@
 
 use crate::record::{Parameter, Report};
 use crate::scene::Stage;
+use crate::spline::knot_counts;
 use crate::state::State;
 
 /// A number of a report that differs from the number in the state that the stage made.
@@ -27,7 +28,7 @@ pub(super) fn disagreement(report: &Report, state: &State) -> Option<Disagreemen
     let counted = state.refined.as_ref().filter(|_| report.stage == Stage::RefineKnots).unwrap_or(&state.mesh);
     let marked = match report.stage {
         Stage::RefineKnots => report.marked,
-        _ => [0, 1].map(|direction| state.marked.iter().map(|marked| marked[direction].len()).sum()),
+        _ => knot_counts(&state.marked),
     };
     differs("parameter", report.parameter, state.parameter)
         .or_else(|| differs("moment_n_mm", report.moment_n_mm, state.moment_n_mm).filter(|_| turns))

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix3xX};
 
-use crate::shell::{add, cross, dot, norm, scaled, sub};
+use crate::shell::{add, basis_vector, cross, dot, norm, scaled, sub};
 
 /// A rigid body. It has six motions: translations, and turns about axes through its middle that move its farthest point
 /// by 1.
@@ -43,8 +43,8 @@ impl Body {
     /// Displacements of a point by each of the six motions.
     pub fn fields(&self, point: [f64; 3]) -> [[f64; 3]; 6] {
         let arm = scaled(1.0 / self.size, sub(point, self.middle));
-        let unit = |k: usize| [0, 1, 2].map(|c| f64::from(u8::from(c == k)));
-        [unit(0), unit(1), unit(2), cross(unit(0), arm), cross(unit(1), arm), cross(unit(2), arm)]
+        let [x, y, z] = [0, 1, 2].map(basis_vector);
+        [x, y, z, cross(x, arm), cross(y, arm), cross(z, arm)]
     }
 
     /// Describes one of the motions that the columns of a basis span: a translation if there is one, or else a turn.

@@ -29,8 +29,17 @@ impl EdgeRows {
         self
     }
 
-    /// Takes the rows of another edge in: both are one section.
-    pub fn join(&mut self, other: Self) {
+    /// Puts the rows of the edges of one section together; `None` where there is no edge.
+    ///
+    /// # Errors
+    /// The first among them.
+    pub fn joined(all: impl IntoIterator<Item = Result<Self, ModelError>>) -> Result<Option<Self>, ModelError> {
+        let mut all = all.into_iter();
+        let Some(first) = all.next().transpose()? else { return Ok(None) };
+        all.try_fold(first, |rows, other| Ok(rows.and(other?))).map(Some)
+    }
+
+    fn and(mut self, other: Self) -> Self {
         let length = self.length + other.length;
         let share = other.length / length;
         self.centroid = add(scaled(1.0 - share, self.centroid), scaled(share, other.centroid));
@@ -38,6 +47,7 @@ impl EdgeRows {
         self.outer.extend(other.outer);
         self.inner.extend(other.inner);
         self.normals.extend(other.normals);
+        self
     }
 }
 
@@ -53,7 +63,7 @@ const CENTROID_POINTS: usize = 8;
 pub fn edge_rows(patch: &Patch, edge: Edge) -> Result<EdgeRows, ModelError> {
     let [outer, inner] = rows_of(patch, edge);
     let normals = inner.iter().enumerate().map(|(j, control)| normal_beside(patch, edge, j, *control));
-    let (centroid, length) = centroid(patch, edge);
+    let (centroid, length) = centroid_and_length(patch, edge);
     Ok(EdgeRows { normals: normals.collect::<Result<_, _>>()?, centroid, length, outer, inner })
 }
 
@@ -73,11 +83,16 @@ pub fn side(edge: Edge) -> (usize, bool) {
     (direction.index(), at_end)
 }
 
-/// Evaluates the point of an edge at a parameter along it.
-pub fn on_edge(patch: &Patch, edge: Edge, parameter: f64) -> SurfacePoint {
+/// Parameters (u, v) at a parameter along an edge.
+pub fn edge_parameters(edge: Edge, parameter: f64) -> [f64; 2] {
     let (direction, at_end) = side(edge);
     let end = if at_end { 1.0 } else { 0.0 };
-    mid_surface_point(patch, &[], if direction == 0 { [end, parameter] } else { [parameter, end] })
+    if direction == 0 { [end, parameter] } else { [parameter, end] }
+}
+
+/// Evaluates the point of an edge at a parameter along it.
+pub fn on_edge(patch: &Patch, edge: Edge, parameter: f64) -> SurfacePoint {
+    mid_surface_point(patch, &[], edge_parameters(edge, parameter))
 }
 
 /// Finds the normal at the point of the edge from which the inner control point lies at right angles to the edge.
@@ -108,7 +123,7 @@ fn normal_beside(patch: &Patch, edge: Edge, j: usize, control: usize) -> Result<
 }
 
 /// Computes the centroid of an edge and its length, mm.
-fn centroid(patch: &Patch, edge: Edge) -> ([f64; 3], f64) {
+pub(super) fn centroid_and_length(patch: &Patch, edge: Edge) -> ([f64; 3], f64) {
     let (direction, _) = side(edge);
     let running = 1 - direction;
     let (mut length, mut moment) = (0.0, [0.0; 3]);

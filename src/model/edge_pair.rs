@@ -6,8 +6,7 @@
 //! ever.
 
 use crate::model::ModelError;
-use crate::model::edge::{on_edge, rows_of, side};
-use crate::model::gauss::span_points;
+use crate::model::edge::{centroid_and_length, edge_parameters, on_edge, rows_of, side};
 use crate::model::member::{Member, members};
 use crate::scene::{Joint, Scene, ShellEdge};
 use crate::shell::{dot, norm, scaled, sub};
@@ -19,7 +18,7 @@ const MEETING: f64 = 1e-2;
 /// Distance of points that are one, and difference of weights, relative to the length of an edge.
 const SAME: f64 = 1e-9;
 /// Difference of knots that are one.
-const SAME_KNOT: f64 = 1e-9;
+pub(crate) const SAME_KNOT: f64 = 1e-9;
 /// Points of each span at which edges are compared.
 const SAMPLES: usize = 4;
 /// Samples of each span from which the nearest point of an edge is searched.
@@ -56,9 +55,7 @@ impl<'a> PairedEdge<'a> {
 
     /// Parameters (u, v) at a parameter along the edge.
     pub fn parameters(&self, parameter: f64) -> [f64; 2] {
-        let (direction, at_end) = side(self.at.edge);
-        let end = if at_end { 1.0 } else { 0.0 };
-        if direction == 0 { [end, parameter] } else { [parameter, end] }
+        edge_parameters(self.at.edge, parameter)
     }
 
     /// Length of the element beside the edge at a parameter, across it, mm.
@@ -81,9 +78,7 @@ impl<'a> PairedEdge<'a> {
 
     /// Length of the edge, mm.
     pub fn length(&self) -> f64 {
-        let running = self.running();
-        let points = span_points(self.patch, running, SAMPLES);
-        points.into_iter().map(|[at, weight]| weight * norm(self.point(at).derivatives[running])).sum()
+        centroid_and_length(self.patch, self.at.edge).1
     }
 
     /// Finds the parameter of the point of the edge that is nearest to a point, and its distance, mm.
@@ -136,6 +131,14 @@ impl EdgePair<'_> {
         match self.matching {
             Some(reversed) => turned(parameter, reversed),
             None => self.edges[1].nearest(self.edges[0].point(parameter).position).0,
+        }
+    }
+
+    /// Finds the parameter of the first edge where the second one has a parameter.
+    pub fn back(&self, parameter: f64) -> f64 {
+        match self.matching {
+            Some(reversed) => turned(parameter, reversed),
+            None => self.edges[0].nearest(self.edges[1].point(parameter).position).0,
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::model::elimination::Expression;
 use crate::model::joint::shares_across;
 use crate::model::member::Member;
 use crate::model::supports::Supports;
-use crate::scene::{Hold, JointKind, Region, Support};
+use crate::scene::{Hold, JointKind, Support};
 
 /// Difference of derivatives of surfaces that are continuous, relative to their size.
 const CONTINUOUS: f64 = 1e-9;
@@ -212,15 +212,8 @@ fn held_ends(pair: &EdgePair, all: &[Support]) -> [bool; 2] {
     for (k, edge) in pair.edges.iter().enumerate() {
         let reversed = k == 1 && pair.matching == Some(true);
         let sections = all.iter().filter(|support| matches!(support.hold, Hold::Rigid { .. }));
-        let own = sections.flat_map(|support| {
-            let first = match support.on {
-                Region::Edge(on) => Some((support.shell, on)),
-                _ => None,
-            };
-            first.into_iter().chain(support.also.iter().map(|also| (also.shell, also.edge)))
-        });
-        for (_, on) in own.filter(|(shell, _)| *shell == edge.at.shell) {
-            let (direction, at_end) = side(on);
+        for on in sections.flat_map(Support::edges).filter(|on| on.shell == edge.at.shell) {
+            let (direction, at_end) = side(on.edge);
             if direction == edge.running() {
                 held[usize::from(at_end != reversed)] = true;
             }

@@ -34,9 +34,13 @@ impl Supports {
         let all = supports_of(scene);
         let members = members(scene, mesh);
         let pairs = edge_pairs(scene, &members)?;
+        let smooth: Vec<ShellEdge> = pairs
+            .iter()
+            .filter(|pair| is_tied_smoothly(pair))
+            .flat_map(|pair| pair.edges.map(|edge| edge.at))
+            .collect();
         let ties = members.iter().map(|member| {
-            let smooth = pairs.iter().filter(|pair| is_tied_smoothly(pair)).flat_map(|pair| pair.edges);
-            let own = smooth.filter(|edge| edge.at.shell == member.index).map(|edge| edge.at.edge);
+            let own = smooth.iter().filter(|at| at.shell == member.index).map(|at| at.edge);
             Ties::new(&member.scene, member.patch, &member.supports(&all), own)
         });
         let ties = ties.collect::<Result<Vec<Ties>, _>>()?;
@@ -51,14 +55,14 @@ impl Supports {
                 pole: [0.0; 3],
                 section: None,
             });
-            if let (Hold::Rigid { .. }, Region::Edge(edge)) = (&support.hold, support.on) {
-                let first = &members[support.shell];
-                let mut rows = ties[support.shell].rows(first.patch, edge)?.shifted(first.points.start);
-                for ShellEdge { shell, edge } in support.also.iter().copied() {
+            if let Hold::Rigid { .. } = support.hold {
+                let rows_of = |ShellEdge { shell, edge }: ShellEdge| {
                     let member = &members[shell];
-                    rows.join(ties[shell].rows(member.patch, edge)?.shifted(member.points.start));
+                    Ok(ties[shell].rows(member.patch, edge)?.shifted(member.points.start))
+                };
+                if let Some(rows) = EdgeRows::joined(support.edges().map(rows_of))? {
+                    supports.hold_rigidly(index, support, &rows, &points)?;
                 }
-                supports.hold_rigidly(index, support, &rows, &points)?;
             }
         }
         for member in &members {

@@ -126,7 +126,7 @@ fn smooth(patch: &Patch, direction: usize, joint: Joint, spans: [f64; 2]) -> Res
         .collect();
     let at = |across: usize| crate::units::place(place_of(patch, direction, joint.index, across));
     for (across, [before, after]) in legs.iter().enumerate() {
-        let angle = norm(cross(*before, *after)).atan2(dot(*before, *after));
+        let angle = kink(*before, *after);
         if angle > SMOOTH {
             return Err(ModelError::Kink { at: at(across), angle_deg: angle.to_degrees() });
         }
@@ -142,6 +142,27 @@ fn smooth(patch: &Patch, direction: usize, joint: Joint, spans: [f64; 2]) -> Res
     if let Some(across) = uneven(joint.before).or_else(|| uneven(joint.after)) {
         return Err(ModelError::UnevenJoint { direction: name, knot: knot(), at: at(across), what: "weights" });
     }
+    let weights = [joint.before, joint.after].map(|along| weight_of(patch, direction, along, 0));
+    let [before_weight, after_weight] = shares(&legs, weights, spans).map_err(|across| ModelError::UnevenJoint {
+        direction: name,
+        knot: knot(),
+        at: at(across),
+        what: "speeds",
+    })?;
+    Ok(Joint { before_weight, after_weight, ..joint })
+}
+
+/// Angle between the legs of a line on both sides of its middle point, radians.
+fn kink(before: [f64; 3], after: [f64; 3]) -> f64 {
+    norm(cross(before, after)).atan2(dot(before, after))
+}
+
+/// Finds the shares of the neighbours in the middle points of lines with these legs: by the speeds of the parameter, where `weights` are
+/// those of the neighbours and `spans` the parameter's steps to them over the degree, or else by the lengths of the legs.
+///
+/// # Errors
+/// The line on which derivatives differ most, where neither makes them equal.
+fn shares(legs: &[[[f64; 3]; 2]], weights: [f64; 2], spans: [f64; 2]) -> Result<[f64; 2], usize> {
     // How far off equal derivatives are, as a share of the step from the line before to the line after.
     let misfit = |[before_weight, after_weight]: [f64; 2]| {
         let off = legs.iter().enumerate().map(|(across, [before, after])| {
@@ -150,46 +171,27 @@ fn smooth(patch: &Patch, direction: usize, joint: Joint, spans: [f64; 2]) -> Res
         });
         off.fold((0, 0.0), |worst, one| if one.1 > worst.1 { one } else { worst })
     };
-    let by_parameter = [joint.before, joint.after].map(|along| weight_of(patch, direction, along, 0));
-    let by_parameter = [by_parameter[0] / spans[0], by_parameter[1] / spans[1]];
+    let by_parameter = [weights[0] / spans[0], weights[1] / spans[1]];
     let by_length = [0, 1].map(|side| 1.0 / legs.iter().map(|leg| norm(leg[side])).sum::<f64>());
-    let shares = [by_parameter, by_length].into_iter().find(|shares| misfit(*shares).1 <= SMOOTH);
-    let [before_weight, after_weight] = shares.ok_or_else(|| {
-        let (across, _) = misfit(by_length);
-        ModelError::UnevenJoint { direction: name, knot: knot(), at: at(across), what: "speeds" }
-    })?;
-    Ok(Joint { before_weight, after_weight, ..joint })
+    let found = [by_parameter, by_length].into_iter().find(|shares| misfit(*shares).1 <= SMOOTH);
+    found.ok_or_else(|| misfit(by_length).0)
 }
 
-/// Shares of the neighbours in the middle points of lines of three control points (homogeneous) that cross a joint of two patches,
-/// where `spans` are the parameters' steps to them, over the degree; `None` where the surface is not smooth there, or where the lines do
-/// not go on in one ratio.
+/// Shares of the neighbours in the middle points of lines of three control points (homogeneous) that cross a joint of two patches
+/// ([`shares`]); `None` where the surface is not smooth there, or where the lines do not go on in one ratio.
 pub(super) fn shares_across(lines: &[[[f64; 4]; 3]], spans: [f64; 2]) -> Option<[f64; 2]> {
-    let legs: Vec<[[f64; 3]; 2]> = lines
-        .iter()
-        .map(|line| {
-            let [before, middle, after] = line.map(cartesian);
-            [sub(middle, before), sub(after, middle)]
-        })
-        .collect();
-    let is_straight =
-        |[before, after]: &[[f64; 3]; 2]| norm(cross(*before, *after)).atan2(dot(*before, *after)) <= SMOOTH;
+    let legs_of = |line: &[[f64; 4]; 3]| {
+        let [before, middle, after] = line.map(cartesian);
+        [sub(middle, before), sub(after, middle)]
+    };
+    let legs: Vec<[[f64; 3]; 2]> = lines.iter().map(legs_of).collect();
     let ratio = |line: &[[f64; 4]; 3], at: usize| line[at][3] / line[1][3];
     let is_even =
         |line: &[[f64; 4]; 3]| [0, 2].iter().all(|at| (ratio(line, *at) / ratio(&lines[0], *at) - 1.0).abs() <= SMOOTH);
-    if !legs.iter().all(is_straight) || !lines.iter().all(is_even) {
+    if !legs.iter().all(|[before, after]| kink(*before, *after) <= SMOOTH) || !lines.iter().all(is_even) {
         return None;
     }
-    let misfit = |[before, after]: [f64; 2]| {
-        let off = legs.iter().map(|[one, other]| {
-            let step = norm(sub(scaled(after, *other), scaled(before, *one)));
-            step / ((before + after) * norm(add(*one, *other)))
-        });
-        off.fold(0.0, f64::max)
-    };
-    let by_parameter = [lines[0][0][3] / spans[0], lines[0][2][3] / spans[1]];
-    let by_length = [0, 1].map(|side| 1.0 / legs.iter().map(|leg| norm(leg[side])).sum::<f64>());
-    [by_parameter, by_length].into_iter().find(|shares| misfit(*shares) <= SMOOTH)
+    shares(&legs, [lines[0][0][3], lines[0][2][3]], spans).ok()
 }
 
 /// Knot at which the function of a line is 1; for a seam, the first knot.

@@ -3,8 +3,8 @@
 
 use crate::model::rotation::{Rotation, apply};
 use crate::model::supports::{Section, Supports};
-use crate::model::unknowns::{Entry, Home, Share, Unknowns, unit};
-use crate::shell::{add, dot, scaled, sub};
+use crate::model::unknowns::{Entry, Home, Share, Unknowns};
+use crate::shell::{add, basis_vector, dot, scaled, sub};
 
 /// The displacement at some coordinates, and its derivatives with respect to them.
 #[derive(Debug)]
@@ -160,7 +160,7 @@ impl<'a> Placement<'a> {
             (Share::Rotation(k), Some((_, rotation, size))) => {
                 scaled(1.0 / size, apply(&rotation.first[k], self.arms[point]))
             }
-            (Share::Translation(axis), _) => unit(axis),
+            (Share::Translation(axis), _) => basis_vector(axis),
             (Share::Fixed(v) | Share::Turning(v), _) => v,
             (Share::Rotation(_), None) => [0.0; 3],
         }

@@ -44,14 +44,13 @@ impl Size {
         let Extent { radius_mm, .. } = Extent::of(&mesh, &scene.material);
         let sides_mm = [0, 1].map(|direction| side_mm(&mesh, direction));
         let longest = sides_mm[0].max(sides_mm[1]);
-        let moduli = laws(&scene.material).into_iter().flat_map(|(_, moduli)| moduli);
         Ok(Self {
             bounds_mm: bounds_mm(&mesh),
             sides_mm,
             // Rounding curves a plane.
             radius_mm: (radius_mm < FLAT * longest).then_some(radius_mm),
             thickness_mm: scene.material.thickness_mm(),
-            moduli_mpa: moduli.fold([f64::INFINITY, 0.0], |[least, most], value| [least.min(value), most.max(value)]),
+            moduli_mpa: moduli_mpa(&scene.material),
         })
     }
 
@@ -111,6 +110,12 @@ impl Display for Size {
             false => write!(f, "E {} to {} MPa", shown(least), shown(most)),
         }
     }
+}
+
+/// The smallest and the largest Young's modulus of a material, MPa.
+pub fn moduli_mpa(material: &Material) -> [f64; 2] {
+    let moduli = laws(material).into_iter().flat_map(|(_, moduli)| moduli);
+    moduli.fold([f64::INFINITY, 0.0], |[least, most], value| [least.min(value), most.max(value)])
 }
 
 /// The layers of a material, each in words that end where the name of a key follows, with its Young's moduli, MPa.

@@ -22,6 +22,7 @@ use crate::model::elimination::{Expression, eliminate};
 use crate::model::supports::{PrescribedMotion, Section, Supports};
 
 use crate::scene::Scene;
+use crate::shell::basis_vector;
 use crate::spline::Mesh;
 
 /// The share of one coordinate in the displacement of one control point.
@@ -153,7 +154,7 @@ impl Unknowns {
             && entries.iter().enumerate().all(|(c, entry)| {
                 entry.coordinate < self.count
                     && entry.coordinate == entries[0].coordinate + c
-                    && entry.share == Share::Fixed(unit(c))
+                    && entry.share == Share::Fixed(basis_vector(c))
                     && self.home[entry.coordinate] == Home::Component(point, c)
             })
     }
@@ -255,10 +256,4 @@ fn in_turn(mesh: &Mesh) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|one, other| points[*one][longest].total_cmp(&points[*other][longest]));
     order
-}
-
-pub(super) fn unit(c: usize) -> [f64; 3] {
-    let mut vector = [0.0; 3];
-    vector[c] = 1.0;
-    vector
 }

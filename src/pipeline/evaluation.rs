@@ -13,7 +13,8 @@ use crate::pipeline::current_mesh::CurrentMesh;
 use crate::pipeline::measured::Measured;
 use crate::record::{Report, Warning};
 use crate::scene::{Adapt, Indicator, Scene, Stage};
-use crate::state::{Estimate, KnotLists, State};
+use crate::spline::knot_counts;
+use crate::state::{Estimate, State};
 
 /// What halving the spans of either direction would change, and the relative errors that are in it.
 type Errors = ([DirectionalError; 2], [f64; 2]);
@@ -46,7 +47,7 @@ impl Evaluation<'_> {
             Indicator::BendingStrain(_) => (next, report),
             Indicator::Error(tolerance) => self.by_error(tolerance, next, report)?,
         };
-        report.marked = counts(&next.marked);
+        report.marked = knot_counts(&next.marked);
         let blocked = indicators.blocked.filter(|_| report.marked == [0, 0]);
         report.warnings.extend(blocked.map(|blocked| Warning::of_blocked(state, blocked)));
         Ok((next, report))
@@ -118,9 +119,4 @@ impl Evaluation<'_> {
         let relative = errors.each_ref().map(|error| measured.relative_error(scene, state, here, slope, error, stored));
         Ok(Some((errors, relative)))
     }
-}
-
-/// Number of knots of all patches, each way.
-pub(super) fn counts(lists: &KnotLists) -> [usize; 2] {
-    [0, 1].map(|direction| lists.iter().map(|knots| knots[direction].len()).sum())
 }

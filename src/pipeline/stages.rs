@@ -10,14 +10,14 @@ use crate::model::{FreeStrains, MOST_CONTROL_POINTS, Member, ModelError, Tables,
 use crate::pipeline::StageError;
 use crate::pipeline::current_mesh::CurrentMesh;
 use crate::pipeline::doubts::{Doubts, ReadAt, doubtful};
-use crate::pipeline::evaluation::{Evaluation, counts};
+use crate::pipeline::evaluation::Evaluation;
 use crate::pipeline::load_drive::LoadDrive;
 use crate::pipeline::path_drive::PathDrive;
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step::{Drives, Step, out_of_order};
 use crate::record::{Reading, Report, Warning, run_hash};
 use crate::scene::{Drive, Indicator, Scene, Stage};
-use crate::spline::{Mesh, Patch};
+use crate::spline::{Mesh, Patch, knot_counts};
 use crate::state::{DriveMemory, Refinement, State};
 
 /// Runner of the stages of one scene. It keeps buffers of the current mesh, which new ones would fill with the same
@@ -236,7 +236,7 @@ impl Stages {
             Err(cause) => return Err(StageError::Model { step: state.step, stage: Stage::RefineKnots, cause }),
         };
         let report = Report {
-            marked: counts(&state.marked),
+            marked: knot_counts(&state.marked),
             elements: finer.elements(),
             strain_energy_n_mm: energy,
             ..Report::of(&self.scene, state, unknowns)

@@ -2,10 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::data::{Action, ActionKind, ForceVector, Geometry, Hold, Material, Region, Support, SurfaceDirection};
+use super::data::{
+    Action, ActionKind, ForceVector, Geometry, Hold, Material, Region, Shell, Support, SurfaceDirection,
+};
 use super::fault::Checked;
 use super::histories::history;
-use super::shells::{ReadShell, Shells};
+use super::shells::Shells;
 use super::table::{Table, data};
 
 /// One `[[action]]`.
@@ -13,7 +15,7 @@ pub(super) fn action(table: &Table, shells: &Shells, supports: &[Support]) -> Ch
     let acts_on_all =
         ["gravity", "temperature", "natural-curvature", "section-force", "section-moment"].contains(&table.kind());
     let shell = shells.named_in(table, acts_on_all)?;
-    let ReadShell { geometry, material, .. } = &shells.all[shell.unwrap_or(0)];
+    let Shell { geometry, material, .. } = &shells.all[shell.unwrap_or(0)];
     let mut values = table.values.clone();
     for name in ["force_n", "force_n_per_mm", "force_n_per_mm2"] {
         if let Some(force) = values.get_mut(name) {

@@ -3,15 +3,14 @@
 use std::path::Path;
 
 use super::connections::connections;
-use super::data::{ArcLength, EndRotation, Geometry, Load, LoadSteps, Scene, Solver, Symmetry};
+use super::data::{ArcLength, EndRotation, Geometry, Load, LoadSteps, Scene, Shell, Solver, Symmetry};
 use super::document::Document;
 use super::error::SceneError;
 use super::fault::{Checked, CheckedWhole, Faults, Source};
 use super::key_table::SECTIONS;
-use super::meshes;
-use super::meshes::Refinable;
+use super::meshes::{self, Refinable};
 use super::problem::Problem;
-use super::shells::{ReadShell, Shells, check_structure};
+use super::shells::{Shells, check_structure};
 use super::structure::structure;
 use super::table::{Table, between};
 use super::tables::Tables;
@@ -85,7 +84,7 @@ fn with_shells(tables: &Tables, shells: Option<Shells>, chooses_mesh: bool, mut 
     let output = tables.one("output").data();
     let expect = Some(tables.one("expect")).filter(|table| table.is_given).map(Table::data);
     let named = shells.named();
-    let Some(ReadShell { geometry, material, mesh, pose, .. }) = shells.all.into_iter().next() else {
+    let Some(Shell { geometry, material, mesh, pose, .. }) = shells.all.into_iter().next() else {
         unreachable!("a scene has a shell")
     };
     faults.or(Scene {
@@ -115,8 +114,7 @@ fn load(tables: &Tables, shells: Option<&Shells>) -> Checked<Load> {
     if table.kind() == "steps" {
         return steps(table).map(Load::Steps);
     }
-    let is_spring =
-        |shells: &Shells| matches!(shells.all[..], [ReadShell { geometry: Geometry::TapeSpring { .. }, .. }]);
+    let is_spring = |shells: &Shells| matches!(shells.all[..], [Shell { geometry: Geometry::TapeSpring { .. }, .. }]);
     if shells.is_some_and(|shells| !shells.are_named && !is_spring(shells)) {
         return Err(table.wrong_at(
             "kind",

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::data::{Edge, Geometry, Load, Material, MeshSpec, Pose, Shell, ShellEdge};
+use super::data::{Edge, Geometry, Load, Material, Pose, Shell, ShellEdge};
 use super::document::Document;
 use super::fault::{Checked, CheckedWhole, Fault, Faults};
 use super::keys::Section;
@@ -18,18 +18,9 @@ use crate::units::significant;
 /// sqrt(R t)/(3(1 - nu^2))^(1/4), after which 4 % are left (Timoshenko & Woinowsky-Krieger, section 114), at nu = 0.3.
 const BOUNDARY_LAYER: f64 = 2.4;
 
-/// One shell as it is read, alone or of a structure.
-pub(super) struct ReadShell {
-    pub name: String,
-    pub geometry: Geometry,
-    pub material: Material,
-    pub mesh: MeshSpec,
-    pub pose: Pose,
-}
-
 /// Shells of a scene, and whether it calls them by names.
 pub(super) struct Shells {
-    pub all: Vec<ReadShell>,
+    pub all: Vec<Shell>,
     pub are_named: bool,
 }
 
@@ -40,13 +31,13 @@ impl Shells {
         let material = faults.keep(material(tables));
         let mesh = meshes::mesh_of_shell(tables);
         let (name, pose) = (String::new(), Pose::default());
-        let only = ReadShell { name, geometry: geometry?, material: material?, mesh, pose };
+        let only = Shell { name, geometry: geometry?, material: material?, mesh, pose };
         Some(Self { all: vec![only], are_named: false })
     }
 
     /// Reads the shells of a structure; `tables` are those of the structure.
     pub fn of_structure(document: &Document<'_>, tables: &Tables, folder: &Path) -> CheckedWhole<Self> {
-        let (mut all, mut faults): (Vec<ReadShell>, Vec<Fault>) = (Vec::new(), Vec::new());
+        let (mut all, mut faults): (Vec<Shell>, Vec<Fault>) = (Vec::new(), Vec::new());
         for (index, table) in tables.all("shell").enumerate() {
             match of_table(document, index, table, folder) {
                 Ok(shell) if all.iter().any(|other| other.name == shell.name) => {
@@ -67,14 +58,7 @@ impl Shells {
 
     /// The shells as the data of a scene has them: none where there is only one.
     pub fn named(&self) -> Vec<Shell> {
-        let named = |shell: &ReadShell| Shell {
-            name: shell.name.clone(),
-            geometry: shell.geometry.clone(),
-            material: shell.material.clone(),
-            mesh: shell.mesh.clone(),
-            pose: shell.pose,
-        };
-        if self.are_named { self.all.iter().map(named).collect() } else { Vec::new() }
+        if self.are_named { self.all.clone() } else { Vec::new() }
     }
 
     /// Finds the shell that a table names, which it must where there are several; `None` where it names none and `may_lack` says
@@ -143,7 +127,7 @@ impl Shells {
     }
 }
 
-fn of_table(document: &Document<'_>, index: usize, table: &Table, folder: &Path) -> CheckedWhole<ReadShell> {
+fn of_table(document: &Document<'_>, index: usize, table: &Table, folder: &Path) -> CheckedWhole<Shell> {
     let own = document.of_shell(index);
     if let Some(missing) = missing(&own, table) {
         return Err(vec![*missing]);
@@ -170,7 +154,7 @@ fn of_table(document: &Document<'_>, index: usize, table: &Table, folder: &Path)
         )));
     }
     match (pose, geometry, material) {
-        (Some(pose), Some(geometry), Some(material)) => faults.or(ReadShell { name, geometry, material, mesh, pose }),
+        (Some(pose), Some(geometry), Some(material)) => faults.or(Shell { name, geometry, material, mesh, pose }),
         _ => Err(faults.0),
     }
 }

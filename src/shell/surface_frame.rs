@@ -5,7 +5,7 @@
 //! ∂²n_i/∂w_j∂w_k = −(n_k δ_ij + n_j δ_ik + n_i δ_jk − 3 n_i n_j n_k)/J². An edge along a_r has the unit tangent t = a_r/|a_r|,
 //! whose derivatives are of the same form, and the normal a_n = t × n.
 
-use crate::shell::vector::{add, cross, dot, norm, scaled};
+use crate::shell::vector::{add, basis_vector, cross, dot, norm, scaled};
 
 /// Number of components of the tangents a₁ and a₂ together.
 pub const TANGENTS: usize = 6;
@@ -30,10 +30,10 @@ impl FrameVector {
         let mut product = ZERO;
         product.value = cross(a1, a2);
         for e in 0..3 {
-            product.first[e] = cross(unit(e), a2);
-            product.first[3 + e] = cross(a1, unit(e));
+            product.first[e] = cross(basis_vector(e), a2);
+            product.first[3 + e] = cross(a1, basis_vector(e));
             for f in 0..3 {
-                let mixed = cross(unit(e), unit(f));
+                let mixed = cross(basis_vector(e), basis_vector(f));
                 product.second[e][3 + f] = mixed;
                 product.second[3 + f][e] = mixed;
             }
@@ -45,7 +45,7 @@ impl FrameVector {
     pub fn edge_normal(tangents: [[f64; 3]; 2], running: usize) -> Self {
         let mut along = ZERO;
         along.value = tangents[running];
-        (0..3).for_each(|e| along.first[3 * running + e] = unit(e));
+        (0..3).for_each(|e| along.first[3 * running + e] = basis_vector(e));
         along.normalized().cross(&Self::normal(tangents))
     }
 
@@ -88,10 +88,6 @@ impl FrameVector {
         }
         product
     }
-}
-
-fn unit(c: usize) -> [f64; 3] {
-    [0, 1, 2].map(|k| f64::from(u8::from(k == c)))
 }
 
 #[cfg(test)]

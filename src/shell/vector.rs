@@ -20,6 +20,11 @@ pub(crate) fn scaled(factor: f64, a: [f64; 3]) -> [f64; 3] {
     [factor * a[0], factor * a[1], factor * a[2]]
 }
 
+/// The unit vector along x, y or z (`c` 0, 1 or 2).
+pub(crate) fn basis_vector(c: usize) -> [f64; 3] {
+    [0, 1, 2].map(|k| f64::from(u8::from(k == c)))
+}
+
 pub(crate) fn norm(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }

@@ -13,6 +13,11 @@ use crate::spline::{Patch, Spans};
 /// Knots of each direction of each patch, in the order of the patches.
 pub type KnotLists = Vec<[Vec<f64>; 2]>;
 
+/// Numbers of the knots of all patches in each direction.
+pub fn knot_counts(lists: &KnotLists) -> [usize; 2] {
+    [0, 1].map(|direction| lists.iter().map(|knots| knots[direction].len()).sum())
+}
+
 /// The mid-surfaces of the shells of a structure. Vectors on control points hold those of the first patch, then those of
 /// the next.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,10 +102,7 @@ impl Mesh {
 
     /// Numbers of elements in each direction of each patch.
     pub fn elements(&self) -> Elements {
-        match &self.patches[..] {
-            [patch] => Elements::OfOne(patch.element_counts()),
-            patches => Elements::OfEach(patches.iter().map(Patch::element_counts).collect()),
-        }
+        self.patches.iter().map(Patch::element_counts).collect()
     }
 
     /// Inserts a knot into the middle of every span.
@@ -177,6 +179,17 @@ impl JsonSchema for Elements {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": "array", "items": { "type": ["integer", "array"], "items": { "type": "integer" } } })
+    }
+}
+
+/// Of the numbers of each patch.
+impl FromIterator<[usize; 2]> for Elements {
+    fn from_iter<I: IntoIterator<Item = [usize; 2]>>(counts: I) -> Self {
+        let counts: Vec<[usize; 2]> = counts.into_iter().collect();
+        match counts[..] {
+            [only] => Self::OfOne(only),
+            _ => Self::OfEach(counts),
+        }
     }
 }
 

@@ -29,7 +29,7 @@ pub use coarsening::Coarsening;
 pub use grid::Grid;
 pub use insertion::{insert_knots, insert_knots_into_net};
 pub use knots::{KnotFlaw, check_knots, control_count, without_knots};
-pub use mesh::{Elements, KnotLists, Mesh};
+pub use mesh::{Elements, KnotLists, Mesh, knot_counts};
 pub use patch::{Patch, cartesian};
 pub use surface::{
     LineBasis, SurfaceBasis, SurfacePoint, evaluate_surface, mid_surface_point, mid_surface_points, position_on_lines,

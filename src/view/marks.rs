@@ -278,13 +278,8 @@ impl<'a> Place<'a> {
     /// Where the middle of a rigid section stands.
     fn section(&self, name: &str) -> Option<[f64; 3]> {
         let support = self.scene.supports.iter().find(|support| support.name == name)?;
-        match support.on {
-            Region::Edge(Edge::UStart) => Some(self.position([0.0, 0.5])),
-            Region::Edge(Edge::UEnd) => Some(self.position([1.0, 0.5])),
-            Region::Edge(Edge::VStart) => Some(self.position([0.5, 0.0])),
-            Region::Edge(Edge::VEnd) => Some(self.position([0.5, 1.0])),
-            _ => None,
-        }
+        let middle = support.on.fractions().map(|fraction| fraction.unwrap_or(0.5));
+        matches!(support.on, Region::Edge(_)).then(|| self.position(middle))
     }
 
     /// The direction of a force, of any length.

@@ -20,6 +20,8 @@ pub(super) type Local = [[f64; 3]; 3];
 
 /// Number of components of [`Local`].
 pub(super) const LOCAL: usize = 9;
+/// First of them that belongs to a tangent.
+pub(super) const FIRST_TANGENT: usize = 3;
 
 /// Gradient and Hessian of an energy with respect to the components of both surfaces, those of the first one first.
 pub(super) struct Derivatives {

@@ -2,12 +2,9 @@
 
 use super::coupled::{CoupledPoint, SurfaceSide};
 use super::kept_angle::KeptAngle;
-use crate::model::{EdgePair, Member, PairedEdge, gauss_points, is_tied_smoothly};
+use crate::model::{EdgePair, Member, PairedEdge, SAME_KNOT, gauss_points, is_tied_smoothly};
 use crate::scene::JointKind;
 use crate::shell::{norm, shell_stiffness};
-
-/// Knots that are closer are one.
-const SAME_KNOT: f64 = 1e-9;
 
 /// Finds the points of a joint; none where control points that are shared do all of it.
 pub(super) fn edge_points(pair: &EdgePair, members: &[Member]) -> Vec<CoupledPoint<KeptAngle>> {
@@ -53,19 +50,8 @@ fn stiffness(pair: &EdgePair, members: &[Member]) -> [f64; 2] {
 /// The spans of the first edge, cut where the other one has knots as well.
 fn common_spans(pair: &EdgePair) -> Vec<[f64; 2]> {
     let [one, other] = &pair.edges;
-    let own = one.spans();
-    let ends = other.spans().into_iter().flatten().collect::<Vec<f64>>();
-    let seen = ends.into_iter().map(|knot| match pair.matching {
-        Some(reversed) => {
-            if reversed {
-                1.0 - knot
-            } else {
-                knot
-            }
-        }
-        None => one.nearest(other.point(knot).position).0,
-    });
-    let mut cuts: Vec<f64> = own.into_iter().flatten().chain(seen).collect();
+    let seen = other.spans().into_iter().flatten().map(|knot| pair.back(knot));
+    let mut cuts: Vec<f64> = one.spans().into_iter().flatten().chain(seen).collect();
     cuts.sort_by(f64::total_cmp);
     cuts.dedup_by(|next, one| (*next - *one).abs() <= SAME_KNOT);
     cuts.windows(2).map(|pair| [pair[0], pair[1]]).collect()

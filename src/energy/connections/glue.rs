@@ -1,10 +1,7 @@
 //! The energy of a layer of glue between the faces of two shells.
 
-use super::coupled::{Derivatives, LOCAL, Local, PointLaw, moved};
-use crate::shell::{FrameVector, TANGENTS, add, dot, scaled, sub};
-
-/// First component of the tangents among those of a surface.
-const FIRST_TANGENT: usize = 3;
+use super::coupled::{Derivatives, FIRST_TANGENT, LOCAL, Local, PointLaw, moved};
+use crate::shell::{FrameVector, TANGENTS, add, basis_vector, dot, scaled, sub};
 
 /// The point of an area at which two shells are glued.
 ///
@@ -55,7 +52,7 @@ impl PointLaw for Glue {
         let stretch = self.stretch(sides);
         let normals = [0, 1].map(|k| FrameVector::normal([sides[k][1], sides[k][2]]));
         let shares = [self.to_faces[0] - self.gap[2], -self.to_faces[1]];
-        let unit = |c: usize, size: f64| [0, 1, 2].map(|k| if k == c { size } else { 0.0 });
+        let unit = |c: usize, size: f64| scaled(size, basis_vector(c));
         // ∂r by each component.
         let mut slopes = [[0.0; 3]; 2 * LOCAL];
         for (k, sign) in [(0, 1.0), (1, -1.0)] {

@@ -2,8 +2,8 @@
 
 use super::coupled::{CoupledPoint, SurfaceSide};
 use super::glue::Glue;
-use crate::model::{Member, ModelError, gauss_points};
-use crate::scene::{Bond, Material, OrthotropicLaw};
+use crate::model::{Member, ModelError, gauss_points, moduli_mpa};
+use crate::scene::Bond;
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::{Patch, Spans, SurfacePoint, mid_surface_point};
 use crate::units::place;
@@ -28,8 +28,8 @@ pub(super) fn glued_points(bond: &Bond, members: &[Member]) -> Result<Vec<Couple
     let thickness = sides.map(|side| side.scene.material.thickness_mm());
     let mean = 0.5 * (thickness[0] + thickness[1]);
     let tolerance = bond.gap_mm.unwrap_or(TOGETHER * mean);
-    let stiffness =
-        bond.stiffness * sides.map(|side| modulus_mpa(&side.scene.material)).into_iter().fold(0.0, f64::max) / mean;
+    let [one, other] = sides.map(|side| moduli_mpa(&side.scene.material)[1]);
+    let stiffness = bond.stiffness * one.max(other) / mean;
     let other = Searched::new(sides[1].patch);
     let (mut points, mut nearest) = (Vec::new(), (f64::INFINITY, [0.0; 3]));
     let mut guess = None;
@@ -203,15 +203,5 @@ impl<'a> Searched<'a> {
             }
         }
         at
-    }
-}
-
-/// Largest Young's modulus of a material, MPa.
-fn modulus_mpa(material: &Material) -> f64 {
-    let of_law = |law: &OrthotropicLaw| law.youngs_modulus_1_mpa.max(law.youngs_modulus_2_mpa);
-    match material {
-        Material::Isotropic { youngs_modulus_mpa, .. } => *youngs_modulus_mpa,
-        Material::Orthotropic { law, .. } => of_law(law),
-        Material::Laminate { plies, .. } => plies.iter().map(|ply| of_law(&ply.law)).fold(0.0, f64::max),
     }
 }

@@ -7,7 +7,7 @@
 //! and a_n·a₃′ are cosine and sine of the angle between the surfaces; the second one makes the angle unique. α_r = c D/h
 //! and α_d = c A/h.
 
-use super::coupled::{Derivatives, LOCAL, Local, PointLaw, moved};
+use super::coupled::{Derivatives, FIRST_TANGENT, LOCAL, Local, PointLaw, moved};
 use crate::shell::{FrameVector, TANGENTS, dot, sub};
 
 /// The energy at a point of an edge.
@@ -22,9 +22,6 @@ pub(super) struct KeptAngle {
     /// Cosine and sine of the angle between the undeformed surfaces.
     pub angle: [f64; 2],
 }
-
-/// First component of the tangents among those of a surface.
-const FIRST_TANGENT: usize = 3;
 
 impl KeptAngle {
     /// Cosine and sine of the angle between two surfaces along an edge.

@@ -44,7 +44,7 @@ impl Terms {
         let members = members(scene, mesh);
         let mut loads = Loads { points: mesh.point_count(), ..Loads::default() };
         for action in &scene.actions {
-            loads.add_to_section(scene, &members, action)?;
+            loads.add_to_section(scene, mesh, &members, action)?;
             for member in members.iter().filter(|member| action.shell.is_none_or(|shell| shell == member.index)) {
                 loads.add(member, action, limits)?;
             }
@@ -138,15 +138,21 @@ impl Loads {
         Ok(())
     }
 
-    fn add_to_section(&mut self, scene: &Scene, members: &[Member], action: &Action) -> Result<(), ModelError> {
+    fn add_to_section(
+        &mut self,
+        scene: &Scene,
+        mesh: &Mesh,
+        members: &[Member],
+        action: &Action,
+    ) -> Result<(), ModelError> {
         let history = action.history.clone();
         match &action.kind {
             ActionKind::SectionForce { section, force_n } => {
-                let forces = SectionPoints::of(scene, members, section)?.force(section, *force_n)?;
+                let forces = SectionPoints::of(scene, mesh, members, section)?.force(section, *force_n)?;
                 self.dead.0.push(Dead { history, forces });
             }
             ActionKind::SectionMoment { section, moment_n_mm, about, forces_along, turns } => {
-                let points = SectionPoints::of(scene, members, section)?;
+                let points = SectionPoints::of(scene, mesh, members, section)?;
                 let axes = [*about, *forces_along];
                 match turns {
                     SectionTurns::Dead => {

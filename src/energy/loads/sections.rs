@@ -8,8 +8,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::energy::{At, Tangent, Term};
 use crate::model::{EdgeRows, Member, ModelError, edge_rows};
-use crate::scene::{Axis, History, Hold, Region, Scene, ShellEdge};
-use crate::shell::{add, cross, dot, norm, scaled, sub};
+use crate::scene::{Axis, History, Hold, Scene, ShellEdge};
+use crate::shell::{add, basis_vector, cross, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
 /// Extent of a section in a direction, relative to its largest one, below which it has none.
@@ -33,27 +33,16 @@ impl SectionPoints {
     ///
     /// # Errors
     /// Where there is no such section, or its surface has no normal.
-    pub fn of(scene: &Scene, members: &[Member], section: &str) -> Result<Self, ModelError> {
+    pub fn of(scene: &Scene, mesh: &Mesh, members: &[Member], section: &str) -> Result<Self, ModelError> {
         let support = scene.supports.iter().find(|support| support.name == section);
-        let (Some(support), Some(Region::Edge(edge))) = (support, support.map(|support| support.on)) else {
-            return Err(ModelError::NoSuchSupport { support: section.to_owned() });
-        };
-        let edges = std::iter::once(ShellEdge { shell: support.shell, edge }).chain(support.also.iter().copied());
-        let mut rows: Option<EdgeRows> = None;
-        for ShellEdge { shell, edge } in edges {
+        let no_such = || ModelError::NoSuchSupport { support: section.to_owned() };
+        let support = support.ok_or_else(no_such)?;
+        let rows_of = |ShellEdge { shell, edge }: ShellEdge| {
             let member = &members[shell];
-            let own = edge_rows(member.patch, edge)?.shifted(member.points.start);
-            match &mut rows {
-                None => rows = Some(own),
-                Some(rows) => rows.join(own),
-            }
-        }
-        let Some(rows) = rows else { return Err(ModelError::NoSuchSupport { support: section.to_owned() }) };
-        let position = |point: usize| {
-            let member = members.iter().find(|member| member.points.contains(&point));
-            member.map_or([0.0; 3], |member| member.patch.point(point - member.points.start))
+            Ok(edge_rows(member.patch, edge)?.shifted(member.points.start))
         };
-        let points: Vec<(usize, [f64; 3])> = rows.outer.iter().map(|point| (*point, position(*point))).collect();
+        let rows = EdgeRows::joined(support.edges().map(rows_of))?.ok_or_else(no_such)?;
+        let points: Vec<(usize, [f64; 3])> = rows.outer.iter().map(|point| (*point, mesh.point(*point))).collect();
         let reference = match &support.hold {
             Hold::Rigid { reference_mm: Some(reference), .. } => *reference,
             _ => rows.centroid,
@@ -181,11 +170,7 @@ impl SectionPoints {
 }
 
 fn unit(axis: Axis) -> [f64; 3] {
-    match axis {
-        Axis::X => [1.0, 0.0, 0.0],
-        Axis::Y => [0.0, 1.0, 0.0],
-        Axis::Z => [0.0, 0.0, 1.0],
-    }
+    basis_vector(axis as usize)
 }
 
 /// A moment on a rigid section whose forces turn with it.
@@ -272,13 +257,12 @@ impl TurningCouple {
     fn add_slopes(&self, at: At, factor: f64, tangent: &mut Tangent) {
         let [one, other] = self.axes(at.displacement);
         let [a, b, c] = self.direction;
-        let axis = |k: usize| [0, 1, 2].map(|i| f64::from(u8::from(i == k)));
         for (j, (moved, _)) in self.points.iter().enumerate() {
             let (w1, w2) = (self.frame[0][j], self.frame[1][j]);
             // Columns of the derivative of the direction by the position of this control point.
             let columns = [0, 1, 2].map(|d| {
-                let straight = scaled(a * w1 + b * w2, axis(d));
-                let turned = add(scaled(w1, cross(axis(d), other)), scaled(w2, cross(one, axis(d))));
+                let straight = scaled(a * w1 + b * w2, basis_vector(d));
+                let turned = add(scaled(w1, cross(basis_vector(d), other)), scaled(w2, cross(one, basis_vector(d))));
                 add(straight, scaled(c, turned))
             });
             for ((point, _), force) in self.points.iter().zip(&self.forces) {

@@ -26,6 +26,15 @@ pub struct Support {
 }
 
 impl Support {
+    /// The edges that it holds: of a rigid section of several shells all of them; none where it is elsewhere.
+    pub fn edges(&self) -> impl Iterator<Item = ShellEdge> {
+        let first = match self.on {
+            Region::Edge(edge) => Some(ShellEdge { shell: self.shell, edge }),
+            _ => None,
+        };
+        first.into_iter().chain(self.also.iter().copied())
+    }
+
     /// What the support is on one shell: a section of several shells is one on the edge of each.
     pub(super) fn of_shell(&self, shell: usize) -> Option<Self> {
         let edges = self.also.iter().filter(|also| also.shell == shell).map(|also| Region::Edge(also.edge));

@@ -1,7 +1,5 @@
 //! What connects the shells of a structure.
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
 
 use super::place::ShellEdge;
@@ -29,16 +27,6 @@ pub enum JointKind {
     KeptAngle,
     /// Displacement is continuous.
     Hinge,
-}
-
-impl fmt::Display for JointKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Smooth => "smooth",
-            Self::KeptAngle => "kept-angle",
-            Self::Hinge => "hinge",
-        })
-    }
 }
 
 /// Two shells that are glued together where their faces meet.

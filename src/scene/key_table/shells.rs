@@ -1,5 +1,6 @@
 //! Keys of `[[shell]]`, `[[joint]]` and `[[bond]]`.
 
+use super::structure::LABELS;
 use crate::scene::keys::Presence::{Default, Follows};
 use crate::scene::keys::Reach::Names;
 use crate::scene::keys::{Key, Kind, Length, Limit, Limits, choice};
@@ -91,5 +92,3 @@ pub(super) static BOND: &[Key] = &[
         .means("Stiffness of the layer, in E/t of the stiffer shell: a real layer has about 1 to 10.")
         .or(Default("5.0")),
 ];
-
-const LABELS: &[&str] = &["id", "label", "title"];

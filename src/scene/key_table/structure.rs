@@ -343,7 +343,7 @@ const FORCE: &str = "Force in x, y and z; or one number and `along`, a direction
 const HISTORY: &str = "Rows of [load factor, factor], straight in between, constant beyond the last. By arc length a history that \
                        ends, or is constant, ends the path there; below its first point it is constant too.";
 
-const LABELS: &[&str] = &["id", "label", "title"];
+pub(super) const LABELS: &[&str] = &["id", "label", "title"];
 const TYPES: &[&str] = &["type"];
 const PLACES: &[&str] = &["at", "where", "place", "location", "edge", "point", "line"];
 const FORCES: &[&str] = &["f", "load"];
