@@ -14,7 +14,7 @@ use crate::spline::Mesh;
 /// Supports at most of which it is tried whether u and v are exchanged.
 const MOST_EXCHANGED: usize = 10;
 
-/// Refuses a shell that neither supports nor terms of the caller's own hold.
+/// Refuses a shell that neither supports nor springs nor terms of the caller's own hold.
 ///
 /// # Errors
 /// Where a rigid motion is free, or one of the terms does not fit the mesh.
@@ -26,7 +26,7 @@ pub fn check_held(
 ) -> Result<(), ModelError> {
     let points = &unknowns.points;
     let mut free = free_motions(Body::around(points), unknowns.supports(), points);
-    if free.basis.ncols() > 0 && !own.is_empty() {
+    if free.basis.ncols() > 0 && !(own.is_empty() && scene.springs.is_empty()) {
         [free, _] = free.parted_by_terms(scene, mesh, own)?;
     }
     match free.basis.ncols() {

@@ -7,6 +7,7 @@
 //! | `shell`, `kernel` | the shell, and its elements |
 //! | `loads` | the actions of a scene |
 //! | `connections` | joints and bonds of a structure |
+//! | `sections` | springs and weights on rigid sections |
 //! | `balance` | what is stored, worked and dissipated |
 //! | `discretization` | a scene on a mesh, with all its terms |
 //! | `held` | whether supports and terms hold the shell |
@@ -21,6 +22,7 @@ mod kernel;
 mod load_balance;
 mod loads;
 mod remarks;
+mod sections;
 mod shell;
 mod term;
 mod terms;

@@ -46,7 +46,8 @@ pub fn remarks(
         images.extend(of_images(&scene, patch)?);
         theory.extend(of_thickness(&scene, patch).into_iter().chain(of_degree_2(&scene, patch)));
     }
-    let all = supports.chain(of_actions).chain(images).chain(of_nothing(scene, mesh, unknowns, own)?).chain(theory);
+    let of_kinds = of_actions.into_iter().chain(images).chain(of_masses(scene));
+    let all = supports.chain(of_kinds).chain(of_nothing(scene, mesh, unknowns, own)?).chain(theory);
     let mut said: Vec<String> = Vec::new();
     // Shells that are alike would say the same twice.
     all.for_each(|remark| {
@@ -55,6 +56,16 @@ pub fn remarks(
         }
     });
     Ok(said)
+}
+
+/// A remark on masses that weigh nothing.
+fn of_masses(scene: &Scene) -> Option<String> {
+    let mass = scene.masses.first()?;
+    let has_gravity = scene.actions.iter().any(|action| matches!(action.kind, ActionKind::Gravity { .. }));
+    (!has_gravity).then(|| {
+        let name = &mass.name;
+        format!("mass \"{name}\" has no effect: there is no action of kind \"gravity\", and masses have no inertia at rest")
+    })
 }
 
 /// Remarks on what the theory of thin shells leaves out: a shell that is thick for its radius or its side, and a curved

@@ -82,6 +82,14 @@ impl Terms {
         self.list.iter().map(|named| &*named.term)
     }
 
+    /// Forces on the control points, N, of the term of this name; `None` where there is none.
+    pub fn forces_of(&self, name: &str, at: At) -> Option<Vec<[f64; 3]>> {
+        let Named { term, .. } = self.list.iter().find(|named| named.name == name)?;
+        let mut forces = vec![[0.0; 3]; at.displacement.len()];
+        term.add_forces(at, &mut forces);
+        Some(forces)
+    }
+
     /// Whether there are no terms.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()

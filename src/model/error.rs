@@ -253,6 +253,15 @@ pub enum ModelError {
         /// What cannot act, and why.
         what: &'static str,
     },
+    /// A section moment is asked for across a line that ends in a rigid section.
+    #[error(
+        "a section moment is found from all that acts on one side of the line, and the rigid section \"{section}\", on which something \
+         acts, lies on both sides: read the reaction of a support instead"
+    )]
+    SectionAcross {
+        /// Name of the support.
+        section: String,
+    },
     /// The edges of a joint do not meet.
     #[error(
         "joint \"{joint}\": its edges are {} mm apart at {at}, and edges that are at most {} mm apart are joined; move one of the \
@@ -419,7 +428,7 @@ pub enum ModelError {
     },
     /// A support holds rigid motions alone, and terms of the caller's own hold some of them as well.
     #[error(
-        "support \"{support}\" holds rigid motions alone, and terms of the program's own hold the shell as well: {motion} only against \
+        "support \"{support}\" holds rigid motions alone, and springs or terms of the program's own hold the shell as well: {motion} only against \
          their forces, a share of which the support would carry; remove it, and hold what they leave free by another kind of support"
     )]
     HeldByTerms {

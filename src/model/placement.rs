@@ -196,13 +196,18 @@ impl<'a> Placement<'a> {
         if !self.unknowns.turns_are_unknown() {
             return Vec::new();
         }
-        let sections = self.unknowns.supports.sections.iter().zip(&self.unknowns.motions);
-        sections.map(|(section, motions)| [3, 4, 5].map(|k| self.coordinates[motions[k]] / section.size)).collect()
+        (0..self.unknowns.supports.sections.len()).map(|section| self.turn(section)).collect()
     }
 
     /// Translation of a section, mm.
     pub fn translation(&self, section: usize) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.coordinates[self.unknowns.motions[section][axis]])
+    }
+
+    /// Rotation vector of a section, radians.
+    pub fn turn(&self, section: usize) -> [f64; 3] {
+        let size = self.unknowns.supports.sections[section].size;
+        [3, 4, 5].map(|k| self.coordinates[self.unknowns.motions[section][k]] / size)
     }
 
     /// Velocity of the control points for rates of the free and the given coordinates, either of which may be empty.

@@ -125,20 +125,31 @@ impl Reader<'_> {
         }
     }
 
-    /// Computes the force and moment that a support exerts.
+    /// Computes the force and moment that a support or a spring exerts.
     fn reaction(
         &self,
         support: &str,
         component: Reaction,
     ) -> Result<(f64, &'static str, Option<[f64; 2]>), ModelError> {
+        let spring = self.scene.springs.iter().find(|spring| spring.name == support);
         let footprints = &self.discretization.unknowns.supports().footprints;
-        let Some(index) = footprints.iter().position(|trace| trace.name == support) else {
-            return Err(ModelError::NoSuchSupport { support: support.to_owned() });
+        let holder = spring.map_or(support, |spring| &spring.section);
+        let Some(index) = footprints.iter().position(|trace| trace.name == holder) else {
+            return Err(ModelError::NoSuchSupport { support: holder.to_owned() });
         };
         let trace = &footprints[index];
         let pole = trace.section.map_or(trace.pole, |section| add(trace.pole, self.placement.translation(section)));
-        let forces = self.exerted().by_supports[index].iter().map(|(point, force)| (*point, *force));
-        let [force, moment] = self.resultant(forces, pole);
+        let [force, moment] = match spring {
+            None => {
+                self.resultant(self.exerted().by_supports[index].iter().map(|(point, force)| (*point, *force)), pole)
+            }
+            Some(spring) => {
+                let Configuration { displacement, parameter, .. } = self.at;
+                let at = At { mesh: &self.discretization.mesh, displacement, parameter };
+                let forces = self.discretization.terms.forces_of(&spring.name, at).unwrap_or_default();
+                self.resultant(forces.into_iter().enumerate(), pole)
+            }
+        };
         Ok(match component {
             Reaction::ForceX => (force[0], "N", None),
             Reaction::ForceY => (force[1], "N", None),

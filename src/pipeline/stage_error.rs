@@ -72,6 +72,23 @@ pub enum StageError {
         /// Reason why the solve failed.
         cause: Box<SolveError>,
     },
+    /// A section with a spring of rotation turned by half a turn.
+    #[error(
+        "step {step}, solve: at {parameter} section \"{section}\" has turned by {angle_deg:.0}°, and its spring \"{spring}\" knows its \
+         rotation vector below half a turn alone: end the run earlier, or give the spring's stiffness to a shell that bends"
+    )]
+    SpringTurnedOver {
+        /// Number of the load step.
+        step: u64,
+        /// Name of the spring.
+        spring: String,
+        /// Name of the support that is the section.
+        section: String,
+        /// Angle by which it has turned, degrees.
+        angle_deg: f64,
+        /// Parameter, with its unit.
+        parameter: String,
+    },
     /// The path could not be followed.
     #[error(
         "step {step}, solve: the path was lost at {reached}: a step shorter than continuation.shortest_step = {shortest} \

@@ -270,9 +270,9 @@ impl Stages {
         members(&self.scene, &state.mesh).into_iter().zip(&finer.patches).map(of_member).sum()
     }
 
-    /// Computes the energy that terms of the caller's own store in the model, N·mm.
+    /// Computes the energy that springs and terms of the caller's own store in the model, N·mm.
     fn stored_by_terms(&mut self, state: &State) -> Result<f64, StageError> {
-        if self.own.is_empty() {
+        if self.own.is_empty() && self.scene.springs.is_empty() {
             return Ok(0.0);
         }
         let (_, work) = self.workspace(&state.mesh, state.step, Stage::RefineKnots)?;

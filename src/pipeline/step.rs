@@ -1,12 +1,16 @@
 //! A step of a drive in progress, and what every drive does alike.
 
-use crate::equilibrium::{Configuration, Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
+use crate::equilibrium::{Configuration, Coordinates, Effort, Equilibrium, Iterate, SolveError, Solved, Workspace};
 use crate::pipeline::StageError;
 use crate::pipeline::probes::{read_connections, read_probes};
 use crate::pipeline::step_control::{Attempt, energy_released, is_jump_on_refinement, known_release};
 use crate::record::{Outcome, Report, Warning};
 use crate::scene::{Parameter, Scene, Stage};
+use crate::shell::norm;
 use crate::state::{Course, DriveMemory, State, StepControl};
+
+/// Angle, in degrees, beyond which a step may pass half a turn, where the rotation vector of a section goes back to its opposite.
+const FARTHEST_TURN_DEG: f64 = 175.0;
 
 /// A drive at a state: how it moves the structure on, and how it continues on a finer mesh or another branch.
 pub(super) trait Drives {
@@ -68,6 +72,7 @@ impl Step<'_> {
 
     /// Makes the report of the state at a new equilibrium, with its probes.
     pub fn arrived(&mut self, next: &State, solved: &Solved) -> Result<Report, StageError> {
+        self.check_springs(next)?;
         let Self { stage, scene, work, .. } = self;
         let probes = read_probes(scene, work, Configuration::of(next), next.strain_energy_n_mm)
             .map_err(|cause| StageError::Model { step: next.step, stage: *stage, cause })?;
@@ -84,6 +89,29 @@ impl Step<'_> {
             probes,
             ..Report::of(scene, next, work.discretization().unknowns.count())
         })
+    }
+
+    /// Refuses a state in which a section with a spring of rotation has turned beyond what the spring can tell.
+    fn check_springs(&self, next: &State) -> Result<(), StageError> {
+        let springs = self.scene.springs.iter().filter(|spring| spring.rotation_n_mm_per_deg != [0.0; 3]);
+        for spring in springs {
+            let unknowns = &self.work.discretization().unknowns;
+            let footprint = unknowns.supports().footprints.iter().find(|footprint| footprint.name == spring.section);
+            let Some(section) = footprint.and_then(|footprint| footprint.section) else { continue };
+            let Coordinates { placement, .. } = Coordinates::of(unknowns, Configuration::of(next));
+            let angle_deg = norm(placement.turn(section)).to_degrees();
+            if angle_deg > FARTHEST_TURN_DEG {
+                let spring = spring.name.clone();
+                return Err(StageError::SpringTurnedOver {
+                    step: next.step,
+                    spring,
+                    section: footprint.map_or_else(String::new, |footprint| footprint.name.clone()),
+                    angle_deg,
+                    parameter: self.shown(next.parameter),
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Ends a step whose increment of the parameter found no equilibrium: a smaller one follows, if it is allowed.

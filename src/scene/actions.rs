@@ -3,15 +3,16 @@
 use serde_json::{Value, json};
 
 use super::data::{
-    Action, ActionKind, ForceVector, Geometry, Hold, Material, Region, Shell, Support, SurfaceDirection,
+    Action, ActionKind, ForceVector, Geometry, Material, PointMass, Region, Shell, Support, SurfaceDirection,
 };
 use super::fault::Checked;
 use super::histories::history;
+use super::sections::section;
 use super::shells::Shells;
 use super::table::{Table, data};
 
 /// One `[[action]]`.
-pub(super) fn action(table: &Table, shells: &Shells, supports: &[Support]) -> Checked<Action> {
+pub(super) fn action(table: &Table, shells: &Shells, supports: &[Support], masses: &[PointMass]) -> Checked<Action> {
     let acts_on_all =
         ["gravity", "temperature", "natural-curvature", "section-force", "section-moment"].contains(&table.kind());
     let shell = shells.named_in(table, acts_on_all)?;
@@ -26,31 +27,13 @@ pub(super) fn action(table: &Table, shells: &Shells, supports: &[Support]) -> Ch
         *per = json!(if table.word("per") == "area" { "undeformed" } else { "projected" });
     }
     let kind = data(&table.title, values);
-    check(table, &kind, material)?;
-    check_section(table, &kind, supports)?;
+    check(table, &kind, (material, masses))?;
+    if let ActionKind::SectionForce { .. } | ActionKind::SectionMoment { .. } = kind {
+        section(table, supports)?;
+    }
     // The only shell is not named.
     let shell = shell.filter(|_| shells.are_named);
     Ok(Action { name: table.name(), kind, shell, history: history(table)? })
-}
-
-/// Refuses a load on a section that no support is, or that does not move.
-fn check_section(table: &Table, kind: &ActionKind, supports: &[Support]) -> Checked<()> {
-    let (ActionKind::SectionForce { section, .. } | ActionKind::SectionMoment { section, .. }) = kind else {
-        return Ok(());
-    };
-    let is_rigid = |support: &&Support| matches!(support.hold, Hold::Rigid { .. });
-    let names: Vec<&str> = supports.iter().filter(is_rigid).map(|support| &*support.name).collect();
-    if names.contains(&&**section) {
-        return Ok(());
-    }
-    let remedy = match names.is_empty() {
-        true => "add a [[support]] of kind = \"rigid\" with motions that are \"free\"".to_owned(),
-        false => format!(
-            "the rigid sections are {}",
-            names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
-        ),
-    };
-    Err(table.wrong_at("section", format!("no rigid section is called \"{section}\""), remedy))
 }
 
 /// A force by its components, or by a number and `along`.
@@ -77,7 +60,7 @@ fn vector(table: &Table, name: &str, force: Value, geometry: &Geometry) -> Check
 }
 
 /// What must hold between its keys, and with the material.
-fn check(table: &Table, kind: &ActionKind, material: &Material) -> Checked<()> {
+fn check(table: &Table, kind: &ActionKind, (material, masses): (&Material, &[PointMass])) -> Checked<()> {
     match kind {
         ActionKind::LineForce {
             on: Region::Line(..),
@@ -93,7 +76,7 @@ fn check(table: &Table, kind: &ActionKind, material: &Material) -> Checked<()> {
                 "an area is projected along one direction, and `along` gives each point its own",
                 "write components, such as `force_n_per_mm2 = [0.0, 0.0, -0.001]`, or `per = \"area\"`",
             )),
-        ActionKind::Gravity { .. } if material.mass_kg_per_mm2().is_none() => {
+        ActionKind::Gravity { .. } if material.mass_kg_per_mm2().is_none() && masses.is_empty() => {
             let remedy = match material {
                 Material::Laminate { .. } => "write `density_kg_m3` in [material] for all plies, or in each [[ply]]",
                 _ => "write `density_kg_m3` in [material], such as 7850.0 for steel",

@@ -76,7 +76,7 @@ fn with_shells(tables: &Tables, shells: Option<Shells>, chooses_mesh: bool, mut 
     let continuation = faults.keep(continuation(tables, &load));
     let connections = connections(tables, &shells, &mut faults);
     let structure = structure(tables, &load, &shells, &mut faults);
-    let (Some(solver), Some(continuation), Some((joints, bonds)), Some((supports, actions, probes))) =
+    let (Some(solver), Some(continuation), Some((joints, bonds)), Some((supports, (springs, masses), actions, probes))) =
         (solver, continuation, connections, structure)
     else {
         return Err(faults.0);
@@ -98,6 +98,8 @@ fn with_shells(tables: &Tables, shells: Option<Shells>, chooses_mesh: bool, mut 
         symmetry,
         load,
         supports,
+        springs,
+        masses,
         actions,
         probes,
         adapt,

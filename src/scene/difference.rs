@@ -36,7 +36,7 @@ impl fmt::Display for Difference {
 
 /// Differences of a list of tables, a key each; `None` where `path` is no such list.
 pub(super) fn of_tables(path: &str, a: Option<&Value>, b: Option<&Value>) -> Option<Vec<Difference>> {
-    let section = SECTIONS.iter().find(|section| section.many && path.strip_suffix('s') == Some(section.name))?;
+    let section = SECTIONS.iter().find(|section| section.is_list(path))?;
     let [a, b] = [a, b].map(|list| list.and_then(Value::as_array).map_or(&[][..], Vec::as_slice));
     let aligned = is_aligned(a, b);
     let pairs: Vec<(Option<&Value>, Option<&Value>)> = match aligned {

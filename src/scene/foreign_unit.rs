@@ -19,7 +19,7 @@ const fn foreign(spellings: &'static [&'static str], words: &'static str, unit: 
     ForeignUnit { spellings, words, unit, factor }
 }
 
-static FOREIGN_UNITS: [ForeignUnit; 45] = [
+static FOREIGN_UNITS: [ForeignUnit; 49] = [
     foreign(&["mm", "millimetre", "millimetres", "millimeter", "millimeters"], "mm", Unit::Millimetre, 1.0),
     foreign(&["cm", "centimetre", "centimetres", "centimeter", "centimeters"], "cm", Unit::Millimetre, 10.0),
     foreign(&["m", "metre", "metres", "meter", "meters"], "m", Unit::Millimetre, 1000.0),
@@ -54,6 +54,20 @@ static FOREIGN_UNITS: [ForeignUnit; 45] = [
     foreign(&["mn", "millinewton"], "mN", Unit::Newton, 1e-3),
     foreign(&["kn", "kilonewton"], "kN", Unit::Newton, 1e3),
     foreign(&["lbf", "lb"], "lbf", Unit::Newton, 4.448_221_615_260_5),
+    foreign(&["g", "gram", "grams"], "g", Unit::Kilogram, 1e-3),
+    foreign(&["t", "tonne", "tonnes"], "t", Unit::Kilogram, 1e3),
+    foreign(
+        &["n_mm_per_rad", "n_mm_rad", "n mm/rad", "n·mm/rad"],
+        "N mm per radian",
+        Unit::NewtonMillimetrePerDegree,
+        std::f64::consts::PI / 180.0,
+    ),
+    foreign(
+        &["n_m_per_rad", "n_m_rad", "n m/rad", "n·m/rad"],
+        "N m per radian",
+        Unit::NewtonMillimetrePerDegree,
+        1e3 * std::f64::consts::PI / 180.0,
+    ),
     foreign(&["n_mm", "n/mm"], "N/mm", Unit::NewtonPerMillimetre, 1.0),
     foreign(&["n_m", "n_per_m", "n/m"], "N/m", Unit::NewtonPerMillimetre, 1e-3),
     foreign(&["kn_m", "kn_per_m", "kn/m"], "kN/m", Unit::NewtonPerMillimetre, 1.0),

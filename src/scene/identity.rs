@@ -140,7 +140,7 @@ fn collect(path: &str, value: Value, leaves: &mut BTreeMap<String, Value>) {
 
 /// How far a change of a value reaches; the whole of an array of tables as far as any of its keys.
 pub(super) fn reach(sections: &'static [Section], path: &str) -> Reach {
-    let array = path.strip_suffix('s').and_then(|name| sections.iter().find(|it| it.many && it.name == name));
+    let array = sections.iter().find(|section| section.is_list(path));
     match path {
         REFINED_BY => return Reach::Steps,
         FREE_OF_PLIES => return Reach::Free,

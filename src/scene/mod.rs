@@ -16,6 +16,7 @@
 //! | `table`, `tables` | one table, and all of them, with every default filled in |
 //! | `shells`, `connections` | the shells of a structure, and what connects them |
 //! | `geometries`, `nurbs`, `profiles`, `materials`, `supports`, `actions`, `histories`, `probes` | tables to data, and what must hold between their keys |
+//! | `sections` | springs and masses on rigid sections |
 //! | `meshes` | the mesh that a run starts with, and how it is refined |
 //! | `check`, `structure`, `stage_order`, `nearness` | tables to a scene; what must hold between tables, between supports and actions, between stages, between places |
 //! | `problem`, `fault` | what can be wrong, and where |
@@ -61,6 +62,7 @@ mod refused;
 mod regions;
 mod render;
 mod schema;
+mod sections;
 mod shells;
 mod stage_order;
 mod structure;
@@ -76,9 +78,9 @@ pub use data::{
     Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Bond, Component, Edge, EndRotation, Expectation,
     ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, Joint, JointKind, LengthLimit, Load,
     LoadSteps, LoadedArea, Material, MeshSpec, Motion, NumbersIn, NurbsPatch, OrthotropicLaw, Output,
-    ParametricDirection, Ply, Pose, Probe, ProbeKind, ProfilePiece, Quadrature, Reaction, Region, Scene, Seam,
-    SectionTurns, Sense, Shell, ShellEdge, Solver, Splitting, Stage, Strengths, Support, SurfaceDirection, Symmetry,
-    SyncPolicy,
+    ParametricDirection, Ply, PointMass, Pose, Probe, ProbeKind, ProfilePiece, Quadrature, Reaction, Region, Scene,
+    Seam, SectionTurns, Sense, Shell, ShellEdge, Solver, Splitting, Spring, Stage, Strengths, Support,
+    SurfaceDirection, Symmetry, SyncPolicy,
 };
 pub use difference::Difference;
 pub(crate) use difference::shown_values;

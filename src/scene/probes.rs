@@ -1,13 +1,13 @@
 //! The array of tables `[[probe]]`: what reports read.
 
 use super::actions::has_centre;
-use super::data::{Component, Probe, ProbeKind, Support};
+use super::data::{Component, Probe, ProbeKind, Spring, Support};
 use super::fault::Checked;
 use super::shells::Shells;
 use super::table::Table;
 
 /// One `[[probe]]`.
-pub(super) fn probe(table: &Table, supports: &[Support], shells: &Shells) -> Checked<Probe> {
+pub(super) fn probe(table: &Table, held: (&[Support], &[Spring]), shells: &Shells) -> Checked<Probe> {
     let kind: ProbeKind = table.data();
     let is_of_all = matches!(kind, ProbeKind::Reaction { .. } | ProbeKind::Energy);
     let shell = shells.named_in(table, is_of_all)?.unwrap_or(0);
@@ -21,15 +21,24 @@ pub(super) fn probe(table: &Table, supports: &[Support], shells: &Shells) -> Che
     }
     match &kind {
         ProbeKind::Displacement { component: Component::Radial, .. } => has_centre(table, "component", geometry)?,
-        ProbeKind::Reaction { support, .. } if supports.iter().all(|known| known.name != *support) => {
-            let known: Vec<String> = supports.iter().map(|support| format!("\"{}\"", support.name)).collect();
-            let remedy = match known.is_empty() {
-                true => "the scene has no [[support]]".to_owned(),
-                false => format!("the supports are {}", known.join(", ")),
-            };
-            return Err(table.wrong_at("support", format!("no support is called \"{support}\""), remedy));
-        }
+        ProbeKind::Reaction { support, .. } => check_support(table, support, held)?,
         _ => {}
     }
     Ok(Probe { name: table.name(), shell, kind })
+}
+
+/// Refuses the name of what neither is a support nor a spring.
+fn check_support(table: &Table, name: &str, (supports, springs): (&[Support], &[Spring])) -> Checked<()> {
+    let of_supports = supports.iter().map(|support| &*support.name);
+    let known: Vec<&str> = of_supports.chain(springs.iter().map(|spring| &*spring.name)).collect();
+    if known.contains(&name) {
+        return Ok(());
+    }
+    let quoted: Vec<String> = known.iter().map(|known| format!("\"{known}\"")).collect();
+    let remedy = match (quoted.is_empty(), springs.is_empty()) {
+        (true, _) => "the scene has no [[support]]".to_owned(),
+        (_, true) => format!("the supports are {}", quoted.join(", ")),
+        (_, false) => format!("the supports and springs are {}", quoted.join(", ")),
+    };
+    Err(table.wrong_at("support", format!("no support is called \"{name}\""), remedy))
 }

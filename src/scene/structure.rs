@@ -2,28 +2,31 @@
 
 use super::data::{Action, ActionKind, Hold, Load, Material, Motion, Probe, Support};
 use super::fault::{Checked, Faults};
+use super::sections::{OnSections, on_sections};
 use super::shells::Shells;
 use super::table::Table;
 use super::tables::Tables;
 use super::{actions, nearness, probes, supports};
 
-/// What holds the shell, what acts on it, and what is measured.
-pub(super) type Structure = (Vec<Support>, Vec<Action>, Vec<Probe>);
+/// What holds the shell, what hangs on its sections, what acts on it, and what is measured.
+pub(super) type Structure = (Vec<Support>, OnSections, Vec<Action>, Vec<Probe>);
 
-/// Reads supports, actions and probes; `None` where something is wrong with them.
+/// Reads supports, springs, masses, actions and probes; `None` where something is wrong with them.
 pub(super) fn structure(tables: &Tables, load: &Load, shells: &Shells, faults: &mut Faults) -> Option<Structure> {
     let before = faults.0.len();
     let supports: Vec<Support> =
         tables.all("support").filter_map(|table| faults.keep(supports::support(table, shells))).collect();
-    let action = |table: &Table| faults.keep(actions::action(table, shells, &supports));
+    let hung = on_sections(tables, &supports, faults);
+    let (springs, masses) = &hung;
+    let action = |table: &Table| faults.keep(actions::action(table, shells, &supports, masses));
     let actions: Vec<Action> = tables.all("action").filter_map(action).collect();
-    let probe = |table: &Table| faults.keep(probes::probe(table, &supports, shells));
+    let probe = |table: &Table| faults.keep(probes::probe(table, (&supports, springs), shells));
     let probes: Vec<Probe> = tables.all("probe").filter_map(probe).collect();
     if faults.0.len() > before {
         return None;
     }
     faults.keep(check(tables, load, shells, (&supports, &actions, &probes)))?;
-    Some((supports, actions, probes))
+    Some((supports, hung, actions, probes))
 }
 
 fn check(
@@ -39,7 +42,8 @@ fn check(
     }
     match load {
         Load::EndRotation(_) => {
-            if let Some(table) = tables.all("support").chain(tables.all("action")).next() {
+            let of_steps = ["support", "spring", "mass", "action"].into_iter().flat_map(|name| tables.all(name));
+            if let Some(table) = of_steps.into_iter().next() {
                 return Err(table.wrong(
                     None,
                     "turning ends are the supports and the load of this scene",

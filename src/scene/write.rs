@@ -62,6 +62,8 @@ impl Scene {
             ("support", _) => json!(self.supports),
             ("action", _) => json!(self.actions),
             ("probe", _) => json!(self.probes),
+            ("spring", _) => json!(self.springs),
+            ("mass", _) => json!(self.masses),
             ("joint", _) => json!(self.joints),
             ("bond", _) => json!(self.bonds),
             _ => Value::Null,

@@ -49,6 +49,21 @@ impl FrameVector {
         along.normalized().cross(&Self::normal(tangents))
     }
 
+    /// The sum of some vectors with these factors.
+    pub fn combined(vectors: &[Self; 3], factors: [f64; 3]) -> Self {
+        let mut sum = ZERO;
+        for (vector, factor) in vectors.iter().zip(factors) {
+            sum.value = add(sum.value, scaled(factor, vector.value));
+            for p in 0..TANGENTS {
+                sum.first[p] = add(sum.first[p], scaled(factor, vector.first[p]));
+                for q in 0..TANGENTS {
+                    sum.second[p][q] = add(sum.second[p][q], scaled(factor, vector.second[p][q]));
+                }
+            }
+        }
+        sum
+    }
+
     /// The vector divided by its length.
     fn normalized(&self) -> Self {
         let length = norm(self.value);
@@ -75,7 +90,8 @@ impl FrameVector {
         unit
     }
 
-    fn cross(&self, other: &Self) -> Self {
+    /// The vector product with another such vector.
+    pub fn cross(&self, other: &Self) -> Self {
         let mut product = ZERO;
         product.value = cross(self.value, other.value);
         for p in 0..TANGENTS {

@@ -45,6 +45,8 @@ pub fn scene() -> Scene {
         shells: vec![],
         joints: vec![],
         bonds: vec![],
+        springs: Vec::new(),
+        masses: Vec::new(),
         symmetry: Symmetry::Quarter,
         load: Load::EndRotation(EndRotation {
             sense: Sense::Opposite,

@@ -13,16 +13,21 @@ use crate::program::{Sandbox, Straight, assert_ends_with};
 /// What the default test may take.
 const BUDGET: Duration = Duration::from_secs(30);
 
-/// Kills one run after another, most once, some again while they are resumed.
-fn kill_and_resume(random: &mut Random, trial: usize, took: Duration, hits: &mut Vec<usize>) -> usize {
-    let whole = Straight::small();
+/// The scenes that are run: a shell that snaps, and a structure.
+const SCENES: [&str; 2] = ["small.toml", "structure.toml"];
+
+/// Kills one run of a scene after another, most once, some again while they are resumed.
+fn kill_and_resume(random: &mut Random, trial: usize, took: [Duration; 2], hits: &mut Vec<usize>) -> usize {
+    let which = trial % 2;
+    let (scene, took) = (SCENES[which], took[which]);
+    let whole = [Straight::small, Straight::structure][which]();
     let straight = whole.log();
     let place = Sandbox::new();
     let mut kills = 0;
     loop {
         let threads = 1 + random.below(2);
         // The same command from the start and after every kill.
-        let command = format!("run small.toml -o run.mcap --resume --quiet --threads {threads}");
+        let command = format!("run {scene} -o run.mcap --resume --quiet --threads {threads}");
         let mut child = place.command(&command).spawn().unwrap();
         // Every fourth in the first hundredth of a second, where the log is created or copied.
         let range = if random.below(4) == 0 { Duration::from_millis(10) } else { took.mul_f64(1.1) };
@@ -31,7 +36,7 @@ fn kill_and_resume(random: &mut Random, trial: usize, took: Duration, hits: &mut
         child.kill().unwrap();
         let killed = !child.wait().unwrap().success();
         kills += usize::from(killed);
-        let what = format!("trial {trial}, killed after {delay:?}");
+        let what = format!("trial {trial} of {scene}, killed after {delay:?}");
         let log = match Log::read(&place.file("run.mcap")) {
             Ok(log) => log,
             Err(ReadError::Io { .. }) => {
@@ -40,7 +45,7 @@ fn kill_and_resume(random: &mut Random, trial: usize, took: Duration, hits: &mut
                 if random.below(3) == 0 {
                     continue;
                 }
-                place.foldline("run small.toml -o run.mcap --resume").ends(0);
+                place.foldline(&format!("run {scene} -o run.mcap --resume")).ends(0);
                 assert_ends_with(&place.log("run.mcap"), whole.chain, &what);
                 return kills;
             }
@@ -70,11 +75,13 @@ fn kill_and_resume(random: &mut Random, trial: usize, took: Duration, hits: &mut
 fn killed_at_random_instants() {
     let wanted = std::env::var("FOLDLINE_KILLS").ok().map(|text| text.parse::<usize>().unwrap());
     let began = Instant::now();
-    Straight::small();
+    (Straight::small(), Straight::structure());
     let place = Sandbox::new();
-    let start = Instant::now();
-    place.foldline("run small.toml -o run.mcap --quiet").ends(0);
-    let took = start.elapsed();
+    let took = SCENES.map(|scene| {
+        let start = Instant::now();
+        place.foldline(&format!("run {scene} -o {scene}.mcap --quiet")).ends(0);
+        start.elapsed()
+    });
     let mut random = Random::new(seed());
     let (mut kills, mut trials, mut hits) = (0, 0, Vec::new());
     while wanted.map_or(kills < 200 && began.elapsed() < BUDGET, |wanted| kills < wanted) {

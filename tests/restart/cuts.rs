@@ -2,7 +2,9 @@
 
 use foldline::scene::Stage;
 
-use crate::program::{SMALL, Sandbox, Straight, assert_ends_with, assert_resumes_from_every_cut, small_syncing};
+use crate::program::{
+    SMALL, STRUCTURE, Sandbox, Straight, assert_ends_with, assert_resumes_from_every_cut, small_syncing,
+};
 
 /// The small run with a policy of syncing, cut after every stage in turn.
 fn every_cut(policy: &str, threads_before: usize, threads_after: usize) {
@@ -53,6 +55,14 @@ fn every_cut_of_a_run_that_keeps_a_tolerance() {
     assert!(count(Stage::RefineKnots) > 2 && count(Stage::CoarsenKnots) > 0);
     assert!(log.entries().iter().any(|entry| entry.record.report.returned_from().is_some()));
     assert_resumes_from_every_cut(&whole, "tolerance", 1, 2);
+}
+
+/// Shells that are joined, glued and hung on springs; one of them refines.
+#[test]
+fn every_cut_of_a_structure() {
+    let whole = Straight::structure();
+    assert_eq!(whole.chain, Straight::run(STRUCTURE, 1).chain, "threads change no state");
+    assert_resumes_from_every_cut(whole, "structure", 1, 2);
 }
 
 /// What a resume says: what it found, what it dropped and why, and what it computes first.

@@ -11,13 +11,17 @@ use foldline::state::Hash;
 /// A quarter of the baseline, coarse, through the snap.
 pub const SMALL: &str = include_str!("small.toml");
 
-/// A folder of its own for a test, with the small scene in it.
+/// A small structure: joined and glued shells, of which one refines, with a spring and a mass.
+pub const STRUCTURE: &str = include_str!("structure.toml");
+
+/// A folder of its own for a test, with the small scene and the small structure in it.
 pub struct Sandbox(tempfile::TempDir);
 
 impl Sandbox {
     pub fn new() -> Self {
         let place = Self(tempfile::tempdir().unwrap());
         place.write("small.toml", SMALL);
+        place.write("structure.toml", STRUCTURE);
         place
     }
 
@@ -144,6 +148,18 @@ impl Straight {
         SMALL_RUN.get_or_init(|| {
             let straight = Self::run(SMALL, 2);
             straight.assert_eventful();
+            straight
+        })
+    }
+
+    /// The small structure on two threads, run once for all tests.
+    pub fn structure() -> &'static Self {
+        static STRUCTURE_RUN: OnceLock<Straight> = OnceLock::new();
+        STRUCTURE_RUN.get_or_init(|| {
+            let straight = Self::run(STRUCTURE, 2);
+            let log = straight.log();
+            let refined = log.entries().iter().filter(|entry| entry.record.report.stage == Stage::RefineKnots);
+            assert!(refined.count() >= 2 && straight.stages >= 20, "{} stages", straight.stages);
             straight
         })
     }

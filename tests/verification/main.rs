@@ -28,6 +28,7 @@ mod quadrature_balance;
 mod reactions;
 mod refinement;
 mod roofs;
+mod sections;
 mod soft_mode;
 mod spring_path;
 mod structures;

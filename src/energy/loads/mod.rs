@@ -17,7 +17,8 @@ mod strokes;
 use self::dead::{Dead, DeadLoads, dead_forces};
 use self::following::{FollowerKind, Following, FollowingLoads};
 use self::points::{LoadPoint, area_points, edge_points, line_points};
-use self::sections::{SectionPoints, TurningCouple};
+use self::sections::TurningCouple;
+pub(super) use self::sections::{SectionPoints, is_below};
 use crate::energy::Terms;
 use crate::model::{Member, ModelError, direction_at, members, parameters_of};
 use crate::scene::{Action, ActionKind, ForceVector, History, LoadedArea, Region, Scene, SectionTurns};
@@ -28,7 +29,7 @@ use crate::spline::Mesh;
 const EVERYWHERE: [f64; 2] = [f64::INFINITY; 2];
 
 impl Terms {
-    /// Builds the terms of a scene's actions on a mesh.
+    /// Builds the terms of a scene's actions and of what hangs on its sections on a mesh.
     ///
     /// # Errors
     /// Where an action does not fit the surface.
@@ -44,7 +45,7 @@ impl Terms {
         let members = members(scene, mesh);
         let mut loads = Loads { points: mesh.point_count(), ..Loads::default() };
         for action in &scene.actions {
-            loads.add_to_section(scene, mesh, &members, action)?;
+            loads.add_to_section(scene, mesh, &members, (action, limits))?;
             for member in members.iter().filter(|member| action.shell.is_none_or(|shell| shell == member.index)) {
                 loads.add(member, action, limits)?;
             }
@@ -59,6 +60,7 @@ impl Terms {
         for (name, couple) in loads.couples {
             terms.push(&name, Box::new(couple));
         }
+        terms.hang_on_sections(scene, mesh, limits)?;
         Ok(terms)
     }
 }
@@ -143,9 +145,14 @@ impl Loads {
         scene: &Scene,
         mesh: &Mesh,
         members: &[Member],
-        action: &Action,
+        (action, limits): (&Action, [f64; 2]),
     ) -> Result<(), ModelError> {
         let history = action.history.clone();
+        if let ActionKind::SectionForce { section, .. } | ActionKind::SectionMoment { section, .. } = &action.kind
+            && !is_below(scene, section, limits)?
+        {
+            return Ok(());
+        }
         match &action.kind {
             ActionKind::SectionForce { section, force_n } => {
                 let forces = SectionPoints::of(scene, mesh, members, section)?.force(section, *force_n)?;

@@ -8,24 +8,46 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::energy::{At, Tangent, Term};
 use crate::model::{EdgeRows, Member, ModelError, edge_rows};
-use crate::scene::{Axis, History, Hold, Scene, ShellEdge};
+use crate::scene::{Axis, History, Hold, Scene, ShellEdge, Support};
 use crate::shell::{add, basis_vector, cross, dot, norm, scaled, sub};
 use crate::spline::Mesh;
 
 /// Extent of a section in a direction, relative to its largest one, below which it has none.
 const FLAT: f64 = 1e-6;
 
+/// Whether a section lies where both parameters are below `limits`.
+///
+/// # Errors
+/// Where it lies on both sides of such a line.
+pub(in crate::energy) fn is_below(scene: &Scene, section: &str, limits: [f64; 2]) -> Result<bool, ModelError> {
+    let edges = scene.supports.iter().filter(|support| support.name == section).flat_map(Support::edges);
+    for ShellEdge { edge, .. } in edges {
+        let (direction, at_end) = edge.side();
+        let across = direction.index();
+        if limits[1 - across].is_finite() {
+            return Err(ModelError::SectionAcross { section: section.to_owned() });
+        }
+        if limits[across].is_finite() {
+            return Ok(!at_end);
+        }
+    }
+    Ok(true)
+}
+
 /// The control points of a rigid section.
 #[derive(Debug)]
-pub(super) struct SectionPoints {
-    points: Vec<(usize, [f64; 3])>,
-    mean: [f64; 3],
+pub(in crate::energy) struct SectionPoints {
+    pub points: Vec<(usize, [f64; 3])>,
+    pub mean: [f64; 3],
     /// Reference point of the section, undeformed, mm.
-    reference: [f64; 3],
+    pub reference: [f64; 3],
+    /// A control point of the edge and the one next to it, which lies along the tangent of the shell there, where the shell's normal
+    /// turns with the section.
+    pub beside: Option<[usize; 2]>,
     /// Pseudo-inverse of S.
     inverse: Matrix3<f64>,
     /// Orthonormal vectors that the arms span.
-    span: Vec<[f64; 3]>,
+    pub span: Vec<[f64; 3]>,
 }
 
 impl SectionPoints {
@@ -47,7 +69,9 @@ impl SectionPoints {
             Hold::Rigid { reference_mm: Some(reference), .. } => *reference,
             _ => rows.centroid,
         };
-        Ok(Self::new(points, reference))
+        let normals_turn = matches!(support.hold, Hold::Rigid { normals_turn: true, .. });
+        let beside = normals_turn.then(|| [rows.outer[0], rows.inner[0]]);
+        Ok(Self { beside, ..Self::new(points, reference) })
     }
 
     fn new(points: Vec<(usize, [f64; 3])>, reference: [f64; 3]) -> Self {
@@ -67,11 +91,11 @@ impl SectionPoints {
             inverse += vector * vector.transpose() / eigen.eigenvalues[k];
             span.push([vector[0], vector[1], vector[2]]);
         }
-        Self { points, mean, reference, inverse, span }
+        Self { points, mean, reference, beside: None, inverse, span }
     }
 
     /// Weights of the control points whose sum of positions is R e.
-    fn weights(&self, direction: [f64; 3]) -> Vec<f64> {
+    pub fn weights(&self, direction: [f64; 3]) -> Vec<f64> {
         let inner = self.inverse * Vector3::from(direction);
         self.points.iter().map(|(_, x)| Vector3::from(sub(*x, self.mean)).dot(&inner)).collect()
     }
@@ -147,7 +171,7 @@ impl SectionPoints {
     ///
     /// # Errors
     /// As for a couple, and where the control points lie on a line.
-    pub fn turning_moment(
+    pub(super) fn turning_moment(
         &self,
         section: &str,
         moment: f64,

@@ -11,6 +11,7 @@
 //! | `expectation` | how a run is to end |
 //! | `output` | what is written besides the states |
 //! | `structure`, `connection` | several shells, and what connects them |
+//! | `section` | what hangs on rigid sections |
 
 mod boundary;
 mod connection;
@@ -21,6 +22,7 @@ mod mesh;
 mod output;
 mod place;
 mod probe;
+mod section;
 mod structure;
 
 pub use boundary::{
@@ -35,6 +37,7 @@ pub use mesh::{MeshSpec, Quadrature};
 pub use output::{NumbersIn, Output, SyncPolicy};
 pub use place::{Axis, Edge, ParametricDirection, Region, ShellEdge};
 pub use probe::{Component, Probe, ProbeKind, Reaction};
+pub use section::{PointMass, Spring};
 pub use structure::{Pose, Shell};
 
 use std::borrow::Cow;
@@ -69,6 +72,12 @@ pub struct Scene {
     /// Where and how the shell is held; empty where [`Load::EndRotation`] holds its ends.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub supports: Vec<Support>,
+    /// Springs between rigid sections and the ground.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub springs: Vec<Spring>,
+    /// Point masses on rigid sections.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub masses: Vec<PointMass>,
     /// Forces, moments and pressures.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub actions: Vec<Action>,
@@ -125,6 +134,8 @@ impl Scene {
             shells: Vec::new(),
             joints: Vec::new(),
             bonds: Vec::new(),
+            springs: Vec::new(),
+            masses: Vec::new(),
             ..self.clone()
         })
     }

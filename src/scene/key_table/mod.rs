@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `geometry`, `material` | what the shell is |
 //! | `shells` | several shells, and what connects them |
+//! | `sections` | springs and masses on rigid sections |
 //! | `structure` | what holds it, what acts on it, what is measured |
 //! | `mesh`, `run` | how it is made discrete and solved |
 //! | `output` | what is written of it, and how it is to end |
@@ -15,6 +16,7 @@ mod material;
 mod mesh;
 mod output;
 mod run;
+mod sections;
 mod shells;
 mod structure;
 
@@ -38,6 +40,16 @@ pub static SECTIONS: &[Section] = &[
     one("symmetry", false, "Which part of the shell is modelled.", mesh::SYMMETRY),
     one("load", true, "What moves the shell.", run::LOAD),
     many("support", "What holds the shell, where [load] is of kind \"steps\"; at least one.", structure::SUPPORT),
+    many(
+        "spring",
+        "A spring between a rigid section and the ground, free of force while the section is not moved.",
+        sections::SPRING,
+    ),
+    many(
+        "mass",
+        "A point mass on a rigid section, which moves with it: it has weight where there is gravity.",
+        sections::MASS,
+    ),
     many(
         "action",
         "What acts, where [load] is of kind \"steps\", which needs an action or a support's motion that is not zero.",

@@ -121,7 +121,7 @@ pub(super) static ACTION: &[Key] = &[
         choice("force", "a force on a point that keeps its direction"),
         choice("line-force", "a force per undeformed length of an edge or a line that keeps its direction"),
         choice("area-force", "a force per area of the whole surface that keeps its direction"),
-        choice("gravity", "own weight: density times thickness times acceleration; needs density_kg_m3"),
+        choice("gravity", "own weight: density times thickness times acceleration; needs density_kg_m3, or a [[mass]]"),
         choice(
             "edge-moment",
             "a moment per undeformed length of an edge, about the deformed edge's tangent in the direction of growing v (u-edges) \
@@ -259,7 +259,7 @@ pub(super) static PROBE: &[Key] = &[
         choice("displacement", "of a point, mm"),
         choice(
             "reaction",
-            "what a support exerts on the shell: N, or N mm about the section's reference point (of others: the centroid of the \
+            "what a support or a spring exerts on the shell: N, or N mm about the section's reference point (of others: the centroid of the \
              place); the derivative of strain energy less work of the loads with respect to the support's motion. Where \
              supports meet, a \"symmetric\" one takes force across its plane and moment, the other all force along it; of two \
              others the first in the scene counts. On half a shell: half of what a support that crosses the cut exerts on the \
@@ -292,7 +292,7 @@ pub(super) static PROBE: &[Key] = &[
         .of(&["section-moment"])
         .means("Line across which it acts.")
         .also_called(PLACES),
-    probe("support", Kind::Text, "\"root\"").of(&["reaction"]).means("Name of the support."),
+    probe("support", Kind::Text, "\"root\"").of(&["reaction"]).means("Name of the support or of the spring."),
     probe("component", Kind::Word(&[
         choice("x", ""),
         choice("y", ""),

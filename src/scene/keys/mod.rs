@@ -37,6 +37,12 @@ impl Section {
         if self.many { format!("[[{}]]", self.name) } else { format!("[{}]", self.name) }
     }
 
+    /// Whether the list of all its tables has this name in a scene.
+    pub fn is_list(&self, path: &str) -> bool {
+        let ending = if self.name.ends_with('s') { "es" } else { "s" };
+        self.many && path.strip_suffix(ending) == Some(self.name)
+    }
+
     /// The key that gives the kind of the table, where other keys depend on it.
     pub fn kind_key(&self) -> Option<&'static Key> {
         let has_kinds = self.keys.iter().any(|key| !key.kinds.is_empty());

@@ -17,6 +17,10 @@ pub enum Unit {
     Newton,
     /// Newton millimetres.
     NewtonMillimetre,
+    /// Kilograms.
+    Kilogram,
+    /// Newton millimetres per degree.
+    NewtonMillimetrePerDegree,
     /// Newtons per millimetre.
     NewtonPerMillimetre,
     /// Newtons per square millimetre.
@@ -33,7 +37,8 @@ pub enum Unit {
 
 impl Unit {
     /// Those of the keys; a name that ends in two of them has the one that comes first.
-    const ALL: [Unit; 12] = [
+    const ALL: [Unit; 14] = [
+        Unit::NewtonMillimetrePerDegree,
         Unit::NewtonPerSquareMillimetre,
         Unit::NewtonPerMillimetre,
         Unit::PerMillimetre,
@@ -46,6 +51,7 @@ impl Unit {
         Unit::Megapascal,
         Unit::Newton,
         Unit::Kelvin,
+        Unit::Kilogram,
     ];
 
     /// The unit in which a name ends.
@@ -70,6 +76,8 @@ impl Unit {
             Unit::KilogramPerCubicMetre => "kg_m3",
             Unit::Newton => "n",
             Unit::NewtonMillimetre => "n_mm",
+            Unit::Kilogram => "kg",
+            Unit::NewtonMillimetrePerDegree => "n_mm_per_deg",
             Unit::NewtonPerMillimetre => "n_per_mm",
             Unit::NewtonPerSquareMillimetre => "n_per_mm2",
             Unit::MetrePerSecondSquared => "m_s2",
@@ -89,6 +97,8 @@ impl Unit {
             Unit::KilogramPerCubicMetre => "kg/m3",
             Unit::Newton => "N",
             Unit::NewtonMillimetre => "N mm",
+            Unit::Kilogram => "kg",
+            Unit::NewtonMillimetrePerDegree => "N mm per degree",
             Unit::NewtonPerMillimetre => "N/mm",
             Unit::NewtonPerSquareMillimetre => "N/mm2",
             Unit::MetrePerSecondSquared => "m/s2",
