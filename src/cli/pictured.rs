@@ -59,7 +59,7 @@ pub(super) fn named(scene: &Scene, name: &str) -> Result<(Field, Option<usize>),
         // One component is the value itself, and of a vector the length is shown; a tensor has none.
         None => match field.components {
             [_] => Some((field.clone(), Some(0))),
-            ["x", "y", "z"] => Some((field.clone(), None)),
+            _ if field.is_vector() => Some((field.clone(), None)),
             _ => None,
         },
     });

@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `fields` | what can be shown of a shell, with names and units |
+//! | `bonded` | the shells of a state, with what bonds carry on them |
 //! | `samples` | a sampled surface |
 //! | `deformed_surface` | the deformed shell as one |
 //! | `camera`, `colour`, `ticks` | projection, colours, round numbers |
@@ -17,6 +18,7 @@
 
 #[cfg(feature = "pictures")]
 mod animation;
+mod bonded;
 mod camera;
 mod colour;
 mod deformed_surface;
@@ -38,6 +40,7 @@ mod vtu;
 
 #[cfg(feature = "pictures")]
 pub use animation::{AnimationError, mesh_animation};
+pub use bonded::ShellsOfState;
 pub use camera::ViewDirection;
 pub use deformed_surface::{coloured_surface, deformed_surface, mode_surface};
 pub use export::{
