@@ -6,7 +6,7 @@
 //! | `bonded` | the shells of a state, with what bonds carry on them |
 //! | `samples` | a sampled surface |
 //! | `deformed_surface` | the deformed shell as one |
-//! | `camera`, `colour`, `ticks` | projection, colours, round numbers |
+//! | `camera`, `viewpoint`, `colour`, `ticks` | projection, where a structure is seen from, colours, round numbers |
 //! | `plot` | curves |
 //! | `mesh_picture`, `marks`, `glyphs` | the mesh as a picture; supports, loads and the outline before, and their signs |
 //! | `drawing`, `raster` | shapes on a canvas, as SVG and as pixels |
@@ -36,6 +36,7 @@ mod report;
 mod samples;
 mod ticks;
 mod viewers;
+mod viewpoint;
 mod vtu;
 
 #[cfg(feature = "pictures")]
@@ -56,4 +57,5 @@ pub use plot::{
 pub use report::{FrameAt, ReportedRun, Shape, Told, chosen_frames, report_page, study_page, sweep_page};
 pub use samples::{SamplesError, SurfaceSamples};
 pub use viewers::{LOG_TOPIC, MESH_HISTORY_TOPIC, MeshHistory, PictureError, StepTimes, ViewerFile};
+pub use viewpoint::viewpoint;
 pub use vtu::vtu;
