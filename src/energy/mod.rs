@@ -26,7 +26,7 @@ mod term;
 mod terms;
 
 pub use balance::Balance;
-pub use connections::{ConnectionState, Connections, GluedLayers, GreatestTraction, Traction};
+pub use connections::{ConnectionState, Connections, GluedLayers, GluedShell, GreatestTraction, Traction};
 pub use discretization::Discretization;
 pub(crate) use held::check_held;
 pub(crate) use kernel::Build;

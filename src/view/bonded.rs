@@ -2,27 +2,10 @@
 
 use super::export::WholeShell;
 use super::fields::ShellFields;
-use crate::energy::{GluedLayers, Traction};
+use crate::energy::GluedLayers;
 use crate::model::{Member, members};
 use crate::scene::Scene;
 use crate::state::State;
-
-/// A shell that bonds glue to others, in a state.
-#[derive(Debug)]
-pub(super) struct GluedShell<'a> {
-    layers: &'a GluedLayers<'a>,
-    /// Its place in the list of shells.
-    shell: usize,
-    /// Displacement of all control points of the structure, mm.
-    displacement: &'a [[f64; 3]],
-}
-
-impl GluedShell<'_> {
-    /// What a bond carries at the parameters (u, v); `None` where nothing is glued.
-    pub(super) fn traction(&self, at: [f64; 2]) -> Option<Traction> {
-        self.layers.traction(self.shell, at, self.displacement)
-    }
-}
 
 /// The shells of a scene in a state.
 #[derive(Debug)]
@@ -44,7 +27,7 @@ impl<'a> ShellsOfState<'a> {
     pub fn fields(&self) -> impl ExactSizeIterator<Item = ShellFields<'_>> {
         self.members.iter().map(|Member { index, scene, patch, points }| {
             let Self { state: State { displacement, parameter, .. }, layers, .. } = self;
-            let glued = layers.touch(*index).then_some(GluedShell { layers, shell: *index, displacement });
+            let glued = layers.of_shell(*index, displacement);
             ShellFields::new(scene, patch, &displacement[points.clone()], *parameter).with_bonds(glued)
         })
     }

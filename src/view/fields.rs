@@ -5,8 +5,7 @@
 
 use std::cell::OnceCell;
 
-use super::bonded::GluedShell;
-use crate::energy::Traction;
+use crate::energy::{GluedShell, Traction};
 use crate::model::{FreeStrains, NaturalState};
 use crate::scene::{Material, Scene};
 use crate::shell::{Criterion, Layer, LocalPoint, gauss_legendre, layers, local_point, norm, principal, sub};

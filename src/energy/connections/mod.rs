@@ -31,7 +31,7 @@ use crate::spline::Mesh;
 
 pub use glue::Traction;
 pub use state::{ConnectionState, GreatestTraction};
-pub use tractions::GluedLayers;
+pub use tractions::{GluedLayers, GluedShell};
 
 /// The connections of a structure that have an energy.
 #[derive(Clone, Debug, Default)]

@@ -14,6 +14,21 @@ pub struct GluedLayers<'a> {
     list: Vec<GluedLayer<'a>>,
 }
 
+/// A shell that bonds glue to others, in a state of the structure.
+#[derive(Debug)]
+pub struct GluedShell<'a> {
+    layers: &'a GluedLayers<'a>,
+    shell: usize,
+    displacement: &'a [[f64; 3]],
+}
+
+impl GluedShell<'_> {
+    /// What a bond carries at the parameters (u, v); `None` where nothing is glued.
+    pub fn traction(&self, at: [f64; 2]) -> Option<Traction> {
+        self.layers.traction(self.shell, at, self.displacement)
+    }
+}
+
 /// The layer of a bond between two shells.
 #[derive(Debug)]
 struct GluedLayer<'a> {
@@ -38,14 +53,14 @@ impl<'a> GluedLayers<'a> {
         Self { list: scene.bonds.iter().map(of_bond).collect() }
     }
 
-    /// Whether a bond glues this shell.
-    pub fn touch(&self, shell: usize) -> bool {
-        self.list.iter().any(|glued| glued.shells.contains(&shell))
+    /// Returns what glues a shell where the control points of the structure are displaced (mm); `None` where nothing does.
+    pub fn of_shell<'s>(&'s self, shell: usize, displacement: &'s [[f64; 3]]) -> Option<GluedShell<'s>> {
+        let is_glued = self.list.iter().any(|glued| glued.shells.contains(&shell));
+        is_glued.then_some(GluedShell { layers: self, shell, displacement })
     }
 
-    /// Finds what is carried at the parameters (u, v) of a shell, where the control points of the structure are displaced (mm): of
-    /// several bonds there, by the one that carries more. `None` where nothing is glued.
-    pub fn traction(&self, shell: usize, at: [f64; 2], displacement: &[[f64; 3]]) -> Option<Traction> {
+    /// Finds what is carried at the parameters (u, v) of a shell; of several bonds there, by the one that carries more.
+    fn traction(&self, shell: usize, at: [f64; 2], displacement: &[[f64; 3]]) -> Option<Traction> {
         let here = self.list.iter().filter_map(|glued| glued.traction(shell, at, displacement));
         here.max_by(|one, other| one.size().total_cmp(&other.size()))
     }
