@@ -17,8 +17,8 @@ use crate::scene::Scene;
 use crate::state::State;
 use crate::units::rounded;
 use crate::view::{
-    Instant, StatesOnMesh, ViewerFile, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl, surface_vtu,
-    time_steps,
+    Instant, ShellsOfState, StatesOnMesh, ViewerFile, WholeShell, csv, json, knot_lines_vtu, npz, pvd, step, stl,
+    surface_vtu, time_steps,
 };
 
 /// Write the states of a log for other programs: ParaView, tables, numpy, CAD
@@ -49,7 +49,7 @@ pub(super) struct Arguments {
     /// For mcap: when viewers show what a stage did [default: steps]
     #[arg(long, value_name = "TIMES")]
     times: Option<Times>,
-    /// Shell of a structure of several, by its name; exports for viewers (mcap) have all shells
+    /// One shell of a structure of several, by its name; exports for viewers (mcap) have all shells [default: all]
     #[arg(long, value_name = "NAME")]
     shell: Option<String>,
     /// Only print which fields there are, with units and meanings
@@ -63,12 +63,14 @@ impl Arguments {
         let Self { log, to, output, every, steps, fields, points, times, shell, list_fields } = self;
         let asked = Asked::open(&log)?;
         let (Some(format), false) = (to, list_fields) else { return print(&list_of_fields(&asked.scene)) };
-        let shell = if format == Format::Mcap { 0 } else { chosen_shell(&asked.scene, &log, shell)? };
+        let shell = chosen_shell(&asked.scene, &log, shell)?;
         if format != Format::Mcap {
             if times.is_some() {
                 return Err(Failure::TimesOfNoViewer);
             }
-            chosen_fields(&asked.scene.of_shell(shell), &fields)?;
+            chosen_fields(&asked.scene, &fields)?;
+        } else if shell.is_some() {
+            return Err(Failure::ShellForViewers);
         }
         let steps = match every {
             Some(n) => Steps::Every(n),
@@ -96,20 +98,18 @@ struct Export<'a> {
     format: Format,
     fields: &'a [String],
     points: usize,
-    /// The shell that is written, by its place in the scene.
-    shell: usize,
+    /// The shell that is written, by its place in the scene; `None` for all.
+    shell: Option<usize>,
     target: Target,
 }
 
-/// Finds the shell that is to be written; a structure of several has one chosen by name.
-fn chosen_shell(scene: &Scene, log: &Path, name: Option<String>) -> Result<usize, Failure> {
+/// Finds the shell that is to be written, where it is chosen by name.
+fn chosen_shell(scene: &Scene, log: &Path, name: Option<String>) -> Result<Option<usize>, Failure> {
+    let Some(name) = name else { return Ok(None) };
     let known: Vec<String> = scene.shells.iter().map(|shell| shell.name.clone()).collect();
-    match name {
-        None if known.is_empty() => Ok(0),
-        name => {
-            let found = name.as_ref().and_then(|name| known.iter().position(|known| known == name));
-            found.ok_or_else(|| Failure::NoSuchShell { log: log.to_path_buf(), name, known })
-        }
+    match known.iter().position(|known| *known == name) {
+        None => Err(Failure::NoSuchShell { log: log.to_path_buf(), name, known }),
+        found => Ok(found),
     }
 }
 
@@ -120,8 +120,8 @@ impl Export<'_> {
         let files = ends.iter().flat_map(|end| self.files_of(end)).chain(self.series_files());
         refuse_what_is_there(&files.collect::<Vec<_>>())?;
         self.each_state(ends, |scene, state, record| {
-            let (scene, state) = (&*scene.of_shell(self.shell), &*state.of_shell(self.shell));
-            let contents = self.contents(&WholeShell::new(scene, state), scene, &Instant::of(record))?;
+            let shells = ShellsOfState::new(scene, state);
+            let contents = self.contents(&self.chosen(&shells), scene, &Instant::of(record))?;
             write(&self.files_of(record).into_iter().zip(contents).collect::<Vec<_>>())
         })?;
         let times = time_steps(&ends.iter().map(Instant::of).collect::<Vec<_>>());
@@ -137,12 +137,13 @@ impl Export<'_> {
     fn write_arrays(&self, ends: &[Record]) -> Result<(), Failure> {
         let mut groups: Vec<StatesOnMesh> = Vec::new();
         self.each_state(ends, |scene, state, record| {
-            let (scene, state) = (&*scene.of_shell(self.shell), &*state.of_shell(self.shell));
-            let shell = WholeShell::new(scene, state);
-            let state = (Instant::of(record), shell.displacement().collect());
-            match groups.last_mut().filter(|group| group.mesh == *shell.undeformed()) {
+            let shells = ShellsOfState::new(scene, state);
+            let shells = self.chosen(&shells);
+            let state = (Instant::of(record), shells.iter().map(|shell| shell.displacement().collect()).collect());
+            let mesh = StatesOnMesh::mesh_of(&shells);
+            match groups.last_mut().filter(|group| group.mesh == mesh) {
                 Some(group) => group.states.push(state),
-                None => groups.push(StatesOnMesh { mesh: shell.undeformed().clone(), states: vec![state] }),
+                None => groups.push(StatesOnMesh { mesh, states: vec![state] }),
             }
             Ok(())
         })?;
@@ -187,9 +188,19 @@ impl Export<'_> {
         write(&[(path, bytes)])
     }
 
+    /// The shells that are written; one alone needs no name.
+    fn chosen<'s>(&self, shells: &'s ShellsOfState) -> Vec<WholeShell<'s>> {
+        match self.shell {
+            None => shells.whole(),
+            Some(shell) => shells.whole().into_iter().skip(shell).take(1).map(WholeShell::without_name).collect(),
+        }
+    }
+
     /// The contents of the files of a state.
-    fn contents(&self, shell: &WholeShell, scene: &Scene, instant: &Instant) -> Result<Vec<Vec<u8>>, Failure> {
-        let fields = chosen_fields(scene, self.fields)?;
+    fn contents(&self, shells: &[WholeShell], scene: &Scene, instant: &Instant) -> Result<Vec<Vec<u8>>, Failure> {
+        let mut fields = chosen_fields(scene, self.fields)?;
+        fields.retain(|field| shells.iter().any(|shell| shell.has(field)));
+        let deformed = || shells.iter().map(|shell| (shell.deformed(), shell.name()));
         let title = || {
             let name = self.log.file_stem().unwrap_or_default().to_string_lossy();
             let at = match instant.driven_by {
@@ -200,12 +211,14 @@ impl Export<'_> {
         };
         Ok(match self.format {
             Format::Vtu => {
-                [surface_vtu(shell, &fields, instant), knot_lines_vtu(shell, instant)].map(String::into_bytes).into()
+                [surface_vtu(shells, &fields, instant), knot_lines_vtu(shells, instant)].map(String::into_bytes).into()
             }
-            Format::Csv => vec![csv(shell, &fields, self.points).into_bytes()],
-            Format::Json => vec![json(shell, &fields, self.points, instant).into_bytes()],
-            Format::Stl => vec![stl(shell.deformed(), self.points, &title())],
-            Format::Step => vec![step(shell.deformed(), &title()).into_bytes()],
+            Format::Csv => vec![csv(shells, &fields, self.points).into_bytes()],
+            Format::Json => vec![json(shells, &fields, self.points, instant).into_bytes()],
+            Format::Stl => {
+                vec![stl(&deformed().map(|(surface, _)| surface).collect::<Vec<_>>(), self.points, &title())]
+            }
+            Format::Step => vec![step(&deformed().collect::<Vec<_>>(), &title()).into_bytes()],
             // Their states are not written one by one.
             Format::Npz | Format::Mcap => vec![],
         })

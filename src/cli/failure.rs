@@ -89,12 +89,16 @@ pub(super) enum Failure {
     )]
     NoCommonCurve,
     #[error(
-        "{} has {}; there are {}: choose one with --shell",
+        "{} has no shell \"{name}\"; {}",
         log.display(),
-        name.as_ref().map_or_else(|| "several shells, and this format takes one".to_owned(), |name| format!("no shell \"{name}\"")),
-        if known.is_empty() { "none with a name".to_owned() } else { known.join(", ") }
+        match &known[..] {
+            [] => "it has one shell, which has no name: leave --shell out".to_owned(),
+            known => format!("there are {}: choose one with --shell, or leave that out for all of them", known.join(", ")),
+        }
     )]
-    NoSuchShell { log: PathBuf, name: Option<String>, known: Vec<String> },
+    NoSuchShell { log: PathBuf, name: String, known: Vec<String> },
+    #[error("--shell is given, and what viewers are shown has all shells: leave it out")]
+    ShellForViewers,
     #[error("{} has no probe to draw the load factor over: choose a curve with --x and --y", log.display())]
     NoProbe { log: PathBuf },
     #[error(
@@ -242,6 +246,7 @@ impl Failure {
             | Failure::TooManyFrames { .. }
             | Failure::NoProbe { .. }
             | Failure::NoSuchShell { .. }
+            | Failure::ShellForViewers
             | Failure::StepsInOneFile { .. }
             | Failure::MeshesInOneFile { .. }
             | Failure::FieldsForViewers { .. }

@@ -10,7 +10,7 @@ use crate::spline::Mesh;
 use crate::state::State;
 use crate::units::rounded;
 use crate::view::{
-    Field, Marks, Picture, SurfaceSamples, ViewDirection, coloured_surface, deformed_surface, fields_of,
+    Field, Marks, Picture, SurfaceSamples, ViewDirection, coloured_surface, deformed_surface, fields_of, viewpoint,
 };
 
 /// Cells along a picture that look smooth.
@@ -19,7 +19,8 @@ const SMOOTH: usize = 120;
 /// How a mesh is shown.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look<'f> {
-    pub(super) direction: ViewDirection,
+    /// Where it is seen from; `None` for where its shells are seen well.
+    pub(super) direction: Option<ViewDirection>,
     /// Name of the field that it is coloured by; `None` for the larger bending strain.
     pub(super) field: Option<&'f str>,
 }
@@ -41,7 +42,7 @@ pub(super) fn pictured(
         }
     };
     let picture = Picture {
-        direction: *direction,
+        direction: direction.unwrap_or_else(|| viewpoint(&samples)),
         title: format!("{}, load step {}", name_of(log), report.step),
         subtitle: subtitle(report),
         marks: Marks::of(scene, state),
@@ -59,7 +60,7 @@ pub(super) fn named(scene: &Scene, name: &str) -> Result<(Field, Option<usize>),
         // One component is the value itself, and of a vector the length is shown; a tensor has none.
         None => match field.components {
             [_] => Some((field.clone(), Some(0))),
-            ["x", "y", "z"] => Some((field.clone(), None)),
+            _ if field.is_vector() => Some((field.clone(), None)),
             _ => None,
         },
     });

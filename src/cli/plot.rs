@@ -37,7 +37,8 @@ pub(super) struct Arguments {
     /// Show the mesh at the end of this load step [default: the last one]
     #[arg(long, value_name = "K")]
     step: Option<u64>,
-    /// Look at the mesh from this side: degrees about z from x towards y, degrees above the xy-plane
+    /// Look at the mesh from this side: degrees about z from x towards y, degrees above the xy-plane [default: -62,24; a structure of
+    /// several shells from where all of them are seen]
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = direction, allow_hyphen_values = true)]
     view: Option<ViewDirection>,
     /// Colour the mesh by this field, such as bending_moment.11, energy_density or displacement (its length); a wrong name lists
@@ -75,7 +76,7 @@ impl Arguments {
 
     /// How the mesh is shown.
     fn look(&self) -> Look<'_> {
-        Look { direction: self.view.unwrap_or_default(), field: self.field.as_deref() }
+        Look { direction: self.view, field: self.field.as_deref() }
     }
 
     /// What only the mesh of one log has a use for.

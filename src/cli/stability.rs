@@ -15,7 +15,7 @@ use crate::scene::Scene;
 use crate::shell::{add, norm, scaled, sub};
 use crate::state::State;
 use crate::units::{count, place, significant, unsigned_zero};
-use crate::view::{Marks, Picture, mesh_picture, mode_surface, vtu};
+use crate::view::{Marks, Picture, mesh_picture, mode_surface, viewpoint, vtu};
 
 /// Largest motion of a mode in its picture, relative to the size of the shell.
 const SHOWN_AMPLITUDE: f64 = 0.05;
@@ -205,6 +205,7 @@ fn drawn(scene: &Scene, state: &State, shape: &[[f64; 3]], title: &str, of: &str
     let moved = State { displacement, ..state.clone() };
     let samples = mode_surface(scene, state, &mode, cells_per_element(mesh))?;
     let picture = Picture {
+        direction: viewpoint(&samples),
         title: title.to_owned(),
         subtitle: format!(
             "{of}; a mode has no size: its motion is drawn as {:.0} % of the shell",

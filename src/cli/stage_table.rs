@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::wrapped::hanging;
-use crate::record::{Outcome, Parameter, Record, Report};
+use crate::record::{ConnectionReading, LargestTraction, Outcome, Parameter, Record, Report};
 use crate::scene::Stage;
 use crate::units::{reading, significant};
 
@@ -173,6 +173,21 @@ fn digits(number: f64) -> String {
     significant(number, 12)
 }
 
+/// What a joint or a bond shows of an equilibrium.
+fn connection_in_words(
+    ConnectionReading { name, energy_share, opened_deg, peel, shear }: &ConnectionReading,
+) -> String {
+    let opened = opened_deg.map(|angle| format!("opened by {}°", significant(angle, 4)));
+    let largest = |kind: &str, traction: &Option<LargestTraction>| {
+        let LargestTraction { mpa, at: [u, v] } = traction.as_ref()?;
+        let [u, v] = [u, v].map(|parameter| significant(*parameter, 3));
+        Some(format!("{kind} at most {} MPa, at u = {u}, v = {v}", significant(*mpa, 4)))
+    };
+    let share = format!("{name}: {} % of the energy", significant(100.0 * energy_share, 3));
+    let further = [opened, largest("peel", peel), largest("shear", shear)].into_iter().flatten();
+    [share].into_iter().chain(further).collect::<Vec<_>>().join("; ")
+}
+
 fn in_full(record: &Record) -> Vec<(&'static str, String)> {
     let Record { report, commit, wall_s, .. } = record;
     let outcome = match report.outcome {
@@ -211,6 +226,7 @@ fn in_full(record: &Record) -> Vec<(&'static str, String)> {
         lines.push(("probe", format!("{} = {} {}", probe.name, digits(probe.value), probe.unit)));
     }
     lines.push(("strain energy", format!("{} N·mm", digits(report.strain_energy_n_mm))));
+    lines.extend(report.connections.iter().map(|connection| ("connection", connection_in_words(connection))));
     if let Some(length) = report.path_length_mm {
         lines.push(("length of the path", format!("{} mm (root mean square displacement)", digits(length))));
     }

@@ -28,7 +28,7 @@ mod term;
 mod terms;
 
 pub use balance::Balance;
-pub use connections::{ConnectionState, Connections};
+pub use connections::{ConnectionState, Connections, GluedLayers, GluedShell, GreatestTraction, Traction};
 pub use discretization::Discretization;
 pub(crate) use held::check_held;
 pub(crate) use kernel::Build;

@@ -81,11 +81,13 @@ impl Doubts<'_> {
         let Self { scene, work, state, .. } = self;
         let Discretization { mesh, shells, .. } = work.discretization();
         let of_shell = |(member, shell): (Member, &Shell)| {
-            largest_strain((member.patch, shell), &state.displacement, member.scene.material.thickness_mm())
+            let thickness = member.scene.material.thickness_mm();
+            (member.index, largest_strain((member.patch, shell), &state.displacement, thickness))
         };
         let all = members(scene, mesh).into_iter().zip(shells).map(of_shell);
-        let (strain, at) = all.reduce(|one, other| if other.0 > one.0 { other } else { one })?;
-        (strain > LARGE_STRAIN).then_some(Warning::LargeStrains { parameter: state.parameter, strain, at })
+        let (index, (strain, at)) = all.reduce(|one, other| if other.1.0 > one.1.0 { other } else { one })?;
+        let shell = scene.shell_name(index).map(str::to_owned);
+        (strain > LARGE_STRAIN).then_some(Warning::LargeStrains { parameter: state.parameter, strain, at, shell })
     }
 
     /// Warns of what halving every element would change: the energy, else the load at which it buckles, else a probe.

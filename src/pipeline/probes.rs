@@ -3,12 +3,12 @@
 use std::cell::OnceCell;
 
 use crate::adapt::largest_bending_strain;
-use crate::energy::{At, ConnectionState, Discretization};
+use crate::energy::{At, ConnectionState, Discretization, GreatestTraction};
 use crate::equilibrium::{Configuration, Coordinates, Workspace};
 use crate::model::{
     Exerted, Member, ModelError, Placement, Site, control_expressions, direction_at, line_place, members, parameters_of,
 };
-use crate::record::{ConnectionReading, Reading};
+use crate::record::{ConnectionReading, LargestTraction, Reading};
 use crate::scene::{Axis, Component, Probe, ProbeKind, Reaction, Region, Scene, SurfaceDirection};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::mid_surface_point;
@@ -64,9 +64,11 @@ pub(super) fn read_connections(work: &Workspace, at: Configuration) -> Vec<Conne
     let Discretization { mesh, connections, .. } = work.discretization();
     let stored = work.energy(at.displacement, at.parameter);
     let states = connections.states(At { mesh, displacement: at.displacement, parameter: at.parameter });
-    let reading = |ConnectionState { name, energy_n_mm, opened_deg }| {
+    let reading = |ConnectionState { name, energy_n_mm, opened_deg, tractions }| {
         let energy_share = if stored > 0.0 { energy_n_mm / stored } else { 0.0 };
-        ConnectionReading { name, energy_share, opened_deg }
+        let largest = tractions.map(|all| all.map(|GreatestTraction { mpa, at }| LargestTraction { mpa, at }));
+        let [peel, shear] = largest.map_or([None; 2], |all| all.map(Some));
+        ConnectionReading { name, energy_share, opened_deg, peel, shear }
     };
     states.into_iter().map(reading).collect()
 }

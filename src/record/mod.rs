@@ -25,7 +25,7 @@ pub use commit::{Commit, Record};
 pub use critical_point::CriticalPoint;
 pub(crate) use fields::as_number;
 pub use fields::fields_of;
-pub use reading::{ConnectionReading, Reading};
+pub use reading::{ConnectionReading, LargestTraction, Reading};
 pub(crate) use report::released_in_words;
 pub use report::{Outcome, Report, WrittenReport};
 pub use revision::NUMERICS_REVISION;

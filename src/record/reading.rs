@@ -27,4 +27,19 @@ pub struct ConnectionReading {
     /// Of a joint that keeps an angle, the largest angle by which it has opened, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub opened_deg: Option<f64>,
+    /// Of a bond, the largest traction that opens it, MPa; below 0 where it is pressed together everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peel: Option<LargestTraction>,
+    /// Of a bond, the largest shear traction, MPa.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear: Option<LargestTraction>,
+}
+
+/// The largest traction of a kind in a bond.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LargestTraction {
+    /// Its size, MPa: per undeformed area.
+    pub mpa: f64,
+    /// Where it is, as parameters (u, v) in [0, 1] of the bond's first shell.
+    pub at: [f64; 2],
 }

@@ -69,6 +69,9 @@ pub enum Warning {
         strain: f64,
         /// The middle of the element where it is, as parameters (u, v) in [0, 1].
         at: [f64; 2],
+        /// The shell of a structure that it is in.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        shell: Option<String>,
     },
     /// The length limit keeps spans that are far longer than their bending allows.
     RefinementBlocked {
@@ -203,12 +206,13 @@ impl Warning {
                 significant(*parameter, 3),
                 significant(*halved, 3)
             ),
-            &Self::LargeStrains { strain, at: [u, v], .. } => format!(
-                "strains reach {} %, at u = {}, v = {}: the law of the material (stress in proportion to strain) and the theory \
+            Self::LargeStrains { strain, at: [u, v], shell, .. } => format!(
+                "strains reach {} %, at u = {}, v = {}{}: the law of the material (stress in proportion to strain) and the theory \
                  of thin shells are meant for small ones, and err by some {} % there; look at loads, thickness and units",
                 significant(100.0 * strain, 2),
-                significant(u, 2),
-                significant(v, 2),
+                significant(*u, 2),
+                significant(*v, 2),
+                shell.as_ref().map_or(String::new(), |shell| format!(" of \"{shell}\"")),
                 significant(100.0 * 1.5 * strain, 2)
             ),
             &Self::ToleranceNotMet { estimated, tolerance, .. } => format!(

@@ -16,7 +16,8 @@ pub(super) fn probe(table: &Table, held: (&[Support], &[Spring]), shells: &Shell
         return Err(table.wrong_at(
             "kind",
             "a line cuts one shell of a structure, and the others carry moments past it",
-            "read the \"reaction\" of a support",
+            "read what a support carries: `kind = \"reaction\"` with the name of the `support` and, of a rigid section, a `component` such as \
+             \"moment-y\", about its reference point",
         ));
     }
     match &kind {

@@ -155,6 +155,11 @@ impl DepthBuffer {
         self.around(point).map(|(_, face)| face).find(|face| *face != NO_FACE).map(|face| face as usize)
     }
 
+    /// The face that each pixel shows, of those that show one.
+    pub(super) fn faces(&self) -> impl Iterator<Item = usize> {
+        self.nearest.iter().filter(|(_, face)| *face != NO_FACE).map(|(_, face)| *face as usize)
+    }
+
     /// The pixel of a point and its neighbours that are on the canvas.
     fn around(&self, point: Projected) -> impl Iterator<Item = (f64, u32)> {
         const OFFSETS: [(f64, f64); 5] = [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];

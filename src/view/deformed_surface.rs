@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::fields::{Field, ShellFields, fields_of};
+use super::bonded::ShellsOfState;
+use super::fields::{Field, ShellFields};
 use super::samples::{SamplesError, SurfaceSamples, cells_of};
 use crate::model::{Member, members};
 use crate::scene::Scene;
@@ -63,18 +64,13 @@ pub fn coloured_surface(
     component: Option<usize>,
     cells_per_element: [usize; 2],
 ) -> Result<SurfaceSamples, SamplesError> {
-    of_shells(members(scene, &state.mesh), |Member { scene, patch, points, .. }| {
-        let moved = &state.displacement[points];
-        let fields = ShellFields::new(&scene, patch, moved, state.parameter);
+    of_shells(ShellsOfState::new(scene, state).fields(), |fields: ShellFields| {
+        let (scene, patch, moved) = fields.parts();
         let of = |value: [f64; 3]| component.map_or_else(|| norm(value), |index| value[index]);
-        let has_it = fields_of(&scene).contains(field);
-        let value = |lines: [&LineBasis; 2]| match has_it {
-            true => of(fields.at(lines.map(|line| line.parameter)).value(field)),
-            false => f64::NAN,
-        };
+        let value = |lines: [&LineBasis; 2]| of(fields.at(lines.map(|line| line.parameter)).value(field));
         let image = [0, 1].map(|direction| of(field.mirrored([1.0; 3], direction)).signum());
         let shown = Shown { value: &value, image, quantity: field.title_of(component) };
-        sampled(&scene, patch, moved, cells_per_element, shown)
+        sampled(scene, patch, moved, cells_per_element, shown)
     })
 }
 
@@ -105,11 +101,11 @@ pub fn mode_surface(
 }
 
 /// Samples every shell, and puts the surfaces together.
-fn of_shells<'a>(
-    members: Vec<Member<'a>>,
-    of: impl Fn(Member<'a>) -> Result<SurfaceSamples, SamplesError>,
+fn of_shells<S>(
+    shells: impl IntoIterator<Item = S>,
+    of: impl Fn(S) -> Result<SurfaceSamples, SamplesError>,
 ) -> Result<SurfaceSamples, SamplesError> {
-    let parts = members.into_iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let parts = shells.into_iter().map(of).collect::<Result<Vec<_>, _>>()?;
     SurfaceSamples::joined(parts).ok_or(SamplesError::TooFewPoints { counts: [0, 0] })
 }
 

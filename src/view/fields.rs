@@ -3,6 +3,9 @@
 //! Strains and resultants are in the axes of the shell: e₁ along u of the undeformed surface, e₂ = n × e₁. Their values are those
 //! of the NURBS surface at the point asked for, not means of what elements integrate.
 
+use std::cell::OnceCell;
+
+use crate::energy::{GluedShell, Traction};
 use crate::model::{FreeStrains, NaturalState};
 use crate::scene::{Material, Scene};
 use crate::shell::{Criterion, Layer, LocalPoint, gauss_legendre, layers, local_point, norm, principal, sub};
@@ -39,6 +42,10 @@ enum Quantity {
     Indicator,
     ElementSize,
     Thickness,
+    /// What a bond carries along the normal.
+    Peel,
+    /// What a bond carries along the surface.
+    BondShear,
     /// Strain of the layer with this number, from the bottom.
     Ply(usize),
     /// How near to failing a layer is, or that of all which is nearest.
@@ -83,6 +90,24 @@ const FIELDS: [Row; 14] = [
     ("thickness", "mm", SCALAR, "thickness of the shell", Quantity::Thickness),
 ];
 
+/// What only shells have that are glued.
+const OF_BONDS: [Row; 2] = [
+    (
+        "bond_peel",
+        "MPa",
+        SCALAR,
+        "traction of a bond across its layer, positive where it opens, per undeformed area; no number where nothing is glued",
+        Quantity::Peel,
+    ),
+    (
+        "bond_shear",
+        "MPa",
+        PRINCIPAL,
+        "traction of a bond along its layer, on its first shell, in the deformed axes 1 and 2 of that",
+        Quantity::BondShear,
+    ),
+];
+
 const FAILURES: [(&str, &str, Criterion); 2] = [
     (
         "failure_tsai_wu",
@@ -97,16 +122,27 @@ const FAILURES: [(&str, &str, Criterion); 2] = [
     ),
 ];
 
-/// All fields of the shell of a scene: those of any shell, the strains of every ply of a laminate, and where strengths are given
-/// how near to failing the shell and every ply is.
+/// All fields of the shells of a scene: those of any shell, the strains of every ply of a laminate, where strengths are given
+/// how near to failing the shell and every ply is, and what bonds carry. Not every shell of a structure has all of them.
 pub fn fields_of(scene: &Scene) -> Vec<Field> {
-    let of_row = |(name, unit, components, means, quantity): Row| Field {
-        name: name.to_owned(),
-        unit,
-        components,
-        means,
-        quantity,
-    };
+    let mut fields = fields_of_shell(&scene.of_shell(0));
+    for index in 1..scene.shell_count() {
+        let further = fields_of_shell(&scene.of_shell(index));
+        let new: Vec<Field> = further.into_iter().filter(|field| !fields.contains(field)).collect();
+        fields.extend(new);
+    }
+    if !scene.bonds.is_empty() {
+        fields.extend(OF_BONDS.map(of_row));
+    }
+    fields
+}
+
+fn of_row((name, unit, components, means, quantity): Row) -> Field {
+    Field { name: name.to_owned(), unit, components, means, quantity }
+}
+
+/// The fields of a shell alone.
+fn fields_of_shell(scene: &Scene) -> Vec<Field> {
     let layers = layers(&scene.material);
     let plies = match &scene.material {
         Material::Laminate { .. } => &layers[..],
@@ -137,6 +173,11 @@ pub fn fields_of(scene: &Scene) -> Vec<Field> {
 }
 
 impl Field {
+    /// Whether its components are those of a vector, which has a length.
+    pub fn is_vector(&self) -> bool {
+        matches!(self.quantity, Quantity::Displacement | Quantity::BondShear)
+    }
+
     /// The name of a component, or of the length of all of them, with the unit, as axes and colour bars have it.
     pub fn title_of(&self, component: Option<usize>) -> String {
         let name = self.name.replace('_', " ");
@@ -172,6 +213,8 @@ pub struct ShellFields<'a> {
     /// Undeformed lengths of the elements through their middles, mm, the second direction fastest.
     lengths: Vec<[f64; 2]>,
     layers: Vec<Layer>,
+    /// What glues it to other shells.
+    glued: Option<GluedShell<'a>>,
 }
 
 impl<'a> ShellFields<'a> {
@@ -187,6 +230,33 @@ impl<'a> ShellFields<'a> {
             lengths: element_lengths(mesh, &spans),
             spans,
             layers: layers(&scene.material),
+            glued: None,
+        }
+    }
+
+    /// The same fields, with those of the bonds of a structure.
+    pub(super) fn with_bonds(self, glued: Option<GluedShell<'a>>) -> Self {
+        Self { glued, ..self }
+    }
+
+    /// The scene of the shell, its patch, and the displacement of its control points, mm.
+    pub(super) fn parts(&self) -> (&'a Scene, &'a Patch, &'a [[f64; 3]]) {
+        (self.scene, self.mesh, self.displacement)
+    }
+
+    /// Whether the shell has a field of the structure at all.
+    pub fn has(&self, field: &Field) -> bool {
+        self.has_quantity(field.quantity)
+    }
+
+    fn has_quantity(&self, quantity: Quantity) -> bool {
+        let is_laminate = matches!(self.scene.material, Material::Laminate { .. });
+        match quantity {
+            Quantity::Ply(ply) => is_laminate && ply < self.layers.len(),
+            Quantity::Failure(_, None) => self.layers.iter().all(Layer::has_strengths),
+            Quantity::Failure(_, Some(ply)) => is_laminate && self.layers.get(ply).is_some_and(Layer::has_strengths),
+            Quantity::Peel | Quantity::BondShear => self.glued.is_some(),
+            _ => true,
         }
     }
 
@@ -203,10 +273,12 @@ impl<'a> ShellFields<'a> {
             bending_along_parameters: along_parameters(local.bending, a1, a2),
             local,
             element: self.element_at(at),
+            at,
+            traction: OnceCell::new(),
         }
     }
 
-    /// Least and largest value of each component over some points, or `None` without a point.
+    /// Least and largest value of each component over some points, or `None` without a point; what is no number counts for nothing.
     pub fn range(&self, field: &Field, points: impl Iterator<Item = [f64; 2]>) -> Option<[[f64; 2]; 3]> {
         let widened = |range: [[f64; 2]; 3], value: [f64; 3]| {
             [0, 1, 2].map(|c| [range[c][0].min(value[c]), range[c][1].max(value[c])])
@@ -237,12 +309,20 @@ pub struct FieldPoint<'a> {
     bending_along_parameters: [f64; 2],
     /// Index of its element, the second direction fastest.
     element: usize,
+    /// Its parameters.
+    at: [f64; 2],
+    /// What a bond carries there, once it is asked for.
+    traction: OnceCell<Option<Traction>>,
 }
 
 impl FieldPoint<'_> {
-    /// The components of a field of the shell's scene; those beyond its number are 0.
+    /// The components of a field of the shell's scene; those beyond its number are 0. Where the shell does not have the field, or nothing
+    /// is glued, they are no numbers.
     pub fn value(&self, field: &Field) -> [f64; 3] {
-        let Self { shell, displacement, local, bending_along_parameters: [along, across], element } = self;
+        let Self { shell, displacement, local, bending_along_parameters: [along, across], element, .. } = self;
+        if !shell.has(field) {
+            return [f64::NAN; 3];
+        }
         let scalar = |value: f64| [value, 0.0, 0.0];
         let tensor_of_strains = |[xx, yy, shear]: [f64; 3]| [xx, yy, 0.5 * shear];
         let pair = |[one, two]: [f64; 2]| [one, two, 0.0];
@@ -262,6 +342,8 @@ impl FieldPoint<'_> {
             Quantity::Indicator => pair([along * lengths[0], across * lengths[1]]),
             Quantity::ElementSize => pair(lengths),
             Quantity::Thickness => scalar(shell.scene.material.thickness_mm()),
+            Quantity::Peel => self.traction().map_or([f64::NAN; 3], |traction| scalar(traction.peel_mpa)),
+            Quantity::BondShear => self.traction().map_or([f64::NAN; 3], |traction| pair(traction.shear_mpa)),
             Quantity::Ply(ply) => {
                 let Some(Layer { heights, angle_deg, .. }) = shell.layers.get(ply) else { return [0.0; 3] };
                 let [bottom, top] = heights.map(|height| local.strains_at(height, *angle_deg));
@@ -273,6 +355,13 @@ impl FieldPoint<'_> {
                 scalar(asked.iter().map(|layer| layer.failure(criterion, local, change_k)).fold(0.0, f64::max))
             }
         }
+    }
+}
+
+impl FieldPoint<'_> {
+    /// What a bond carries here.
+    fn traction(&self) -> Option<Traction> {
+        *self.traction.get_or_init(|| self.shell.glued.as_ref()?.traction(self.at))
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::export::WholeShell;
 use crate::model::{Site, direction_at, parameters_of, supports_of};
-use crate::scene::{ActionKind, Edge, ForceVector, Hold, Motion, Region, Scene, Support, SurfaceDirection, Symmetry};
+use crate::scene::{
+    Action, ActionKind, Edge, ForceVector, Hold, Motion, Region, Scene, Support, SurfaceDirection, Symmetry,
+};
 use crate::shell::{add, cross, dot, norm, scaled, sub};
 use crate::spline::{Patch, mid_surface_point};
 use crate::state::State;
@@ -93,13 +95,21 @@ impl Marks {
     /// The supports and loads of a scene in a state, and the undeformed outline.
     pub fn of(scene: &Scene, state: &State) -> Self {
         let mut marks = Self { outline_name: "undeformed", ..Self::default() };
+        let whole = scene;
         for index in 0..scene.shell_count() {
             let (scene, state) = (scene.of_shell(index), state.of_shell(index));
             let shell = WholeShell::new(&scene, &state);
             let place = Place::new(&scene, &shell, state.parameter);
             marks.outline.extend(outline(shell.undeformed()));
             place.mark_supports(&mut marks);
-            for action in &scene.actions {
+            // What acts on a section of several edges is drawn once.
+            let is_elsewhere = |action: &&Action| match &action.kind {
+                ActionKind::SectionForce { section, .. } | ActionKind::SectionMoment { section, .. } => {
+                    whole.supports.iter().any(|support| support.name == *section && support.shell != index)
+                }
+                _ => false,
+            };
+            for action in scene.actions.iter().filter(|action| !is_elsewhere(action)) {
                 let factor = action.history.at(state.parameter);
                 if factor != 0.0 {
                     marks.arrows.extend(place.loads(&action.kind, factor));

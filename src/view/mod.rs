@@ -3,9 +3,10 @@
 //! | file | what |
 //! |---|---|
 //! | `fields` | what can be shown of a shell, with names and units |
+//! | `bonded` | the shells of a state, with what bonds carry on them |
 //! | `samples` | a sampled surface |
 //! | `deformed_surface` | the deformed shell as one |
-//! | `camera`, `colour`, `ticks` | projection, colours, round numbers |
+//! | `camera`, `viewpoint`, `colour`, `ticks` | projection, where a structure is seen from, colours, round numbers |
 //! | `plot` | curves |
 //! | `mesh_picture`, `marks`, `glyphs` | the mesh as a picture; supports, loads and the outline before, and their signs |
 //! | `drawing`, `raster` | shapes on a canvas, as SVG and as pixels |
@@ -17,6 +18,7 @@
 
 #[cfg(feature = "pictures")]
 mod animation;
+mod bonded;
 mod camera;
 mod colour;
 mod deformed_surface;
@@ -34,10 +36,12 @@ mod report;
 mod samples;
 mod ticks;
 mod viewers;
+mod viewpoint;
 mod vtu;
 
 #[cfg(feature = "pictures")]
 pub use animation::{AnimationError, mesh_animation};
+pub use bonded::ShellsOfState;
 pub use camera::ViewDirection;
 pub use deformed_surface::{coloured_surface, deformed_surface, mode_surface};
 pub use export::{
@@ -53,4 +57,5 @@ pub use plot::{
 pub use report::{FrameAt, ReportedRun, Shape, Told, chosen_frames, report_page, study_page, sweep_page};
 pub use samples::{SamplesError, SurfaceSamples};
 pub use viewers::{LOG_TOPIC, MESH_HISTORY_TOPIC, MeshHistory, PictureError, StepTimes, ViewerFile};
+pub use viewpoint::viewpoint;
 pub use vtu::vtu;

@@ -15,6 +15,7 @@ mod pty;
 mod report;
 mod stability;
 mod stages;
+mod structures;
 mod study;
 mod summary;
 mod sweep;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks with VTK what `foldline export` writes for ParaView, on the log of a small run that folds and refines: no error or warning
+"""Checks with VTK what `foldline export` writes for ParaView, on the log of a small run that folds and refines, and on that of a structure of two shells that are glued: no error or warning
 of VTK; cells that warp to the deformed surface; area and points of the surface, and every field at nodes, as the program has them
 in its table (`--to csv`).
 
@@ -20,6 +20,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "tests/restart/small.toml"
+STRUCTURE = ROOT / "pipelines/structures/trac-boom.toml"
 # Cells of a table along an element; uniform points of cells of degree 3 and 2 are among the points of the table.
 TABLE_CELLS = 6
 # Rounding of coefficients that are some times larger than the values.
@@ -95,7 +96,8 @@ class Check:
 def table(path: Path) -> dict[str, np.ndarray]:
     with path.open() as lines:
         names, *rows = csv.reader(lines)
-    return dict(zip(names, np.array(rows, dtype=float).T))
+    columns = dict(zip(names, zip(*rows)))
+    return {name: np.array(column, dtype=str if name == "shell" else float) for name, column in columns.items()}
 
 
 def area(grid: vtk.vtkUnstructuredGrid) -> float:
@@ -116,7 +118,7 @@ def area(grid: vtk.vtkUnstructuredGrid) -> float:
     return total
 
 
-def check_step(check: Check, folder: Path, path: Path, radius_length_arc: tuple[float, float, float]) -> None:
+def check_step(check: Check, folder: Path, path: Path, undeformed_area: float) -> None:
     complaints = Complaints()
     grid = read(path, complaints)
     lines = read(path.with_name(path.name.replace("run-", "run-knots-")), complaints)
@@ -129,9 +131,7 @@ def check_step(check: Check, folder: Path, path: Path, radius_length_arc: tuple[
     known = (kinds, line_kinds) == ({vtk.VTK_BEZIER_QUADRILATERAL}, {vtk.VTK_BEZIER_CURVE})
     check.within(f"{path.name}: types of cells {kinds}, {line_kinds}", 0 if known else 1, 0)
 
-    # Undeformed, the shell is a cylinder.
-    radius, length, arc = radius_length_arc
-    check.within(f"{path.name}: undeformed area", abs(area(grid) / (radius * length * np.radians(arc)) - 1), 1e-9)
+    check.within(f"{path.name}: undeformed area", abs(area(grid) / undeformed_area - 1), 1e-9)
 
     # The table has the nodes of each cell, v fastest, cell by cell.
     undeformed = vtk_to_numpy(grid.GetPoints().GetData())
@@ -153,9 +153,13 @@ def check_step(check: Check, folder: Path, path: Path, radius_length_arc: tuple[
         for name, columns in names.items():
             for component, column in enumerate(columns):
                 coefficients = points[name].reshape(len(undeformed), -1)[cell.points, component]
-                range_ = values[column].min(), values[column].max()
-                scale = max(map(abs, range_)) or 1.0
-                error = np.abs(rational @ coefficients - values[column][of_cell]).max() / scale
+                scale = np.nanmax(np.abs(values[column])) or 1.0
+                own = values[column][of_cell]
+                # A cell in which a field has no value somewhere has none at all.
+                if np.isnan(own).any():
+                    error = 0.0 if np.isnan(coefficients).all() else np.inf
+                else:
+                    error = np.abs(rational @ coefficients - own).max() / scale
                 off[name] = max(off.get(name, 0.0), error)
     for what, error in off.items():
         # Other fields than positions are of single precision.
@@ -167,8 +171,23 @@ def check_step(check: Check, folder: Path, path: Path, radius_length_arc: tuple[
         shown = vtk_to_numpy(grid.GetFieldData().GetArray(f"{name}_range")).reshape(-1, 2)
         for (least, largest), column in zip(shown, columns, strict=True):
             own = values[column]
-            off_range = max(abs(least - own.min()), abs(largest - own.max())) / (np.abs(own).max() or 1.0)
+            off_range = max(abs(least - np.nanmin(own)), abs(largest - np.nanmax(own))) / (np.nanmax(np.abs(own)) or 1.0)
             check.within(f"{path.name}: range of {column}", off_range, 1e-9)
+
+
+def check_shells(check: Check, folder: Path, path: Path) -> None:
+    """Cells know their shell by its place in a list of names."""
+    complaints = Complaints()
+    grid = read(path, complaints)
+    names = grid.GetFieldData().GetAbstractArray("shell_names")
+    names = [names.GetValue(k) for k in range(names.GetNumberOfValues())]
+    of_cells = vtk_to_numpy(grid.GetCellData().GetArray("shell"))
+    values = table(folder / "table" / path.with_suffix(".csv").name)
+    own = values["shell"].reshape(len(of_cells), -1)
+    wrong = sum((own[cell] != names[shell]).any() for cell, shell in enumerate(of_cells))
+    check.within(f"{path.name}: cells of {names} beside their shell {complaints.said}", wrong + len(complaints.said), 0)
+    peel = values["bond_peel"]
+    check.within(f"{path.name}: peel of {np.isfinite(peel).sum()} of {len(peel)} points", 0 if 0 < np.isfinite(peel).sum() < len(peel) else 1, 0)
 
 
 def main(program: str) -> int:
@@ -183,10 +202,20 @@ def main(program: str) -> int:
         series = xml.parse(folder / "paraview/run.pvd").getroot().iter("DataSet")
         files = [folder / "paraview" / entry.get("file") for entry in series]
         for path in files:
-            check_step(check, folder, path, (10.0, 300.0, 110.0))
+            # Undeformed, the shell is a cylinder.
+            check_step(check, folder, path, 10.0 * 300.0 * np.radians(110.0))
+        structure = folder / "structure"
+        structure.mkdir()
+        foldline(program, "run", str(STRUCTURE), "-o", "run.mcap", "--until", "0.1", folder=structure)
+        foldline(program, "export", "run.mcap", "--to", "vtu", "-o", "paraview", folder=structure)
+        foldline(program, "export", "run.mcap", "--to", "csv", "-o", "table", folder=structure)
+        for path in structure.glob("paraview/run-0*.vtu"):
+            files.append(path)
+            check_step(check, structure, path, 2 * 300.0 * (8.0 + 10.6 * np.radians(105.0)))
+            check_shells(check, structure, path)
     print(*check.faults, f"{len(files)} load steps, {check.made} checks, {len(check.faults)} faults", sep="\n")
     # A series without files would pass unseen.
-    return 1 if check.faults or len(files) != 2 else 0
+    return 1 if check.faults or len(files) != 3 else 0
 
 
 if __name__ == "__main__":

@@ -81,6 +81,39 @@ def shown(page, canvas):
     return page.evaluate(f"document.getElementById('{canvas}').toDataURL()")
 
 
+def structure(folder, browser):
+    """The page of a structure: both shells are drawn, what is not glued is grey, and elements are counted for each."""
+    log, html = folder / "boom.mcap", folder / "boom.html"
+    run("run", "-q", Path(__file__).parents[2] / "pipelines/structures/trac-boom.toml", "--until", "0.2", "-o", log)
+    run("report", log, "-o", html)
+    page = browser.new_page(viewport={"width": 1200, "height": 800})
+    said = []
+    page.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.goto(html.as_uri())
+    page.wait_for_function("find('at').textContent !== ''")
+    assert page.evaluate("find('at').textContent").endswith("30 × 9 + 30 × 9 elements"), page.evaluate("find('at').textContent")
+    assert page.evaluate("charts[1].data.datasets[0].data.at(-1).y") == 540
+    counts = page.evaluate("current.shape.counts")
+    assert len(counts) == 2 and page.evaluate("quads(current.shape).length") == sum((a - 1) * (b - 1) for a, b in counts), counts
+    points = page.evaluate("places(current.shape, current.shape.frames[0].points).length / 3")
+    assert points == sum(a * b for a, b in counts) == page.evaluate("Math.max(...quads(current.shape).flat()) + 1")
+    pairs = page.evaluate("pairs(current.shape, current.shape.frames[0]).length / 6")
+    assert pairs == sum(l * (b - 1) + m * (a - 1) for (a, b), (l, m) in zip(counts, page.evaluate("current.shape.frames[0].line_counts")))
+    peel = page.evaluate("current.shape.fields.findIndex((field) => field.title.startsWith('bond peel'))")
+    pictures = [page.locator("#stage").screenshot()]
+    page.select_option("#field", str(peel))
+    pictures.append(page.locator("#stage").screenshot())
+    assert pictures[0] != pictures[1]
+    # The webs are glued, and the flanges are not.
+    colours = page.evaluate(f"[...coloured(current.shape, current.shape.frames.at(-1), {peel})]")
+    grey = sum(colours[i:i + 3] == [0.75] * 3 for i in range(0, len(colours), 3)) * 3 / len(colours)
+    assert 0.4 < grey < 0.9, grey
+    assert not said, said
+    print(f"a structure: {len(counts)} shells, {points:.0f} points, {100 * grey:.0f} % of them not glued")
+    page.close()
+
+
 with tempfile.TemporaryDirectory() as folder, sync_playwright() as driver:
     folder = Path(folder)
     log, html = folder / "baseline.mcap", folder / "baseline.html"
@@ -119,5 +152,6 @@ with tempfile.TemporaryDirectory() as folder, sync_playwright() as driver:
         assert not said, said
         print(f"{width} pixels, {scheme}: {size / 1e6:.1f} MB, open after {opened:.2f} s, {len(drawn)} load steps as in the log")
         page.close()
+    structure(folder, browser)
     sweep(folder, browser)
     browser.close()

@@ -28,7 +28,7 @@ fn the_page_holds_the_runs_whole() {
     let shape = &runs[1]["shape"];
     let frames = shape["frames"].as_array().unwrap();
     assert_eq!(frames.len(), runs[1]["points"].as_array().unwrap().len());
-    let [n1, n2] = [0, 1].map(|direction| shape["counts"][direction].as_u64().unwrap());
+    let [n1, n2] = [0, 1].map(|direction| shape["counts"][0][direction].as_u64().unwrap());
     // Three coordinates of two bytes each, in base64.
     let coded = frames[0]["points"].as_str().unwrap().len() as u64;
     assert_eq!(coded, (6 * n1 * n2).div_ceil(3) * 4);

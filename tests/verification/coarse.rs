@@ -217,3 +217,20 @@ fn strains_that_the_law_is_not_meant_for_are_said() {
     assert!((strain - (16.0 / 9.0 - 1.0) / 2.0).abs() < 1e-6, "{strain}");
     assert_eq!(pulled(1.0), []);
 }
+
+/// Of two strips that are joined, the second one is pulled out.
+#[test]
+fn large_strains_name_the_shell_that_has_them() {
+    let text = "[[shell]]\nname = \"one\"\n[shell.geometry]\nkind = \"plate\"\nlength_mm = 30.0\nwidth_mm = 10.0\n\
+         [[shell]]\nname = \"two\"\nposition_mm = [30.0, 0.0, 0.0]\n[shell.geometry]\nkind = \"plate\"\nlength_mm = 30.0\n\
+         width_mm = 10.0\n[[joint]]\nkind = \"hinge\"\nedges = [\"one.u-end\", \"two.u-start\"]\n\
+         [material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = 1.0\npoissons_ratio = 0.0\nthickness_mm = 1.0\n\
+         [mesh]\ndegree = 2\nelements = [2, 2]\n[load]\nkind = \"steps\"\nincrement = 0.5\n\
+         [[support]]\nname = \"a\"\nshell = \"one\"\non = \"u-start\"\nkind = \"clamped\"\n\
+         [[support]]\nname = \"b\"\nshell = \"two\"\non = \"u-start\"\nkind = \"hinged\"\n\
+         [[support]]\nname = \"c\"\nshell = \"two\"\non = \"u-end\"\nkind = \"displacement\"\nx_mm = 10.0\ny_mm = 0.0\nz_mm = 0.0\n";
+    let found = warnings(&records(&parse(text, "strips.toml").unwrap()));
+    let large = found.iter().find(|warning| matches!(warning, Warning::LargeStrains { .. })).unwrap();
+    assert!(matches!(large, Warning::LargeStrains { shell: Some(shell), .. } if shell == "two"), "{large:?}");
+    assert!(large.in_words().contains(" of \"two\": the law"), "{}", large.in_words());
+}

@@ -5,6 +5,7 @@ mod assembly;
 mod balance;
 mod baseline;
 mod benchmarks;
+mod bonds;
 mod buckling;
 mod coarse;
 mod connectivity;

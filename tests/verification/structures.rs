@@ -274,3 +274,24 @@ fn what_cannot_be_connected_is_refused() {
         assert!(error.contains(says), "{error}");
     }
 }
+
+/// A section that holds edges of two shells reports the force and moment that it carries for both: the root of a boom those that act on
+/// its tip, about its reference point.
+#[test]
+fn a_common_section_reports_what_it_carries_for_all_its_shells() {
+    let boom = include_str!("../../pipelines/structures/trac-boom.toml")
+        .replace("elements = [30, 9]", "elements = [6, 6]")
+        .replace("increment = 0.1", "increment = 1.0")
+        .replace("moment_n_mm = 700.0", "moment_n_mm = 20.0");
+    let force = "[[action]]\nname = \"tip\"\nkind = \"section-force\"\nsection = \"tip\"\nforce_n = [0.0, 0.0, 0.05]\n";
+    let probe = |component: &str| {
+        format!(
+            "[[probe]]\nname = \"{component}\"\nkind = \"reaction\"\nsupport = \"root\"\ncomponent = \"{component}\"\n"
+        )
+    };
+    let report = run(read(&format!("{boom}{force}{}{}", probe("moment-y"), probe("force-z")))).pop().unwrap().1.report;
+    // M + r × F about y is M − 300 mm · F_z, and what holds it is opposite. The boom bends by less than 1e-3 of its length.
+    let (moment, force) = (reading(&report, "moment-y"), reading(&report, "force-z"));
+    assert!((moment + (20.0 - 300.0 * 0.05)).abs() < 2e-3 * 20.0, "{moment}");
+    assert!((force + 0.05).abs() < 1e-6, "{force}");
+}

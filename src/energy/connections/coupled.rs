@@ -65,6 +65,8 @@ pub(super) fn moved(sides: &[Local; 2], rates: &[Local; 2]) -> ([Local; 2], [Loc
 /// A point of one surface.
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceSide {
+    /// Its parameters (u, v).
+    pub at: [f64; 2],
     /// Control points, numbered as in the structure.
     pub controls: Vec<usize>,
     /// Functions of u, a₁ and a₂.
@@ -79,6 +81,7 @@ impl SurfaceSide {
         let (window, [value, one, two, ..]) = evaluate_surface(patch, at);
         let surface = mid_surface_point(patch, &[], at);
         Self {
+            at,
             controls: patch.window(window).map(|point| first + point).collect(),
             functions: [value, one, two],
             undeformed: [[0.0; 3], surface.derivatives[0], surface.derivatives[1]],

@@ -1,7 +1,7 @@
 //! The energy of a layer of glue between the faces of two shells.
 
 use super::coupled::{Derivatives, FIRST_TANGENT, LOCAL, Local, PointLaw, moved};
-use crate::shell::{FrameVector, TANGENTS, add, basis_vector, dot, scaled, sub};
+use crate::shell::{FrameVector, TANGENTS, add, basis_vector, cross, dot, norm, scaled, sub};
 
 /// The point of an area at which two shells are glued.
 ///
@@ -10,8 +10,10 @@ use crate::shell::{FrameVector, TANGENTS, add, basis_vector, dot, scaled, sub};
 /// would resist a rotation of the whole.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Glue {
-    /// k times the weight of the point, N/mm.
+    /// k times the area of the point, N/mm.
     pub stiffness: f64,
+    /// Undeformed area of the point, mm².
+    pub area: f64,
     /// c and c′, mm.
     pub to_faces: [f64; 2],
     /// Components of g on a₁, a₂ and a₃.
@@ -33,6 +35,39 @@ impl Glue {
         let own = scaled(self.to_faces[0] - self.gap[2], normals[0]);
         let gap = add(scaled(self.gap[0], one[1]), scaled(self.gap[1], one[2]));
         sub(sub(own, gap), scaled(self.to_faces[1], normals[1]))
+    }
+}
+
+/// What a layer of glue carries at a point, MPa: per undeformed area of the first shell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Traction {
+    /// Along the normal of the first shell; positive where it pulls the faces together, as they open.
+    pub peel_mpa: f64,
+    /// On the first shell by the second, along the first one's deformed e₁ (along a₁) and e₂ = a₃ × e₁.
+    pub shear_mpa: [f64; 2],
+}
+
+impl Traction {
+    /// Its length, MPa.
+    pub fn size(&self) -> f64 {
+        let [one, two] = self.shear_mpa;
+        norm([self.peel_mpa, one, two])
+    }
+}
+
+impl Glue {
+    /// The traction −k r on the first shell, split along its deformed surface and normal.
+    pub fn traction(&self, sides: &[Local; 2]) -> Traction {
+        let on_first = scaled(-self.stiffness / self.area, self.stretch(sides));
+        let [_, a1, a2] = sides[0];
+        let normal = FrameVector::normal([a1, a2]).value;
+        let along = scaled(1.0 / norm(a1), a1);
+        // The second shell lies on the side of the glued face.
+        let outward = self.to_faces[0].signum();
+        Traction {
+            peel_mpa: outward * dot(on_first, normal),
+            shear_mpa: [dot(on_first, along), dot(on_first, cross(normal, along))],
+        }
     }
 }
 
@@ -86,7 +121,6 @@ impl PointLaw for Glue {
 mod tests {
     use super::*;
     use crate::energy::connections::coupled::tests::check;
-    use crate::shell::cross;
 
     const SIDES: [Local; 2] = [
         [[0.02, -0.01, 0.03], [1.1, 0.1, 0.05], [0.1, 0.9, -0.1]],
@@ -94,7 +128,8 @@ mod tests {
     ];
 
     fn law() -> Glue {
-        let flat = Glue { stiffness: 4.0, to_faces: [0.3, 0.2], gap: [0.02, -0.03, 0.05], at_rest: [0.0; 3] };
+        let flat =
+            Glue { stiffness: 4.0, area: 1.0, to_faces: [0.3, 0.2], gap: [0.02, -0.03, 0.05], at_rest: [0.0; 3] };
         let at_rest = [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0; 3], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]];
         Glue { at_rest: flat.across(&at_rest), ..flat }
     }
@@ -113,7 +148,7 @@ mod tests {
             [[7.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             [[7.02, 0.97, 0.55], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]],
         ];
-        let flat = Glue { stiffness: 1.0, to_faces: [0.3, 0.2], gap: [0.0; 3], at_rest: [0.0; 3] };
+        let flat = Glue { stiffness: 1.0, area: 1.0, to_faces: [0.3, 0.2], gap: [0.0; 3], at_rest: [0.0; 3] };
         let undeformed = rest.map(|[_, a1, a2]: Local| [[0.0; 3], a1, a2]);
         let [x, y] = [rest[0][0], rest[1][0]];
         let gap = add(sub(x, y), flat.across(&undeformed));

@@ -5,7 +5,9 @@
 //! | `coupled` | energies at points at which two surfaces meet, and their sums |
 //! | `kept_angle` | the energy of a joint |
 //! | `glue` | the energy of a bond |
-//! | `edge_points`, `glued_points` | where they are summed up |
+//! | `layer` | where the faces that a bond glues lie together |
+//! | `edge_points`, `glued_points` | where energies are summed up |
+//! | `tractions` | what bonds carry anywhere on their shells |
 //! | `state` | what joints and bonds show of a state |
 
 mod coupled;
@@ -13,7 +15,9 @@ mod edge_points;
 mod glue;
 mod glued_points;
 mod kept_angle;
+mod layer;
 mod state;
+mod tractions;
 
 use std::sync::Arc;
 
@@ -25,7 +29,9 @@ use crate::model::{ModelError, edge_pairs, members};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
-pub use state::ConnectionState;
+pub use glue::Traction;
+pub use state::{ConnectionState, GreatestTraction};
+pub use tractions::{GluedLayers, GluedShell};
 
 /// The connections of a structure that have an energy.
 #[derive(Clone, Debug, Default)]

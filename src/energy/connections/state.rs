@@ -1,5 +1,7 @@
 //! What joints and bonds show of a state.
 
+use super::coupled::{CoupledPoint, Coupling};
+use super::glue::{Glue, Traction};
 use super::{Connection, Connections, Energy};
 use crate::energy::{At, Term};
 
@@ -12,6 +14,17 @@ pub struct ConnectionState {
     pub energy_n_mm: f64,
     /// Of a joint, the largest angle by which the surfaces have turned against each other, degrees.
     pub opened_deg: Option<f64>,
+    /// Of a bond, the largest traction that opens it, and the largest shear traction.
+    pub tractions: Option<[GreatestTraction; 2]>,
+}
+
+/// The largest traction of a kind in a bond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GreatestTraction {
+    /// Its size, MPa: per undeformed area.
+    pub mpa: f64,
+    /// Where it is, as parameters (u, v) of the bond's first shell.
+    pub at: [f64; 2],
 }
 
 impl Connections {
@@ -23,17 +36,27 @@ impl Connections {
 
 impl Connection {
     fn state(&self, at: At) -> ConnectionState {
-        let (energy_n_mm, opened_deg) = match &self.energy {
-            Energy::Bond(glue) => (glue.energy(at), None),
+        let (energy_n_mm, opened_deg, tractions) = match &self.energy {
+            Energy::Bond(glue) => (glue.energy(at), None, greatest(glue, at)),
             Energy::Joint(joint) => {
                 let kept = joint.points.iter().filter(|point| point.law.rotation != 0.0);
                 let opened = kept.map(|point| point.law.opened(&point.deformed(at.displacement)).to_degrees());
                 let largest = opened.fold(None, |most: Option<f64>, angle| {
                     Some(most.map_or(angle, |most| if angle.abs() > most.abs() { angle } else { most }))
                 });
-                (joint.energy(at), largest)
+                (joint.energy(at), largest, None)
             }
         };
-        ConnectionState { name: self.name.clone(), energy_n_mm, opened_deg }
+        ConnectionState { name: self.name.clone(), energy_n_mm, opened_deg, tractions }
     }
+}
+
+/// The largest opening and shear tractions at the quadrature points of a bond, where its energy is summed up.
+fn greatest(glue: &Coupling<Glue>, at: At) -> Option<[GreatestTraction; 2]> {
+    let of_point = |point: &CoupledPoint<Glue>| {
+        let Traction { peel_mpa, shear_mpa: [one, two] } = point.law.traction(&point.deformed(at.displacement));
+        [peel_mpa, one.hypot(two)].map(|mpa| GreatestTraction { mpa, at: point.sides[0].at })
+    };
+    let larger = |one: GreatestTraction, other: GreatestTraction| if other.mpa > one.mpa { other } else { one };
+    glue.points.iter().map(of_point).reduce(|all, one| [larger(all[0], one[0]), larger(all[1], one[1])])
 }

@@ -20,9 +20,17 @@ pub(super) struct BezierGrid<'a> {
     pub(super) controls: Vec<usize>,
 }
 
-impl BezierGrid<'_> {
+/// Grids of shells one after another, as one.
+pub(super) struct BezierGrids<'a> {
+    pub(super) grids: Vec<BezierGrid<'a>>,
+    /// The names of the shells of a structure; empty for a shell that has none.
+    pub(super) names: Vec<&'a str>,
+}
+
+impl BezierGrids<'_> {
     /// Formats the text of a `.vtu` file, with the numbers of the instant and further field arrays, and with weights,
-    /// displacements and further point arrays.
+    /// displacements and further point arrays. Cells of a structure have the place of their shell in its list, and the field
+    /// data its names.
     pub(super) fn vtu(
         self,
         instant: &Instant,
@@ -34,42 +42,61 @@ impl BezierGrid<'_> {
             XmlArray::of_numbers(name, [value].into_iter()).tuples(1).write(&mut xml);
         }
         XmlArray::of_text("state_hash", &instant.state_hash.to_string()).write(&mut xml);
+        if !self.names.is_empty() {
+            XmlArray::of_texts("shell_names", &self.names).write(&mut xml);
+        }
         field_arrays.for_each(|array| array.write(&mut xml));
         xml.push_str("</FieldData>\n");
-        let (points, cells) = (self.controls.len(), self.degrees.len());
+        let (points, cells) = (self.controls().count(), self.degrees().count());
         // Writing to a string does not fail.
         let _ = writeln!(xml, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<Points>");
-        self.vectors("points", |k| self.patches.undeformed.point(k)).write(&mut xml);
+        self.vectors("points", |patches, k| patches.undeformed.point(k)).write(&mut xml);
         xml.push_str("</Points>\n");
         self.write_cells(&mut xml);
         xml.push_str("<PointData Vectors=\"displacement\" RationalWeights=\"RationalWeights\">\n");
-        let weights = self.controls.iter().map(|k| self.patches.undeformed.control_points[*k][3]);
+        let weights = self.controls().map(|(patches, k)| patches.undeformed.control_points[k][3]);
         XmlArray::of_numbers("RationalWeights", weights).write(&mut xml);
-        self.vectors(DISPLACEMENT, |k| self.patches.displacement[k]).write(&mut xml);
+        self.vectors(DISPLACEMENT, |patches, k| patches.displacement[k]).write(&mut xml);
         point_arrays.for_each(|array| array.write(&mut xml));
         xml.push_str("</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
         xml
     }
 
+    /// The control points of all cells, each with its patches.
+    fn controls(&self) -> impl Iterator<Item = (&BezierPatches, usize)> {
+        self.grids.iter().flat_map(|grid| grid.controls.iter().map(|k| (grid.patches, *k)))
+    }
+
+    /// The degrees of all cells.
+    fn degrees(&self) -> impl Iterator<Item = &[usize; 2]> {
+        self.grids.iter().flat_map(|grid| &grid.degrees)
+    }
+
     /// A vector in mm at each control point.
-    fn vectors(&self, name: &str, at: impl Fn(usize) -> [f64; 3]) -> XmlArray {
-        XmlArray::of_numbers(name, self.controls.iter().flat_map(|k| at(*k)))
+    fn vectors(&self, name: &str, at: impl Fn(&BezierPatches, usize) -> [f64; 3]) -> XmlArray {
+        XmlArray::of_numbers(name, self.controls().flat_map(|(patches, k)| at(patches, k)))
             .of_components(&["x", "y", "z"])
             .in_unit("mm")
     }
 
     fn write_cells(&self, xml: &mut String) {
-        let ends = self.degrees.iter().scan(0, |end, [p, q]| {
+        let ends = self.degrees().scan(0, |end, [p, q]| {
             *end += (p + 1) * (q + 1);
             Some(*end)
         });
         xml.push_str("<Cells>\n");
-        XmlArray::of_indices("connectivity", 0..self.controls.len()).write(xml);
+        XmlArray::of_indices("connectivity", 0..self.controls().count()).write(xml);
         XmlArray::of_indices("offsets", ends).write(xml);
-        XmlArray::of_bytes("UInt8", "types", self.degrees.iter().map(|_| self.kind)).write(xml);
+        let kinds = self.grids.iter().flat_map(|grid| grid.degrees.iter().map(|_| grid.kind));
+        XmlArray::of_bytes("UInt8", "types", kinds).write(xml);
         xml.push_str("</Cells>\n<CellData HigherOrderDegrees=\"HigherOrderDegrees\">\n");
-        let degrees = self.degrees.iter().flat_map(|[p, q]| [*p as f64, *q as f64, 0.0]);
+        let degrees = self.degrees().flat_map(|[p, q]| [*p as f64, *q as f64, 0.0]);
         XmlArray::of_numbers("HigherOrderDegrees", degrees).of_components(&["u", "v", "w"]).write(xml);
+        if !self.names.is_empty() {
+            let shells =
+                self.grids.iter().enumerate().flat_map(|(shell, grid)| grid.degrees.iter().map(move |_| shell));
+            XmlArray::of_indices("shell", shells).write(xml);
+        }
         xml.push_str("</CellData>\n");
     }
 }

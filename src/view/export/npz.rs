@@ -10,6 +10,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::instant::Instant;
+use super::whole_shell::WholeShell;
 use crate::spline::Patch;
 
 /// Length of the front of an array is a multiple of this.
@@ -18,28 +19,32 @@ const ALIGNMENT: usize = 64;
 /// States on one mesh.
 #[derive(Debug)]
 pub struct StatesOnMesh {
-    /// The undeformed surface.
-    pub mesh: Patch,
-    /// Displacements of its control points, mm, and what state they are of.
-    pub states: Vec<(Instant, Vec<[f64; 3]>)>,
+    /// The undeformed surface of each shell, with the name that it has in a structure.
+    pub mesh: Vec<(Option<String>, Patch)>,
+    /// Displacements of the control points of each shell, mm, and what state they are of.
+    pub states: Vec<(Instant, Vec<Vec<[f64; 3]>>)>,
+}
+
+impl StatesOnMesh {
+    /// The mesh of some shells.
+    pub fn mesh_of(shells: &[WholeShell]) -> Vec<(Option<String>, Patch)> {
+        shells.iter().map(|shell| (shell.name().map(str::to_owned), shell.undeformed().clone())).collect()
+    }
 }
 
 /// Arrays of states on one mesh as the bytes of an `.npz` file: `degree` (2), `knots_u`, `knots_v`, `control_points` (n₁, n₂, 4)
-/// as (w x, w y, w z, w) in mm, `displacement` (states, n₁, n₂, 3) in mm, and for each number of a state an array of that name.
+/// as (x, y, z, w), the first three in mm and not times the weight w, `displacement` (states, n₁, n₂, 3) in mm, and for each number
+/// of a state an array of that name. Of a structure, names of arrays of a shell begin with that of the shell: `NAME.degree`.
 ///
 /// # Errors
 /// Where the archive cannot be written.
 pub fn npz(StatesOnMesh { mesh, states }: &StatesOnMesh) -> Result<Vec<u8>, ZipError> {
-    let [n1, n2] = mesh.control_counts();
     let mut archive = Archive(ZipWriter::new(Cursor::new(Vec::new())));
-    archive.add("degree", "<i8", &[2], mesh.degree.iter().flat_map(|degree| (*degree as i64).to_le_bytes()))?;
-    archive.add_numbers("knots_u", &[mesh.knots[0].len()], mesh.knots[0].iter())?;
-    archive.add_numbers("knots_v", &[mesh.knots[1].len()], mesh.knots[1].iter())?;
-    let weights = mesh.control_points.iter().map(|[.., weight]| *weight);
-    let plain: Vec<[f64; 4]> = mesh.points().zip(weights).map(|([x, y, z], weight)| [x, y, z, weight]).collect();
-    archive.add_numbers("control_points", &[n1, n2, 4], plain.as_flattened().iter())?;
-    let displacement = states.iter().flat_map(|(_, displacement)| displacement.as_flattened());
-    archive.add_numbers("displacement", &[states.len(), n1, n2, 3], displacement)?;
+    for (index, (name, patch)) in mesh.iter().enumerate() {
+        let front = name.as_ref().map_or(String::new(), |name| format!("{name}."));
+        let displacement = states.iter().flat_map(|(_, of_shells)| of_shells[index].as_flattened());
+        archive.add_shell(&front, patch, states.len(), displacement)?;
+    }
     let numbers: Vec<_> = states.iter().map(|(instant, _)| instant.numbers()).collect();
     for (index, (name, _)) in numbers.first().into_iter().flatten().enumerate() {
         archive.add_numbers(name, &[states.len()], numbers.iter().map(|numbers| &numbers[index].1))?;
@@ -54,6 +59,26 @@ pub fn npz(StatesOnMesh { mesh, states }: &StatesOnMesh) -> Result<Vec<u8>, ZipE
 struct Archive(ZipWriter<Cursor<Vec<u8>>>);
 
 impl Archive {
+    /// Adds the arrays of a shell, with this in front of their names.
+    fn add_shell<'n>(
+        &mut self,
+        front: &str,
+        patch: &Patch,
+        states: usize,
+        displacement: impl Iterator<Item = &'n f64>,
+    ) -> Result<(), ZipError> {
+        let named = |name: &str| format!("{front}{name}");
+        let [n1, n2] = patch.control_counts();
+        let degree = patch.degree.iter().flat_map(|degree| (*degree as i64).to_le_bytes());
+        self.add(&named("degree"), "<i8", &[2], degree)?;
+        self.add_numbers(&named("knots_u"), &[patch.knots[0].len()], patch.knots[0].iter())?;
+        self.add_numbers(&named("knots_v"), &[patch.knots[1].len()], patch.knots[1].iter())?;
+        let weights = patch.control_points.iter().map(|[.., weight]| *weight);
+        let plain: Vec<[f64; 4]> = patch.points().zip(weights).map(|([x, y, z], weight)| [x, y, z, weight]).collect();
+        self.add_numbers(&named("control_points"), &[n1, n2, 4], plain.as_flattened().iter())?;
+        self.add_numbers(&named("displacement"), &[states, n1, n2, 3], displacement)
+    }
+
     fn add_numbers<'n>(
         &mut self,
         name: &str,

@@ -2,8 +2,8 @@
 //!
 //! Of the formats that have NURBS, STEP is the one that every CAD system and mesher reads today (CATIA, NX, SolidWorks, Rhino,
 //! FreeCAD and Gmsh by Open CASCADE); IGES is no longer kept up and says less of what bounds a surface, and the XML of G+Smo is read by
-//! G+Smo. The schema is AP214 (`AUTOMOTIVE_DESIGN`), whose part for surfaces AP242 took over, so that older systems read it as well: one
-//! face of a `B_SPLINE_SURFACE_WITH_KNOTS`, bounded by its four edges, in an open shell, in mm.
+//! G+Smo. The schema is AP214 (`AUTOMOTIVE_DESIGN`), whose part for surfaces AP242 took over, so that older systems read it as well: for
+//! each shell one face of a `B_SPLINE_SURFACE_WITH_KNOTS`, bounded by its four edges, in an open shell, in mm.
 
 use std::fmt::Write as _;
 
@@ -46,18 +46,23 @@ impl Entities {
     }
 }
 
-/// Formats a surface as the text of a STEP file; `name` names the product and says what state it is of.
-pub fn step(surface: &Patch, name: &str) -> String {
+/// Formats surfaces as the text of a STEP file, each with the name of its shell, if it has one; `name` names the product and says what
+/// state it is of.
+pub fn step(surfaces: &[(&Patch, Option<&str>)], name: &str) -> String {
     let name = string(name);
     let product = PRODUCT
         .replace("'NAME'", &format!("'{name}'"))
         .replace("(UNCERTAINTY)", &format!("({})", real(UNCERTAINTY_MM)));
     let mut entities = Entities { text: product, last: 13 };
-    let points: Vec<String> =
-        surface.points().map(|point| entities.add(&format!("CARTESIAN_POINT('',({}))", reals(&point)))).collect();
-    let face = face(&mut entities, surface, &points);
-    let shell = entities.add(&format!("OPEN_SHELL('',({face}))"));
-    let model = entities.add(&format!("SHELL_BASED_SURFACE_MODEL('',({shell}))"));
+    let mut shells = Vec::new();
+    for (surface, of_shell) in surfaces {
+        let points: Vec<String> =
+            surface.points().map(|point| entities.add(&format!("CARTESIAN_POINT('',({}))", reals(&point)))).collect();
+        let face = face(&mut entities, surface, &points);
+        let of_shell = string(of_shell.unwrap_or_default());
+        shells.push(entities.add(&format!("OPEN_SHELL('{of_shell}',({face}))")));
+    }
+    let model = entities.add(&format!("SHELL_BASED_SURFACE_MODEL('',({}))", shells.join(",")));
     let shape = entities.add(&format!("MANIFOLD_SURFACE_SHAPE_REPRESENTATION('{name}',({model}),#13)"));
     entities.add(&format!("SHAPE_DEFINITION_REPRESENTATION(#8,{shape})"));
     format!(
@@ -160,7 +165,7 @@ mod tests {
         let knots = || vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let point = |k: usize| [(k / 3) as f64, (k % 3) as f64, 0.0, 1.0];
         let plane = Patch { degree: [2, 2], knots: [knots(), knots()], control_points: (0..9).map(point).collect() };
-        let text = step(&plane, "a \"shell's\" plane, 5°");
+        let text = step(&[(&plane, None)], "a \"shell's\" plane, 5°");
         assert!(text.contains("PRODUCT('a \"shell''s\" plane, 5_',"));
         let (_, data) = text.split_once("DATA;\n").unwrap();
         for (index, line) in data.lines().take_while(|line| *line != "ENDSEC;").enumerate() {

@@ -6,9 +6,18 @@ use crate::spline::{Grid, Patch, Spans, mid_surface_point};
 /// Length of the text in front.
 const HEAD_LEN: usize = 80;
 
-/// Formats a surface as binary STL, with 2 · (`points` − 1)² triangles for each element; `title` is what its head says, as far
+/// Formats surfaces as binary STL, with 2 · (`points` − 1)² triangles for each element; `title` is what its head says, as far
 /// as it has room. Corners lie on the surface; neighbours share them exactly, and triangles without area are left out.
-pub fn stl(surface: &Patch, points: usize, title: &str) -> Vec<u8> {
+pub fn stl(surfaces: &[&Patch], points: usize, title: &str) -> Vec<u8> {
+    let triangles: Vec<Vec<u8>> = surfaces.iter().flat_map(|surface| triangles(surface, points)).collect();
+    let mut bytes: Vec<u8> = title.bytes().chain(std::iter::repeat(0)).take(HEAD_LEN).collect();
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    bytes.extend(triangles.into_iter().flatten());
+    bytes
+}
+
+/// The triangles of a surface, 50 bytes each.
+fn triangles(surface: &Patch, points: usize) -> Vec<Vec<u8>> {
     let [us, vs] = [0, 1].map(|direction| lines(surface, direction, points));
     let grid = Grid::new([us.len(), vs.len()]);
     let at = |k: usize| {
@@ -22,12 +31,7 @@ pub fn stl(surface: &Patch, points: usize, title: &str) -> Vec<u8> {
         [[corner(0, 0), corner(1, 0), corner(1, 1)], [corner(0, 0), corner(1, 1), corner(0, 1)]]
     };
     let triangles = (0..(us.len() - 1) * (vs.len() - 1)).flat_map(of_cell);
-    let triangles: Vec<Vec<u8>> = triangles.filter_map(triangle).collect();
-
-    let mut bytes: Vec<u8> = title.bytes().chain(std::iter::repeat(0)).take(HEAD_LEN).collect();
-    bytes.extend((triangles.len() as u32).to_le_bytes());
-    bytes.extend(triangles.into_iter().flatten());
-    bytes
+    triangles.filter_map(triangle).collect()
 }
 
 /// Parameters of the lines of points in a direction.

@@ -4,14 +4,14 @@
 //! the cell array `HigherOrderDegrees` and the point array `RationalWeights`. Points are those of the undeformed surface, and
 //! `displacement` has the displacements of the control points: "Warp by Vector" with scale 1 makes exactly the deformed surface,
 //! since both are sums of the same rational functions. Other fields are coefficients of patches that take the field's values at
-//! (p + 1)(q + 1) uniform points of each cell. Coefficients may lie beyond all values of the surface, where a field has an extreme inside
+//! (p + 1)(q + 1) uniform points of each cell, and no numbers in a cell in which a field has no value at one of them. Coefficients may lie beyond all values of the surface, where a field has an extreme inside
 //! a cell; so the range of the values stands beside them, as the field array `NAME_range` (a row for each component). They are of
 //! single precision, which is finer than any mesh; positions and displacements are exact.
 
 use rayon::prelude::*;
 
 use super::bezier::BezierPatches;
-use super::bezier_grid::{BezierGrid, DISPLACEMENT};
+use super::bezier_grid::{BezierGrid, BezierGrids, DISPLACEMENT};
 use super::instant::Instant;
 use super::whole_shell::{WholePoint, WholeShell};
 use super::xml_array::XmlArray;
@@ -20,25 +20,34 @@ use crate::view::fields::Field;
 /// VTK's type of the cells.
 const BEZIER_QUADRILATERAL: u8 = 77;
 
-/// Formats the shell as the text of a `.vtu` file, with `displacement` and these fields as point arrays, and the numbers of the
-/// instant as field arrays.
-pub fn surface_vtu(shell: &WholeShell, fields: &[Field], instant: &Instant) -> String {
-    let patches = BezierPatches::of(shell);
-    let (order, cells) = (vtk_order(patches.undeformed.degree), patches.elements().len());
+/// Formats shells as the text of a `.vtu` file, with `displacement` and these fields as point arrays, and the numbers of the
+/// instant as field arrays. Cells of a structure have the number of their shell in the cell array `shell`, from 0, and
+/// `shell_names` in the field data has the names.
+pub fn surface_vtu(shells: &[WholeShell], fields: &[Field], instant: &Instant) -> String {
+    let shown: Vec<&Field> = fields.iter().filter(|field| field.name != DISPLACEMENT).collect();
+    let patches: Vec<BezierPatches> = shells.iter().map(BezierPatches::of).collect();
+    let mut on_cells: Vec<OnCells> = shown.iter().map(|field| OnCells { field, cells: Vec::new() }).collect();
+    for (shell, patches) in shells.iter().zip(&patches) {
+        add_fields_on_cells(shell, patches, &mut on_cells);
+    }
+    BezierGrids {
+        grids: patches.iter().map(cells_of).collect(),
+        names: shells.iter().filter_map(WholeShell::name).collect(),
+    }
+    .vtu(instant, on_cells.iter().map(OnCells::range_array), on_cells.iter().map(OnCells::array))
+}
+
+/// The cells of a shell.
+fn cells_of(patches: &BezierPatches) -> BezierGrid<'_> {
+    let degree = patches.undeformed.degree;
+    let (order, cells) = (vtk_order(degree), patches.elements().len());
     let in_order = |element| {
         let controls: Vec<usize> = patches.of_element(element).collect();
         order.iter().map(|k| controls[*k]).collect::<Vec<_>>()
     };
     // Every cell has points of its own: fields may jump between elements.
     let controls = (0..cells).flat_map(in_order).collect();
-    let degrees = vec![patches.undeformed.degree; cells];
-    let shown: Vec<&Field> = fields.iter().filter(|field| field.name != DISPLACEMENT).collect();
-    let on_cells = fields_on_cells(shell, &patches, &shown);
-    BezierGrid { patches: &patches, kind: BEZIER_QUADRILATERAL, degrees, controls }.vtu(
-        instant,
-        on_cells.iter().map(OnCells::range_array),
-        on_cells.iter().map(|on_cells| on_cells.array(&order)),
-    )
+    BezierGrid { patches, kind: BEZIER_QUADRILATERAL, degrees: vec![degree; cells], controls }
 }
 
 /// A field on the cells.
@@ -50,35 +59,36 @@ struct OnCells<'f> {
 
 /// A field on a cell.
 struct OnCell {
-    /// The second direction fastest.
+    /// In VTK's order.
     coefficients: Vec<[f64; 3]>,
     /// Least and largest value of each component at the nodes.
     range: [[f64; 2]; 3],
 }
 
-/// Fields on the cells: a point is evaluated once for all of them.
-fn fields_on_cells<'f>(shell: &WholeShell, patches: &BezierPatches, fields: &[&'f Field]) -> Vec<OnCells<'f>> {
+/// Adds the cells of a shell: a point is evaluated once for all fields.
+fn add_fields_on_cells(shell: &WholeShell, patches: &BezierPatches, fields: &mut [OnCells]) {
+    let order = vtk_order(patches.undeformed.degree);
+    let asked: Vec<&Field> = fields.iter().map(|on_cells| on_cells.field).collect();
     let on_cell = |element: usize| {
         let bounds = patches.bounds(element);
         let points: Vec<WholePoint> = patches.nodes(element).map(|at| shell.at_in(bounds, at)).collect();
         let of_field = |field: &&Field| {
             let values: Vec<[f64; 3]> = points.iter().map(|point| point.value(field)).collect();
             let range = [0, 1, 2].map(|c| range(values.iter().map(|value| [value[c]; 2])));
-            OnCell { coefficients: patches.interpolating(element, &values), range }
+            let coefficients = patches.interpolating(element, &values);
+            OnCell { coefficients: order.iter().map(|k| coefficients[*k]).collect(), range }
         };
-        fields.iter().map(of_field).collect()
+        asked.iter().map(of_field).collect()
     };
     let by_cell: Vec<Vec<OnCell>> = (0..patches.elements().len()).into_par_iter().map(on_cell).collect();
-    let mut by_field: Vec<OnCells> = fields.iter().map(|field| OnCells { field, cells: Vec::new() }).collect();
     for of_cell in by_cell {
-        by_field.iter_mut().zip(of_cell).for_each(|(field, on_cell)| field.cells.push(on_cell));
+        fields.iter_mut().zip(of_cell).for_each(|(field, on_cell)| field.cells.push(on_cell));
     }
-    by_field
 }
 
-/// The range that holds all of these.
+/// The range that holds all of these; those that are no numbers do not count, and alone make a range of none.
 fn range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
-    ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [least, most]| [low.min(least), high.max(most)])
+    ranges.fold([f64::NAN; 2], |[low, high], [least, most]| [low.min(least), high.max(most)])
 }
 
 impl OnCells<'_> {
@@ -91,11 +101,11 @@ impl OnCells<'_> {
             .tuples(count)
     }
 
-    /// The coefficients, with those of a cell in this order.
-    fn array(&self, order: &[usize]) -> XmlArray {
+    /// The coefficients.
+    fn array(&self) -> XmlArray {
         let Field { name, components, unit, .. } = self.field;
-        let in_order = self.cells.iter().flat_map(|cell| order.iter().map(|k| cell.coefficients[*k]));
-        let numbers: Vec<f64> = in_order.flat_map(|value| value.into_iter().take(components.len())).collect();
+        let all = self.cells.iter().flat_map(|cell| cell.coefficients.iter().copied());
+        let numbers: Vec<f64> = all.flat_map(|value| value.into_iter().take(components.len())).collect();
         XmlArray::of_shown_numbers(name, &numbers).of_components(components).in_unit(unit)
     }
 }

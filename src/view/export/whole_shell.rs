@@ -14,6 +14,8 @@ const INSIDE: f64 = 1e-10;
 /// The whole shell of a state.
 #[derive(Debug)]
 pub struct WholeShell<'a> {
+    /// Its name in a structure.
+    name: Option<&'a str>,
     fields: ShellFields<'a>,
     /// Whether the model is cut across the length, and along the apex.
     cuts: [bool; 2],
@@ -24,8 +26,13 @@ pub struct WholeShell<'a> {
 impl<'a> WholeShell<'a> {
     /// Completes the shell of a state of a scene.
     pub fn new(scene: &'a Scene, state: &'a State) -> Self {
-        let model = state.mesh.lone();
-        let (mut undeformed, mut deformed) = (model.clone(), moved(model, &state.displacement));
+        Self::of(ShellFields::new(scene, state.mesh.lone(), &state.displacement, state.parameter), None)
+    }
+
+    /// Completes a shell of which these are the fields.
+    pub(in crate::view) fn of(fields: ShellFields<'a>, name: Option<&'a str>) -> Self {
+        let (scene, model, displacement) = fields.parts();
+        let (mut undeformed, mut deformed) = (model.clone(), moved(model, displacement));
         let cuts = scene.symmetry.cuts();
         if cuts[0] {
             let grid = model.grid();
@@ -38,8 +45,22 @@ impl<'a> WholeShell<'a> {
             let image = |[x, y, z, w]: [f64; 4]| [x, -y, z, w];
             [undeformed, deformed] = [undeformed, deformed].map(|mesh| with_image(&mesh, 1, Image::Before, image));
         }
-        let fields = ShellFields::new(scene, model, &state.displacement, state.parameter);
-        Self { fields, cuts, undeformed, deformed }
+        Self { name, fields, cuts, undeformed, deformed }
+    }
+
+    /// The shell as one that is alone.
+    pub fn without_name(self) -> Self {
+        Self { name: None, ..self }
+    }
+
+    /// Its name in a structure of several shells.
+    pub fn name(&self) -> Option<&'a str> {
+        self.name
+    }
+
+    /// Whether it has a field of the structure at all.
+    pub fn has(&self, field: &Field) -> bool {
+        self.fields.has(field)
     }
 
     /// The undeformed surface; its parameters are in [0, 1].

@@ -35,9 +35,10 @@ impl XmlArray {
         Self::of_bytes("Float64", name, numbers.flat_map(f64::to_le_bytes))
     }
 
-    /// An array of numbers that are to be looked at: in single precision, but where that cannot hold one of them.
+    /// An array of numbers that are to be looked at: in single precision, but where that cannot hold one of them. What is no number
+    /// stays so.
     pub(in crate::view) fn of_shown_numbers(name: &str, numbers: &[f64]) -> Self {
-        let is_held = |number: &f64| *number == 0.0 || (*number as f32).is_normal();
+        let is_held = |number: &f64| *number == 0.0 || number.is_nan() || (*number as f32).is_normal();
         if numbers.iter().all(is_held) {
             Self::of_bytes("Float32", name, numbers.iter().flat_map(|number| (*number as f32).to_le_bytes()))
         } else {
@@ -52,7 +53,13 @@ impl XmlArray {
 
     /// A text, for field data.
     pub(in crate::view) fn of_text(name: &str, text: &str) -> Self {
-        Self::of_bytes("String", name, text.bytes().chain([0])).tuples(1)
+        Self::of_texts(name, &[text])
+    }
+
+    /// Some texts, for field data.
+    pub(in crate::view) fn of_texts(name: &str, texts: &[&str]) -> Self {
+        let bytes = texts.iter().flat_map(|text| text.bytes().chain([0]));
+        Self::of_bytes("String", name, bytes).tuples(texts.len())
     }
 
     /// The same array, of tuples with components of these names.

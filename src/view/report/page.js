@@ -16,6 +16,10 @@ const element = (name, text, parent) => {
     return made;
 };
 
+// Elements along and across, of the only shell or of each.
+const each = (elements) => Array.isArray(elements[0]) ? elements : [elements];
+const sizes = (elements) => each(elements).map((counts) => counts.join(" × ")).join(" + ");
+
 // Charts.
 
 const charts = [];
@@ -81,7 +85,7 @@ function drawCharts() {
         pointStyle: "triangle", pointRadius: 6, backgroundColor: hue(index), borderColor: hue(index) }] : []);
     const [along, up] = swapped ? [runs[0].quantity, across] : [across, runs[0].quantity];
     chart("path", along, up, [...path, ...theory, ...critical, ...peaks].map(turned));
-    chart("elements", across, "elements of the model", runs.map((run, index) => line(run, index, (p) => p.elements[0] * p.elements[1], { stepped: "after", pointRadius: 0 })), { y: { type: "logarithmic" } });
+    chart("elements", across, "elements of the model", runs.map((run, index) => line(run, index, (p) => each(p.elements).reduce((sum, [along, across]) => sum + along * across, 0), { stepped: "after", pointRadius: 0 })), { y: { type: "logarithmic" } });
     chart("time", across, "wall time (s)", runs.map((run, index) => line(run, index, (p) => p.wall_s, { pointRadius: 0 })));
     chart("work", across, "iterations", runs.map((run, index) => line(run, index, (p) => p.iterations, { pointRadius: 0 })));
     chart("stored", across, "strain energy (N·mm)", runs.map((run, index) => line(run, index, (p) => p.energy, { pointRadius: 0 })));
@@ -101,10 +105,13 @@ function places(shape, text) {
     }
     return out;
 }
-function coloured(shape, text) {
-    const packed = numbers(text), out = new Float32Array(3 * packed.length), stops = shape.colours;
+// What has no value is grey.
+function coloured(shape, frame, field) {
+    const packed = numbers(frame.values[field]), out = new Float32Array(3 * packed.length), stops = shape.colours;
+    const blanks = shape.fields[field].has_blanks, most = blanks ? 65534 : 65535;
     for (let i = 0; i < packed.length; i++) {
-        const place = packed[i] / 65535 * (stops.length - 1), below = Math.min(Math.floor(place), stops.length - 2), part = place - below;
+        if (blanks && packed[i] === 65535) { out.fill(0.75, 3 * i, 3 * i + 3); continue; }
+        const place = packed[i] / most * (stops.length - 1), below = Math.min(Math.floor(place), stops.length - 2), part = place - below;
         for (let c = 0; c < 3; c++) {
             const channel = (stop) => (stops[stop] >> (16 - 8 * c)) & 255;
             out[3 * i + c] = ((1 - part) * channel(below) + part * channel(below + 1)) / 255;
@@ -112,17 +119,29 @@ function coloured(shape, text) {
     }
     return out;
 }
+// Points of one shell follow those of another.
 function quads(shape) {
-    const [n1, n2] = shape.counts, list = [];
-    for (let i = 0; i + 1 < n1; i++) for (let j = 0; j + 1 < n2; j++) list.push([i * n2 + j, (i + 1) * n2 + j, (i + 1) * n2 + j + 1, i * n2 + j + 1]);
+    const list = [];
+    let first = 0;
+    for (const [n1, n2] of shape.counts) {
+        const point = (i, j) => first + i * n2 + j;
+        for (let i = 0; i + 1 < n1; i++) for (let j = 0; j + 1 < n2; j++) list.push([point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)]);
+        first += n1 * n2;
+    }
     return list;
 }
 // Knot lines as pairs of points: those of one u have as many points as there are places across, and the others as many as along.
 function pairs(shape, frame) {
-    const [n1, n2] = shape.counts, [l1, l2] = frame.line_counts, coordinates = places(shape, frame.lines), out = [];
+    const coordinates = places(shape, frame.lines), out = [];
+    let first = 0;
     const add = (from, count) => { for (let k = from; k + 1 < from + count; k++) for (const p of [k, k + 1]) out.push(coordinates[3 * p], coordinates[3 * p + 1], coordinates[3 * p + 2]); };
-    for (let l = 0; l < l1; l++) add(l * n2, n2);
-    for (let l = 0; l < l2; l++) add(l1 * n2 + l * n1, n1);
+    shape.counts.forEach(([n1, n2], shell) => {
+        const [l1, l2] = frame.line_counts[shell];
+        for (let l = 0; l < l1; l++) add(first + l * n2, n2);
+        first += l1 * n2;
+        for (let l = 0; l < l2; l++) add(first + l * n1, n1);
+        first += l2 * n1;
+    });
     return new Float32Array(out);
 }
 const shaped = runs.filter((run) => run.shape && run.shape.frames.length);
@@ -171,7 +190,7 @@ function solid(canvas) {
             const faces = quads(shape).flatMap(([a, b, c, d]) => [a, b, c, a, c, d]);
             geometry.setIndex(faces);
             geometry.setAttribute("position", new BufferAttribute(places(shape, frame.points), 3));
-            geometry.setAttribute("color", new BufferAttribute(coloured(shape, frame.values[field]).map((x) => x ** 2.2), 3));
+            geometry.setAttribute("color", new BufferAttribute(coloured(shape, frame, field).map((x) => x ** 2.2), 3));
             geometry.computeVertexNormals();
             lines.setAttribute("position", new BufferAttribute(pairs(shape, frame), 3));
             geometry.computeBoundingSphere();
@@ -191,7 +210,7 @@ function still(canvas, shape, frame, field) {
     const [ca, sa, ce, se] = [Math.cos(-1.08), Math.sin(-1.08), Math.cos(0.42), Math.sin(0.42)];
     const project = (x, y, z) => { const right = -sa * x + ca * y, near = ca * x + sa * y; return [right, -(ce * z - se * near), ce * near + se * z]; };
     const flat = (coordinates) => { const out = []; for (let i = 0; i < coordinates.length; i += 3) out.push(project(coordinates[i], coordinates[i + 1], coordinates[i + 2])); return out; };
-    const points = flat(places(shape, frame.points)), colours = coloured(shape, frame.values[field]);
+    const points = flat(places(shape, frame.points)), colours = coloured(shape, frame, field);
     const xs = points.map((p) => p[0]), ys = points.map((p) => p[1]);
     const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const scale = Math.min((width - 24) / (x1 - x0 || 1), (most - 24) / (y1 - y0 || 1));
@@ -222,7 +241,7 @@ const view = shaped.length ? solid(find("view")) : null;
 function show() {
     const { shape } = current, frame = shape.frames[Number(find("step").value)], field = Number(find("field").value);
     if (view) view.show(shape, frame, field); else still(find("view"), shape, frame, field);
-    find("at").textContent = `step ${frame.step}, ${frame.label}, ${frame.elements.join(" × ")} elements`;
+    find("at").textContent = `step ${frame.step}, ${frame.label}, ${sizes(frame.elements)} elements`;
     const { range, means } = shape.fields[field];
     find("low").textContent = shortly(range[0]);
     find("high").textContent = shortly(range[1]);
@@ -236,7 +255,7 @@ function stills() {
     find("small").replaceChildren();
     for (const index of [...chosen].sort((a, b) => a - b)) {
         const figure = element("figure", undefined, find("small")), canvas = element("canvas", undefined, figure), frame = shape.frames[index];
-        element("figcaption", `${frame.label}, ${frame.elements.join(" × ")} elements`, figure);
+        element("figcaption", `${frame.label}, ${sizes(frame.elements)} elements`, figure);
         still(canvas, shape, frame, field);
     }
 }

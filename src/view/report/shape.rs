@@ -1,4 +1,4 @@
-//! The deformed shell over the load steps: points of the whole shell on one grid for all frames, the knot lines of each frame's
+//! The deformed shells over the load steps: points of each whole shell on one grid for all frames, the knot lines of each frame's
 //! mesh, and fields. Numbers are packed as 16 bits over their range, which is finer than a screen.
 
 use serde::Serialize;
@@ -8,16 +8,17 @@ use crate::shell::norm;
 use crate::spline::Elements;
 use crate::spline::{Patch, Spans, mid_surface_point};
 use crate::state::State;
+use crate::view::bonded::ShellsOfState;
 use crate::view::colour::VIRIDIS;
 use crate::view::export::{WholePoint, WholeShell, base64};
 use crate::view::fields::{Field, fields_of};
 
-/// Most points of the whole shell in a frame.
+/// Most points of all shells in a frame.
 const MOST_POINTS: usize = 4000;
 /// Most frames.
 const MOST_FRAMES: usize = 40;
 /// Fields that the page offers, by name and component; that without a component is the length of the vector.
-const OFFERED: [(&str, Option<usize>); 12] = [
+const OFFERED: [(&str, Option<usize>); 14] = [
     ("bending_strain_max", Some(0)),
     ("displacement", None),
     ("failure_tsai_wu", Some(0)),
@@ -30,13 +31,17 @@ const OFFERED: [(&str, Option<usize>); 12] = [
     ("bending_moment", Some(0)),
     ("bending_moment", Some(1)),
     ("energy_density", Some(0)),
+    ("bond_peel", Some(0)),
+    ("bond_shear", None),
 ];
+/// What a value is packed as that is no number, of a field that has such; its numbers have one value less.
+const BLANK: u16 = u16::MAX;
 
-/// The deformed shell over the load steps.
+/// The deformed shells over the load steps.
 #[derive(Clone, Debug, Serialize)]
 pub struct Shape {
-    /// Points along u and v.
-    counts: [usize; 2],
+    /// Points along u and v of each shell; what frames have of one shell follows what they have of the other.
+    counts: Vec<[usize; 2]>,
     /// Least and largest coordinate of all frames, mm.
     bounds: [[f64; 2]; 3],
     fields: Vec<ShownField>,
@@ -51,9 +56,11 @@ struct ShownField {
     means: String,
     /// Least and largest value of all frames.
     range: [f64; 2],
+    /// Whether it has no value in places.
+    has_blanks: bool,
 }
 
-/// The shell at the end of a load step.
+/// The shells at the end of a load step.
 #[derive(Clone, Debug, Serialize)]
 pub struct Frame {
     step: u64,
@@ -63,10 +70,10 @@ pub struct Frame {
     points: String,
     /// Values at the points, field by field.
     values: Vec<String>,
-    /// Coordinates of the knot lines: all lines of one u, then those of one v.
+    /// Coordinates of the knot lines of each shell: all lines of one u, then those of one v.
     lines: String,
-    /// Number of knot lines of one u, and of one v.
-    line_counts: [usize; 2],
+    /// Number of knot lines of one u, and of one v, of each shell.
+    line_counts: Vec<[usize; 2]>,
 }
 
 /// A state to be shown.
@@ -88,39 +95,45 @@ pub fn chosen_frames(steps: &[u64], wanted: impl Fn(u64) -> bool) -> Vec<u64> {
 }
 
 impl Shape {
-    /// Samples the states of a scene; `None` where there is none, and where it has several shells, which the page does not draw.
+    /// Samples the states of a scene; `None` where there is none.
     pub fn new(scene: &Scene, states: &[FrameAt]) -> Option<Self> {
-        if scene.shell_count() > 1 {
-            return None;
-        }
         let finest = states.iter().max_by_key(|at| at.state.mesh.elements().count())?;
-        let grid = places(WholeShell::new(scene, &finest.state).undeformed());
+        let shells = ShellsOfState::new(scene, &finest.state);
+        let most = MOST_POINTS / scene.shell_count();
+        let grids: Vec<[Vec<f64>; 2]> = shells.whole().iter().map(|shell| places(shell.undeformed(), most)).collect();
         let offered = offered(scene);
-        let sampled: Vec<Sampled> = states.iter().map(|at| Sampled::new(scene, &at.state, &grid, &offered)).collect();
+        let sampled: Vec<Sampled> = states.iter().map(|at| Sampled::new(scene, &at.state, &grids, &offered)).collect();
         let coordinates =
             |c: usize| sampled.iter().flat_map(move |frame| frame.points.iter().map(move |point| point[c]));
         let bounds = [0, 1, 2].map(|c| range(coordinates(c)));
         let ranges: Vec<[f64; 2]> = (0..offered.len())
             .map(|index| range(sampled.iter().flat_map(|frame| frame.values[index].iter().copied())))
             .collect();
+        let has_blanks: Vec<bool> = (0..offered.len())
+            .map(|index| sampled.iter().any(|frame| frame.values[index].iter().any(|value| value.is_nan())))
+            .collect();
         let pack_points =
-            |points: &[[f64; 3]]| packed(points.iter().flat_map(|p| (0..3).map(move |c| (p[c], bounds[c]))));
+            |points: &[[f64; 3]]| packed(points.iter().flat_map(|p| (0..3).map(move |c| (p[c], bounds[c]))), false);
+        let pack_values = |index: usize, values: &[f64]| {
+            packed(values.iter().map(|value| (*value, ranges[index])), has_blanks[index])
+        };
         let frames = states.iter().zip(&sampled).map(|(at, frame)| Frame {
             step: at.step,
             label: at.label.clone(),
             elements: at.state.mesh.elements(),
             points: pack_points(&frame.points),
-            values: frame.values.iter().zip(&ranges).map(|(v, range)| packed(v.iter().map(|v| (*v, *range)))).collect(),
+            values: frame.values.iter().enumerate().map(|(index, values)| pack_values(index, values)).collect(),
             lines: pack_points(&frame.lines),
-            line_counts: frame.line_counts,
+            line_counts: frame.line_counts.clone(),
         });
-        let fields = offered.iter().zip(&ranges).map(|((field, component), range)| ShownField {
+        let fields = offered.iter().enumerate().map(|(index, (field, component))| ShownField {
             title: field.title_of(*component),
             means: field.means.to_owned(),
-            range: *range,
+            range: ranges[index],
+            has_blanks: has_blanks[index],
         });
         Some(Self {
-            counts: grid.each_ref().map(Vec::len),
+            counts: grids.iter().map(|grid| grid.each_ref().map(Vec::len)).collect(),
             bounds,
             fields: fields.collect(),
             frames: frames.collect(),
@@ -137,41 +150,46 @@ fn offered(scene: &Scene) -> Vec<(Field, Option<usize>)> {
     OFFERED.into_iter().filter_map(found).collect()
 }
 
-/// Points, values and knot lines of a state.
+/// Points, values and knot lines of a state, those of one shell after those of another.
 struct Sampled {
     points: Vec<[f64; 3]>,
     values: Vec<Vec<f64>>,
     lines: Vec<[f64; 3]>,
-    line_counts: [usize; 2],
+    line_counts: Vec<[usize; 2]>,
 }
 
 impl Sampled {
-    fn new(scene: &Scene, state: &State, [along, across]: &[Vec<f64>; 2], offered: &[(Field, Option<usize>)]) -> Self {
-        let shell = WholeShell::new(scene, state);
+    fn new(scene: &Scene, state: &State, grids: &[[Vec<f64>; 2]], offered: &[(Field, Option<usize>)]) -> Self {
+        let values = vec![Vec::new(); offered.len()];
+        let mut sampled = Self { points: Vec::new(), values, lines: Vec::new(), line_counts: Vec::new() };
+        for (shell, grid) in ShellsOfState::new(scene, state).whole().iter().zip(grids) {
+            sampled.add(shell, grid, offered);
+        }
+        sampled
+    }
+
+    fn add(&mut self, shell: &WholeShell, [along, across]: &[Vec<f64>; 2], offered: &[(Field, Option<usize>)]) {
         let position = |at: [f64; 2]| mid_surface_point(shell.deformed(), &[], at).position;
         let each = || along.iter().flat_map(|u| across.iter().map(|v| [*u, *v]));
         let field_points: Vec<WholePoint> = each().map(|at| shell.at(at)).collect();
-        let of_field = |(field, component): &(Field, Option<usize>)| {
+        for ((field, component), values) in offered.iter().zip(&mut self.values) {
             let of = |value: [f64; 3]| component.map_or_else(|| norm(value), |index| value[index]);
-            field_points.iter().map(|point| of(point.value(field))).collect()
-        };
+            values.extend(field_points.iter().map(|point| of(point.value(field))));
+        }
         let knots = [0, 1].map(|direction| divided(shell.undeformed(), direction, 1));
         let along_v = knots[0].iter().flat_map(|u| across.iter().map(|v| [*u, *v]));
         let along_u = knots[1].iter().flat_map(|v| along.iter().map(|u| [*u, *v]));
-        Self {
-            points: each().map(position).collect(),
-            values: offered.iter().map(of_field).collect(),
-            lines: along_v.chain(along_u).map(position).collect(),
-            line_counts: knots.each_ref().map(Vec::len),
-        }
+        self.points.extend(each().map(position));
+        self.lines.extend(along_v.chain(along_u).map(position));
+        self.line_counts.push(knots.each_ref().map(Vec::len));
     }
 }
 
-/// Parameters of the points of a whole shell: every element of the mesh, divided so that there are not too many.
-fn places(mesh: &Patch) -> [Vec<f64>; 2] {
+/// Parameters of the points of a whole shell: every element of the mesh, divided so that there are at most so many, as far as lines
+/// of elements allow.
+fn places(mesh: &Patch, most: usize) -> [Vec<f64>; 2] {
     let counts = mesh.element_counts();
-    let parts =
-        (1..=8).rev().find(|parts| counts.iter().map(|count| count * parts + 1).product::<usize>() <= MOST_POINTS);
+    let parts = (1..=8).rev().find(|parts| counts.iter().map(|count| count * parts + 1).product::<usize>() <= most);
     [0, 1].map(|direction| {
         let all = divided(mesh, direction, parts.unwrap_or(1));
         let stride = all.len().div_ceil(MOST_POINTS / 20).max(1);
@@ -192,15 +210,19 @@ fn divided(mesh: &Patch, direction: usize, parts: usize) -> Vec<f64> {
     bounds.first().map(|[from, _]| *from).into_iter().chain(inner).collect()
 }
 
+/// Least and largest value, without those that are no numbers.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+    let [low, high] = values.fold([f64::NAN; 2], |[low, high], value| [low.min(value), high.max(value)]);
+    // JSON has none for a field without a single number.
+    if low.is_nan() { [0.0; 2] } else { [low, high] }
 }
 
-/// Numbers as 16 bits over their ranges, little-endian, in base64.
-fn packed(values: impl Iterator<Item = (f64, [f64; 2])>) -> String {
+/// Numbers as 16 bits over their ranges, little-endian, in base64; with blanks, what is no number is [`BLANK`].
+fn packed(values: impl Iterator<Item = (f64, [f64; 2])>, has_blanks: bool) -> String {
+    let most = if has_blanks { BLANK - 1 } else { u16::MAX };
     let bits = |(value, [low, high]): (f64, [f64; 2])| {
         let share = if high > low { (value - low) / (high - low) } else { 0.0 };
-        (share * f64::from(u16::MAX)).round() as u16
+        if value.is_nan() { BLANK } else { (share * f64::from(most)).round() as u16 }
     };
     let bytes: Vec<u8> = values.flat_map(|value| bits(value).to_le_bytes()).collect();
     base64(&bytes)

@@ -18,14 +18,13 @@ impl Coloured {
     /// Colours a surface over the range of its own values.
     pub(super) fn new(samples: SurfaceSamples) -> Self {
         let values = vertex_values(&samples);
-        let range = values
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(*value), high.max(*value)]);
+        let range = values.iter().fold([f64::NAN; 2], |[low, high], value| [low.min(*value), high.max(*value)]);
+        let range = if range[0].is_nan() { [0.0; 2] } else { range };
         Self { samples, values, range }
     }
 }
 
-/// Mean of the cells around each point.
+/// Mean of the cells around each point; no number where none of them has a value.
 fn vertex_values(samples: &SurfaceSamples) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); samples.points.len()];
     for (corners, value) in samples.cells().zip(&samples.cell_values).filter(|(_, value)| value.is_finite()) {
@@ -34,7 +33,7 @@ fn vertex_values(samples: &SurfaceSamples) -> Vec<f64> {
             sums[corner].1 += 1.0;
         }
     }
-    sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { 0.0 }).collect()
+    sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { f64::NAN }).collect()
 }
 
 /// One entity, which replaces that of the state before.

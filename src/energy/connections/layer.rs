@@ -1,0 +1,171 @@
+//! The layer of glue of a bond: where the faces of its two shells lie together, and how stiff it is there.
+
+use super::coupled::{CoupledPoint, SurfaceSide};
+use super::glue::Glue;
+use crate::model::moduli_mpa;
+use crate::scene::{Bond, Material};
+use crate::shell::{add, cross, dot, norm, scaled, sub};
+use crate::spline::{Patch, Spans, SurfacePoint, mid_surface_point};
+
+/// Distance of faces that lie together, relative to the mean thickness.
+const TOGETHER: f64 = 1e-3;
+/// Cosine of the angle between faces from which on they lie together.
+const PARALLEL: f64 = 0.99;
+/// Distance along the surface by which the nearest point may miss the normal, relative to the thickness.
+const BESIDE: f64 = 1e-3;
+/// Samples of each span from which nearest points are searched.
+const STARTS: usize = 2;
+/// Largest number of steps to a nearest point.
+const STEPS: usize = 30;
+
+/// One of the shells that a bond glues.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side<'a> {
+    pub patch: &'a Patch,
+    /// Number of its first control point.
+    pub first: usize,
+    pub material: &'a Material,
+}
+
+/// The layer of a bond.
+#[derive(Debug)]
+pub(super) struct Layer<'a> {
+    sides: [Side<'a>; 2],
+    thickness: [f64; 2],
+    /// Largest distance of faces that are glued, mm.
+    pub tolerance: f64,
+    /// k, N/mm³.
+    stiffness: f64,
+    /// The second shell.
+    pub other: Searched<'a>,
+}
+
+/// Points of both shells whose faces look at each other.
+#[derive(Debug)]
+pub(super) struct Faces {
+    at: [[f64; 2]; 2],
+    positions: [[f64; 3]; 2],
+    /// The sides on which the faces lie, as seen along the normals.
+    signs: [f64; 2],
+    /// Distance of the faces, mm; below 0 where the shells cross each other.
+    pub gap: f64,
+}
+
+impl<'a> Layer<'a> {
+    pub fn new(bond: &Bond, sides: [Side<'a>; 2]) -> Self {
+        let thickness = sides.map(|side| side.material.thickness_mm());
+        let mean = 0.5 * (thickness[0] + thickness[1]);
+        let [one, other] = sides.map(|side| moduli_mpa(side.material)[1]);
+        Self {
+            sides,
+            thickness,
+            tolerance: bond.gap_mm.unwrap_or(TOGETHER * mean),
+            stiffness: bond.stiffness * one.max(other) / mean,
+            other: Searched::new(sides[1].patch),
+        }
+    }
+
+    /// Position of a point of the undeformed first (0) or second (1) shell, mm.
+    pub fn position(&self, side: usize, at: [f64; 2]) -> [f64; 3] {
+        mid_surface_point(self.sides[side].patch, &[], at).position
+    }
+
+    /// Looks at the faces at parameters of both shells; `None` where they do not face each other.
+    pub fn faces(&self, at: [[f64; 2]; 2]) -> Option<Faces> {
+        let mean = 0.5 * (self.thickness[0] + self.thickness[1]);
+        let points = [0, 1].map(|k| mid_surface_point(self.sides[k].patch, &[], at[k]));
+        let normals = points.each_ref().map(|point| {
+            let normal = cross(point.derivatives[0], point.derivatives[1]);
+            scaled(1.0 / norm(normal), normal)
+        });
+        let positions = points.map(|SurfacePoint { position, .. }| position);
+        let apart = sub(positions[1], positions[0]);
+        let along = dot(apart, normals[0]);
+        let beside = norm(sub(apart, scaled(along, normals[0])));
+        let aligned = dot(normals[0], normals[1]);
+        if beside > BESIDE * mean || aligned.abs() < PARALLEL {
+            return None;
+        }
+        let sign = along.signum();
+        Some(Faces { at, positions, signs: [sign, -sign * aligned.signum()], gap: along.abs() - mean })
+    }
+
+    /// The layer between two faces, over an area in mm².
+    pub fn glued(&self, Faces { at, positions, signs, .. }: &Faces, area: f64) -> CoupledPoint<Glue> {
+        let surfaces = [0, 1].map(|k| SurfaceSide::new(self.sides[k].patch, self.sides[k].first, at[k]));
+        let undeformed = surfaces.each_ref().map(|side| side.undeformed);
+        let to_faces = [0, 1].map(|k| 0.5 * signs[k] * self.thickness[k]);
+        let stiffness = self.stiffness * area;
+        let flat = Glue { stiffness, area, to_faces, gap: [0.0; 3], at_rest: [0.0; 3] };
+        let gap = add(sub(positions[0], positions[1]), flat.across(&undeformed));
+        // Components of the gap on a₁, a₂ and a₃.
+        let [_, a1, a2] = undeformed[0];
+        let normal = cross(a1, a2);
+        let square = dot(normal, normal);
+        let components = [
+            dot(gap, cross(a2, normal)) / square,
+            dot(gap, cross(normal, a1)) / square,
+            dot(gap, normal) / square.sqrt(),
+        ];
+        let law = Glue { gap: components, ..flat };
+        CoupledPoint { sides: surfaces, law: Glue { at_rest: law.across(&undeformed), ..law } }
+    }
+}
+
+/// A patch on which nearest points are searched.
+#[derive(Debug)]
+pub(super) struct Searched<'a> {
+    patch: &'a Patch,
+    samples: Vec<([f64; 2], [f64; 3])>,
+}
+
+impl<'a> Searched<'a> {
+    pub fn new(patch: &'a Patch) -> Self {
+        let [us, vs] = [0, 1].map(|direction| {
+            let spans = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
+            let within = |[from, to]: [f64; 2]| (0..STARTS).map(move |k| from + (to - from) * k as f64 / STARTS as f64);
+            spans.into_iter().flat_map(within).chain([1.0]).collect::<Vec<f64>>()
+        });
+        let all = us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v]));
+        Self { patch, samples: all.map(|at| (at, mid_surface_point(patch, &[], at).position)).collect() }
+    }
+
+    /// Finds the parameters of the point nearest to another one, from a guess that is likely near.
+    pub fn nearest(&self, point: [f64; 3], guess: Option<[f64; 2]>) -> [f64; 2] {
+        let away = |at: [f64; 2]| {
+            let apart = sub(mid_surface_point(self.patch, &[], at).position, point);
+            dot(apart, apart)
+        };
+        let near = |(_, position): &([f64; 2], [f64; 3])| {
+            let apart = sub(*position, point);
+            dot(apart, apart)
+        };
+        let start = self
+            .samples
+            .iter()
+            .min_by(|one, other| near(one).total_cmp(&near(other)))
+            .map_or([0.5; 2], |found| found.0);
+        let tried = [Some(start), guess].into_iter().flatten().map(|start| self.descend(point, start));
+        tried.min_by(|one, other| away(*one).total_cmp(&away(*other))).unwrap_or(start)
+    }
+
+    /// Newton's method without the curvature, within the parameters.
+    fn descend(&self, point: [f64; 3], mut at: [f64; 2]) -> [f64; 2] {
+        for _ in 0..STEPS {
+            let surface = mid_surface_point(self.patch, &[], at);
+            let [a1, a2, ..] = surface.derivatives;
+            let gap = sub(point, surface.position);
+            let (g11, g12, g22) = (dot(a1, a1), dot(a1, a2), dot(a2, a2));
+            let (b1, b2) = (dot(gap, a1), dot(gap, a2));
+            let determinant = g11 * g22 - g12 * g12;
+            let step = [(g22 * b1 - g12 * b2) / determinant, (g11 * b2 - g12 * b1) / determinant];
+            let next = [0, 1].map(|k| (at[k] + step[k]).clamp(0.0, 1.0));
+            let moved = (next[0] - at[0]).abs().max((next[1] - at[1]).abs());
+            at = next;
+            if moved < 1e-14 {
+                break;
+            }
+        }
+        at
+    }
+}

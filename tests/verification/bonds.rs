@@ -1,0 +1,120 @@
+//! Tractions in bonds against closed forms: a lap joint with its shear lag and the peel at its ends.
+
+use foldline::record::ConnectionReading;
+use foldline::scene::{Scene, parse};
+use foldline::state::State;
+use foldline::view::{Field, ShellsOfState, fields_of};
+
+use crate::support::run;
+
+/// Moduli, thickness and length of the strips, stiffness of the layer k = c E/t, and the pull.
+const E: f64 = 70e3;
+const T: f64 = 1.0;
+const LENGTH: f64 = 40.0;
+const C: f64 = 0.01;
+/// A membrane strain of 1e-6, for which the closed form is meant.
+const PULL: f64 = 1e-6 * E * T;
+
+/// Two strips glued over their whole length: the lower one is pulled at its right end, the upper one at its left end, and moments P t/2 at
+/// the loaded ends balance the couple. `further` is added to the length of the lower strip, on the right.
+fn lap_joint(upper: [usize; 2], turned: bool, further: f64) -> Scene {
+    let (moment, lower) = (0.5 * PULL * T, LENGTH + further);
+    let elements = (lower * 1.5).round();
+    // On the other side: the shell of the list that is first lies above, and its normal looks at the bond or away from it.
+    let axes = if turned { "x_axis = [1.0, 0.0, 0.0]\ny_axis = [0.0, -1.0, 0.0]\n" } else { "" };
+    let y = if turned { 10.0 } else { 0.0 };
+    let sign = if turned { -1.0 } else { 1.0 };
+    let text = format!(
+        "[[shell]]\nname = \"lower\"\n[shell.geometry]\nkind = \"plate\"\nlength_mm = {lower:?}\nwidth_mm = 10.0\n\
+         [shell.mesh]\nelements = [{elements}, 1]\n\
+         [[shell]]\nname = \"upper\"\nposition_mm = [0.0, {y:?}, 1.0]\n{axes}\
+         [shell.geometry]\nkind = \"plate\"\nlength_mm = {LENGTH:?}\nwidth_mm = 10.0\n[shell.mesh]\nelements = {upper:?}\n\
+         [material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = {E:?}\npoissons_ratio = 0.0\nthickness_mm = {T:?}\n\
+         [[bond]]\nname = \"glue\"\nshells = [\"lower\", \"upper\"]\nstiffness = {C:?}\n\
+         [load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n\
+         [[support]]\nname = \"free\"\nkind = \"rigid-motions\"\n\
+         [[action]]\nkind = \"line-force\"\nshell = \"lower\"\non = \"u-end\"\nforce_n_per_mm = [{PULL:?}, 0.0, 0.0]\n\
+         [[action]]\nkind = \"line-force\"\nshell = \"upper\"\non = \"u-start\"\nforce_n_per_mm = [-{PULL:?}, 0.0, 0.0]\n\
+         [[action]]\nkind = \"edge-moment\"\nshell = \"lower\"\non = \"u-end\"\nmoment_n = {moment:?}\n\
+         [[action]]\nkind = \"edge-moment\"\nshell = \"upper\"\non = \"u-start\"\nmoment_n = {:?}\n",
+        sign * moment
+    );
+    parse(&text, "lap.toml").unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Shear traction on the lower strip and peel of a lap joint of equal adherends, at a distance from its middle.
+///
+/// With δ the slip of the glued faces, N₁' = −τ = −k δ and E I (w₁ + w₂)⁗ = t τ′ give τ‴ = λ² τ′ with λ² = 8 k/(E t): Volkersen's
+/// shear lag, λ² = 2 k/(E t), with the bending that Goland & Reissner add. At the ends δ′ = ∓4 P/(E t), and ∫τ = −P, so that
+/// τ = −½ P λ cosh λx / sinh λc. The faces part by Δ with E I Δ⁗ = −2 k Δ, E I Δ″ = P t/2 and Δ‴ = 0 at both ends, which are so far
+/// apart that each has its own e^{−βs} (cos βs − sin βs), β⁴ = k/(2 E I), with k Δ = ½ P t β² at the end.
+fn expected(x: f64) -> [f64; 2] {
+    let (k, half) = (C * E / T, 0.5 * LENGTH);
+    let lambda = (8.0 * k / (E * T)).sqrt();
+    let beta = (k / (2.0 * E * T.powi(3) / 12.0)).powf(0.25);
+    let decayed = |s: f64| (-beta * s).exp() * ((beta * s).cos() - (beta * s).sin());
+    let shear = -0.5 * PULL * lambda * (lambda * x).cosh() / (lambda * half).sinh();
+    [shear, 0.5 * PULL * T * beta * beta * (decayed(half - x) + decayed(half + x))]
+}
+
+/// Share of the largest traction within which the closed form is met. Strips of 60 cubic elements of h = 0.67 mm have displacements
+/// to (β h)⁴/384 = 3e-5 and, which the offset to the faces brings in, slopes to (β h)³/100 = 4e-4; ends that are e^{−βL} = 3e-9 apart and
+/// strains of 1e-6 add nothing.
+const CLOSE: f64 = 1e-3;
+
+fn field(scene: &Scene, name: &str) -> Field {
+    fields_of(scene).into_iter().find(|field| field.name == name).unwrap_or_else(|| panic!("there is no {name}"))
+}
+
+fn solved(scene: &Scene) -> (State, Vec<ConnectionReading>) {
+    let (state, record) = run(scene.clone()).pop().unwrap();
+    (state, record.report.connections)
+}
+
+/// The fields of both strips against the closed form, whatever the elements of the upper one, and whichever way its normal looks.
+#[test]
+fn a_lap_joint_has_the_shear_lag_and_the_peel_of_theory() {
+    for (upper, turned) in [([60, 1], false), ([60, 1], true), ([53, 2], false)] {
+        let scene = lap_joint(upper, turned, 0.0);
+        let (state, connections) = solved(&scene);
+        let [peel, shear] = ["bond_peel", "bond_shear"].map(|name| field(&scene, name));
+        let shells = ShellsOfState::new(&scene, &state);
+        let [most_shear, most_peel] = expected(0.5 * LENGTH);
+        for fields in shells.fields() {
+            for step in 0..=40 {
+                let u = f64::from(step) / 40.0;
+                let point = fields.at([u, 0.3]);
+                let [along, across] = expected((u - 0.5) * LENGTH);
+                let ([found, sideways, _], [opening, ..]) = (point.value(&shear), point.value(&peel));
+                assert!((found - along).abs() < CLOSE * most_shear.abs(), "{upper:?} {u}: {found} for {along}");
+                assert!(sideways.abs() < CLOSE * most_shear.abs(), "{upper:?} {u}: {sideways}");
+                assert!((opening - across).abs() < CLOSE * most_peel, "{upper:?} {u}: {opening} for {across}");
+            }
+        }
+        // At the outermost quadrature points, at most 0.11 of an element from an end.
+        let [glue] = &connections[..] else { panic!("{connections:?}") };
+        for (largest, field, most) in [(glue.shear, 0, most_shear.abs()), (glue.peel, 1, most_peel)] {
+            let largest = largest.unwrap();
+            let off = (largest.at[0] - 0.5).abs();
+            assert!(off > 0.498 && off < 0.5, "{largest:?}");
+            let there = expected((largest.at[0] - 0.5) * LENGTH)[field].abs();
+            assert!((largest.mpa - there).abs() < CLOSE * most, "{largest:?} for {there}");
+        }
+    }
+}
+
+/// Beyond the end of the upper strip nothing is glued.
+#[test]
+fn there_is_no_traction_where_nothing_is_glued() {
+    let scene = lap_joint([60, 1], false, 20.0);
+    let (state, _) = solved(&scene);
+    let peel = field(&scene, "bond_peel");
+    let shells = ShellsOfState::new(&scene, &state);
+    let [lower, upper] = &shells.fields().collect::<Vec<_>>()[..] else { panic!("two shells") };
+    let at = |x: f64| lower.at([x / (LENGTH + 20.0), 0.5]).value(&peel)[0];
+    assert!(at(39.9).is_finite() && at(1.0).is_finite());
+    assert!(at(40.1).is_nan() && at(59.0).is_nan());
+    assert!(upper.at([1.0, 0.5]).value(&peel)[0].is_finite());
+    let range = lower.range(&peel, (0..=20).map(|k| [f64::from(k) / 20.0, 0.5])).unwrap()[0];
+    assert!(range.iter().all(|end| end.is_finite()), "{range:?}");
+}
