@@ -15,6 +15,7 @@
 //! | `read`, `regions` | one entry to one value, within the limits of its key |
 //! | `table`, `tables` | one table, and all of them, with every default filled in |
 //! | `shells`, `connections` | the shells of a structure, and what connects them |
+//! | `imperfections`, `offset_grid` | where their surfaces differ from the perfect ones |
 //! | `geometries`, `nurbs`, `profiles`, `materials`, `supports`, `actions`, `histories`, `probes` | tables to data, and what must hold between their keys |
 //! | `meshes` | the mesh that a run starts with, and how it is refined |
 //! | `check`, `structure`, `stage_order`, `nearness` | tables to a scene; what must hold between tables, between supports and actions, between stages, between places |
@@ -42,6 +43,7 @@ mod geometries;
 mod help;
 mod histories;
 mod identity;
+mod imperfections;
 mod key_table;
 mod keys;
 mod materials;
@@ -53,6 +55,7 @@ mod nearness;
 #[cfg(test)]
 mod new_key;
 mod nurbs;
+mod offset_grid;
 mod probes;
 mod problem;
 mod profiles;
@@ -74,11 +77,11 @@ mod write;
 pub use check::{parse, parse_with_settings};
 pub use data::{
     Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Bond, Component, Edge, EndRotation, Expectation,
-    ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, Joint, JointKind, LengthLimit, Load,
-    LoadSteps, LoadedArea, Material, MeshSpec, Motion, NumbersIn, NurbsPatch, OrthotropicLaw, Output,
-    ParametricDirection, Ply, Pose, Probe, ProbeKind, ProfilePiece, Quadrature, Reaction, Region, Scene, Seam,
-    SectionTurns, Sense, Shell, ShellEdge, Solver, Splitting, Stage, Strengths, Support, SurfaceDirection, Symmetry,
-    SyncPolicy,
+    ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Imperfection, ImperfectionKind, Indicator, Joint,
+    JointKind, LengthLimit, Load, LoadSteps, LoadedArea, Material, MeshSpec, Motion, NumbersIn, NurbsPatch, OffsetGrid,
+    OrthotropicLaw, Output, ParametricDirection, Ply, Pose, Probe, ProbeKind, ProfilePiece, Quadrature, Reaction,
+    Region, Scene, Seam, SectionTurns, Sense, Shell, ShellEdge, Solver, Splitting, Stage, Strengths, Support,
+    SurfaceDirection, Symmetry, SyncPolicy,
 };
 pub use difference::Difference;
 pub(crate) use difference::shown_values;

@@ -16,6 +16,7 @@ mod forecasts;
 mod foundation;
 mod free_strain;
 mod house;
+mod imperfections;
 mod imports;
 mod laminates;
 mod links;

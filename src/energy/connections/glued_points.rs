@@ -19,22 +19,27 @@ const STARTS: usize = 2;
 /// Largest number of steps to a nearest point.
 const STEPS: usize = 30;
 
-/// Finds the points at which two shells are glued.
+/// Finds the points at which two shells are glued, where their perfect surfaces lie together; the layer keeps the gap that the shells
+/// have.
 ///
 /// # Errors
 /// Where their faces do not lie together anywhere, or the shells cross each other.
-pub(super) fn glued_points(bond: &Bond, members: &[Member]) -> Result<Vec<CoupledPoint<Glue>>, ModelError> {
-    let sides = bond.shells.map(|shell| &members[shell]);
+pub(super) fn glued_points(
+    bond: &Bond,
+    members: &[Member],
+    perfect: &[Member],
+) -> Result<Vec<CoupledPoint<Glue>>, ModelError> {
+    let [sides, searched] = [members, perfect].map(|members| bond.shells.map(|shell| &members[shell]));
     let thickness = sides.map(|side| side.scene.material.thickness_mm());
     let mean = 0.5 * (thickness[0] + thickness[1]);
     let tolerance = bond.gap_mm.unwrap_or(TOGETHER * mean);
     let [one, other] = sides.map(|side| moduli_mpa(&side.scene.material)[1]);
     let stiffness = bond.stiffness * one.max(other) / mean;
-    let other = Searched::new(sides[1].patch);
+    let other = Searched::new(searched[1].patch);
     let (mut points, mut nearest) = (Vec::new(), (f64::INFINITY, [0.0; 3]));
     let mut guess = None;
-    for (at, weight) in points_of(sides[0].patch, other.patch) {
-        let here = mid_surface_point(sides[0].patch, &[], at);
+    for (at, weight) in points_of(searched[0].patch, other.patch) {
+        let here = mid_surface_point(searched[0].patch, &[], at);
         let found = other.nearest(here.position, guess);
         guess = Some(found);
         let there = mid_surface_point(other.patch, &[], found);
@@ -49,7 +54,7 @@ pub(super) fn glued_points(bond: &Bond, members: &[Member]) -> Result<Vec<Couple
             continue;
         }
         let area = weight * norm(cross(here.derivatives[0], here.derivatives[1]));
-        points.push(glued(sides, [at, found], sign, stiffness * area, thickness, [here.position, there.position]));
+        points.push(glued(sides, [at, found], sign, stiffness * area, thickness));
     }
     match points.is_empty() {
         true => Err(ModelError::NothingGlued {
@@ -87,8 +92,8 @@ fn glued(
     signs: [f64; 2],
     stiffness: f64,
     thickness: [f64; 2],
-    [here, there]: [[f64; 3]; 2],
 ) -> CoupledPoint<Glue> {
+    let [here, there] = [0, 1].map(|k| mid_surface_point(sides[k].patch, &[], at[k]).position);
     let surfaces = [0, 1].map(|k| SurfaceSide::new(sides[k].patch, sides[k].points.start, at[k]));
     let undeformed = surfaces.each_ref().map(|side| side.undeformed);
     let to_faces = [0, 1].map(|k| 0.5 * signs[k] * thickness[k]);

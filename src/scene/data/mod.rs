@@ -11,11 +11,13 @@
 //! | `expectation` | how a run is to end |
 //! | `output` | what is written besides the states |
 //! | `structure`, `connection` | several shells, and what connects them |
+//! | `imperfection` | where the surfaces differ from the perfect ones |
 
 mod boundary;
 mod connection;
 mod expectation;
 mod geometry;
+mod imperfection;
 mod material;
 mod mesh;
 mod output;
@@ -30,6 +32,7 @@ pub use boundary::{
 pub use connection::{Bond, Joint, JointKind};
 pub use expectation::{Expectation, ExpectedOutcome};
 pub use geometry::{Geometry, NurbsPatch, ProfilePiece, Seam};
+pub use imperfection::{Imperfection, ImperfectionKind, OffsetGrid};
 pub use material::{Material, OrthotropicLaw, Ply, Strengths};
 pub use mesh::{MeshSpec, Quadrature};
 pub use output::{NumbersIn, Output, SyncPolicy};
@@ -62,6 +65,9 @@ pub struct Scene {
     /// What joins shells over areas.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bonds: Vec<Bond>,
+    /// Where the undeformed surfaces differ from the perfect ones.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub imperfections: Vec<Imperfection>,
     /// Which part of the shell is modelled.
     pub symmetry: Symmetry,
     /// What drives the run: how far, and in which steps.
@@ -107,7 +113,24 @@ impl Scene {
         self.shells.get(shell).map(|shell| &*shell.name)
     }
 
-    /// The scene of one shell alone, with the supports, actions and probes that are its own, and the actions on all shells.
+    /// The scene without its imperfections.
+    pub fn perfect(&self) -> Cow<'_, Scene> {
+        match self.imperfections.is_empty() {
+            true => Cow::Borrowed(self),
+            false => Cow::Owned(Scene { imperfections: Vec::new(), ..self.clone() }),
+        }
+    }
+
+    /// Whether parts of the scene may be in files of their own: written as TOML it is whole.
+    pub fn may_read_files(&self) -> bool {
+        let is_nurbs = |geometry: &Geometry| matches!(geometry, Geometry::Nurbs(_));
+        let is_grid = |imperfection: &Imperfection| matches!(imperfection.kind, ImperfectionKind::Grid { .. });
+        is_nurbs(&self.geometry)
+            || self.shells.iter().any(|shell| is_nurbs(&shell.geometry))
+            || self.imperfections.iter().any(is_grid)
+    }
+
+    /// The scene of one perfect shell alone, with the supports, actions and probes that are its own, and the actions on all shells.
     /// A scene of one shell is returned as it is.
     pub fn of_shell(&self, shell: usize) -> Cow<'_, Scene> {
         let Some(own) = self.shells.get(shell) else { return Cow::Borrowed(self) };
@@ -125,6 +148,7 @@ impl Scene {
             shells: Vec::new(),
             joints: Vec::new(),
             bonds: Vec::new(),
+            imperfections: Vec::new(),
             ..self.clone()
         })
     }
