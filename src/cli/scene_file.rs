@@ -8,7 +8,7 @@ use super::output::path_in_line;
 use super::shipped::{Shipped, nearest_names};
 use super::terminal::{error_columns, is_coloured};
 use crate::model::ModelError;
-use crate::scene::{Geometry, SCENE_BYTES_LIMIT, Scene, SceneError, Stage, parse_with_settings, tables_refused};
+use crate::scene::{SCENE_BYTES_LIMIT, Scene, SceneError, Stage, parse_with_settings, tables_refused};
 
 /// A scene with the text that it came from.
 pub(super) struct SceneFile {
@@ -52,12 +52,8 @@ pub(super) fn read_scene(path: &Path, settings: &[String]) -> Result<SceneFile, 
         return Err(Failure::IsSweep { file: path.to_path_buf() });
     }
     let scene = checked(&text, &path_in_line(path), settings)?;
-    // A log needs no other file: a surface from a file of its own goes into the text that the log keeps, and settings do.
-    let kept = match scene.geometry {
-        Geometry::Nurbs(_) => scene.to_toml(),
-        _ if !settings.is_empty() => scene.to_toml(),
-        _ => text.clone(),
-    };
+    // A log needs no other file: what is in files of their own goes into the text that the log keeps, and settings do.
+    let kept = if scene.may_read_files() || !settings.is_empty() { scene.to_toml() } else { text.clone() };
     let written = WrittenScene { text, name: path_in_line(path), settings: settings.to_vec() };
     Ok(SceneFile { scene, text: kept, file, written })
 }

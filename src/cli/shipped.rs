@@ -34,6 +34,8 @@ pub(super) const SHIPPED: &[Shipped] = shipped! {
     "radius-15"
     "radius-20"
     "radius-6-thickness-0.15"
+    "structures/imperfect-column"
+    "structures/imperfect-trac-boom"
     "structures/right-angle-frame"
     "structures/trac-boom"
     "verification/bistable-tape"

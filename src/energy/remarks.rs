@@ -64,7 +64,9 @@ fn of_masses(scene: &Scene) -> Option<String> {
     let has_gravity = scene.actions.iter().any(|action| matches!(action.kind, ActionKind::Gravity { .. }));
     (!has_gravity).then(|| {
         let name = &mass.name;
-        format!("mass \"{name}\" has no effect: there is no action of kind \"gravity\", and masses have no inertia at rest")
+        format!(
+            "mass \"{name}\" has no effect: there is no action of kind \"gravity\", and masses have no inertia at rest"
+        )
     })
 }
 

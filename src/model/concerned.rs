@@ -22,6 +22,7 @@ impl ModelError {
             }
             Self::EdgesApart { joint, .. } => Some(("joint", Some(joint))),
             Self::NothingGlued { bond, .. } | Self::ShellsCross { bond, .. } => Some(("bond", Some(bond))),
+            Self::Imperfection(error) => Some(("imperfection", error.imperfection())),
             Self::NotASection { probe } => Some(("probe", Some(probe))),
             _ => None,
         }

@@ -1,5 +1,6 @@
 //! The errors of scenes that cannot be made discrete.
 
+use crate::model::imperfection_error::ImperfectionError;
 use crate::model::limits::{MOST_CONTROL_POINTS, SMOOTH};
 use crate::spline::Elements;
 use crate::units::significant;
@@ -8,6 +9,9 @@ use crate::units::significant;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
+    /// The surfaces cannot be imperfect as the scene asks for.
+    #[error(transparent)]
+    Imperfection(#[from] ImperfectionError),
     /// The supports at both ends of a direction take more rows of control points than the mesh has.
     #[error(
         "{elements} element(s) of degree {degree} along {along} have {rows} rows of control points, but the supports \

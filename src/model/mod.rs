@@ -9,6 +9,9 @@
 //! | `joint` | knot lines across which the surface is smooth |
 //! | `soundness`, `thinness`, `overhang` | whether a shell can have that surface |
 //! | `subdivision`, `start` | the mesh that a run starts from |
+//! | `imperfection`, `imperfection_error` | surfaces that are not perfect |
+//! | `imperfection_field`, `random_field`, `gaussian` | imperfections as functions of the place; random numbers |
+//! | `largest_offset` | how far they are from the perfect ones |
 //! | `size`, `oddity` | the size of a shell in a few numbers; numbers of a scene that look like slips |
 //! | `parametrize`, `edge`, `direction` | parameters at fractions of length and angle; rows and normals of edges; directions at a point |
 //! | `expressions` | displacements of places as sums over control points |
@@ -48,9 +51,14 @@ mod error;
 mod expressions;
 mod free_strains;
 mod gauss;
+mod gaussian;
 mod hold;
 mod imbalance;
+mod imperfection;
+mod imperfection_error;
+mod imperfection_field;
 mod joint;
+mod largest_offset;
 mod limits;
 mod member;
 mod mirror;
@@ -62,6 +70,7 @@ mod parametrize;
 mod placement;
 mod profile;
 mod quadrature;
+mod random_field;
 mod reactions;
 mod rigid_motion;
 mod rigid_support;
@@ -94,6 +103,12 @@ pub use error::ModelError;
 pub(crate) use expressions::control_expressions;
 pub use free_strains::{FreeStrains, NaturalState};
 pub(crate) use gauss::gauss_points;
+pub(crate) use gaussian::Gaussians;
+pub use imperfection::perfect_on;
+pub(crate) use imperfection::{kept_together, moved, thinnest_mm};
+pub use imperfection_error::ImperfectionError;
+pub(crate) use imperfection_field::ImperfectionField;
+pub(crate) use largest_offset::{SurfaceSample, largest_offset};
 pub use limits::MOST_CONTROL_POINTS;
 pub(crate) use limits::ROUNDING;
 pub(crate) use member::{Member, members};

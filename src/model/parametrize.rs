@@ -7,6 +7,9 @@ use crate::model::profile::{profile_knots, profile_segments};
 use crate::scene::{Geometry, ProfilePiece, Region, Scene};
 use crate::spline::{Patch, Spans, segment_count};
 
+/// Halvings of an interval after which it has no more digits.
+const BISECTIONS: usize = 53;
+
 /// Finds the parameters of a point at fractions of the length or the angle in u and v.
 pub fn parameters_of(geometry: &Geometry, fractions: [f64; 2]) -> [f64; 2] {
     let [u, v] = fractions;
@@ -18,6 +21,24 @@ pub fn parameters_of(geometry: &Geometry, fractions: [f64; 2]) -> [f64; 2] {
         Geometry::Profile { profile, .. } => [u, on_profile(profile, v)],
         Geometry::SphereZone { latitude_deg: [from, to], arc_deg, .. } => [on_arc(*arc_deg, u), on_arc(to - from, v)],
     }
+}
+
+/// Finds the fractions of the length or the angle in u and v of a point by its parameters: [`parameters_of`], which ascends, the other
+/// way round.
+pub fn fractions_of(geometry: &Geometry, parameters: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|direction| {
+        let parameter = parameters[direction];
+        let at = |fraction: f64| parameters_of(geometry, [fraction; 2])[direction];
+        if at(parameter) == parameter {
+            return parameter;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            *if at(middle) < parameter { &mut low } else { &mut high } = middle;
+        }
+        0.5 * (low + high)
+    })
 }
 
 /// Finds the parameter at a fraction of the angle of an arc.

@@ -6,19 +6,30 @@ use crate::adapt::Enriched;
 use crate::energy::{Discretization, TermSource};
 use crate::equilibrium::{Workspace, WorkspaceError};
 use crate::model::{ModelError, Unknowns};
+use crate::pipeline::imperfect_start::imperfect_mesh;
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
 /// The workspace of the current mesh, the unknowns of a mesh that has no workspace yet, and, where a tolerance asks for them, the
-/// meshes with halved spans. Each is made once for a mesh.
+/// meshes with halved spans. Each is made once for a mesh; and so is the mesh that the scene starts from.
 #[derive(Debug, Default)]
 pub(super) struct CurrentMesh {
     work: Option<Workspace>,
     ahead: Option<(Arc<Mesh>, Unknowns)>,
     enriched: Option<(Arc<Mesh>, [Enriched; 2])>,
+    start: Option<Mesh>,
 }
 
 impl CurrentMesh {
+    /// Returns the mesh that the scene starts from, which is made if it is not kept.
+    pub fn start(&mut self, scene: &Scene, own: &[Arc<dyn TermSource>]) -> Result<&Mesh, ModelError> {
+        let start = match self.start.take() {
+            Some(start) => start,
+            None => imperfect_mesh(scene, own)?,
+        };
+        Ok(self.start.insert(start))
+    }
+
     /// Returns the unknowns of a mesh, which are made if they are not kept.
     pub fn unknowns(&mut self, scene: &Scene, mesh: &Arc<Mesh>) -> Result<&Unknowns, ModelError> {
         match &self.work {

@@ -8,7 +8,7 @@ use crate::adapt::{
 };
 use crate::energy::TermSource;
 use crate::equilibrium::{Configuration, Workspace, WorkspaceError};
-use crate::model::{pass_on, starting_mesh};
+use crate::model::pass_on;
 use crate::pipeline::current_mesh::CurrentMesh;
 use crate::pipeline::measured::Measured;
 use crate::record::{Report, Warning};
@@ -82,8 +82,9 @@ impl Evaluation<'_> {
         let room = if may_coarsen { judged.room() } else { 0.0 };
         let superfluous = match room > 0.0 {
             true => {
+                let start = self.current.start(scene, self.own)?.lone().clone();
                 let work = self.current.workspace(scene, self.own, &state.mesh)?;
-                superfluous(scene, work, state, starting_mesh(scene)?.lone(), room).unwrap_or_default()
+                superfluous(scene, work, state, &start, room).unwrap_or_default()
             }
             false => Default::default(),
         };

@@ -6,11 +6,12 @@ use crate::adapt::{Coarsened, Finest, project_displacements};
 use crate::digest::Hash;
 use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_energy};
 use crate::equilibrium::{Configuration, Iterate, Workspace, WorkspaceError};
-use crate::model::{FreeStrains, MOST_CONTROL_POINTS, Member, ModelError, Tables, members, starting_mesh};
+use crate::model::{FreeStrains, MOST_CONTROL_POINTS, Member, ModelError, Tables, members};
 use crate::pipeline::StageError;
 use crate::pipeline::current_mesh::CurrentMesh;
 use crate::pipeline::doubts::{Doubts, ReadAt, doubtful};
 use crate::pipeline::evaluation::Evaluation;
+use crate::pipeline::imperfect_start::imperfection_remarks;
 use crate::pipeline::load_drive::LoadDrive;
 use crate::pipeline::path_drive::PathDrive;
 use crate::pipeline::probes::read_probes;
@@ -62,7 +63,7 @@ impl Stages {
     /// Where the scene cannot be made discrete, its supports and terms leave a rigid motion free, or its loads do work
     /// on a rigid motion that only a support of rigid motions holds.
     pub fn start(&mut self) -> Result<State, ModelError> {
-        let mut state = State::undeformed(starting_mesh(&self.scene)?);
+        let mut state = State::undeformed(self.current.start(&self.scene, &self.own)?.clone());
         let mesh = &state.mesh;
         let unknowns = self.current.unknowns(&self.scene, mesh)?;
         check_held(&self.scene, mesh, unknowns, &self.own)?;
@@ -89,7 +90,10 @@ impl Stages {
     /// # Errors
     /// Where supports or loads do not fit the mesh of the state.
     pub fn remarks(&mut self, state: &State) -> Result<Vec<String>, ModelError> {
-        remarks(&self.scene, &state.mesh, self.current.unknowns(&self.scene, &state.mesh)?, &self.own)
+        let unknowns = self.current.unknowns(&self.scene, &state.mesh)?;
+        let mut all = remarks(&self.scene, &state.mesh, unknowns, &self.own)?;
+        all.extend(imperfection_remarks(&self.scene, &state.mesh)?);
+        Ok(all)
     }
 
     /// Warnings about the equilibrium that a run ends with, which a run that ends there gives itself.
@@ -187,7 +191,7 @@ impl Stages {
             return Err(out_of_order(state, Stage::CoarsenKnots, "no knot is superfluous"));
         }
         let failed = |cause| StageError::Model { step: state.step, stage: Stage::CoarsenKnots, cause };
-        let start = starting_mesh(&self.scene).map_err(failed)?;
+        let start = self.current.start(&self.scene, &self.own).map_err(failed)?;
         let Some(coarsened) = Coarsened::new(state.mesh.lone(), &state.superfluous[0], start.lone()) else {
             return Err(out_of_order(
                 state,

@@ -7,6 +7,7 @@ use super::data::{ArcLength, EndRotation, Geometry, Load, LoadSteps, Scene, Shel
 use super::document::Document;
 use super::error::SceneError;
 use super::fault::{Checked, CheckedWhole, Faults, Source};
+use super::imperfections::{check_symmetry, imperfections};
 use super::key_table::SECTIONS;
 use super::meshes::{self, Refinable};
 use super::problem::Problem;
@@ -46,18 +47,24 @@ fn scene(document: &Document<'_>, folder: &Path) -> CheckedWhole<Scene> {
             let mut faults = Faults::default();
             let shells = Shells::of_one(&tables, folder, &mut faults);
             let chooses_mesh = meshes::chooses_mesh(&tables);
-            with_shells(&tables, shells, chooses_mesh, faults)
+            with_shells(&tables, shells, chooses_mesh, folder, faults)
         }
         false => {
             let tables = Tables::read(&document.of_structure())?;
             let shells = Shells::of_structure(document, &tables, folder)?;
-            with_shells(&tables, Some(shells), false, Faults::default())
+            with_shells(&tables, Some(shells), false, folder, Faults::default())
         }
     }
 }
 
 /// Reads the rest of a scene, whose shells are known where nothing is wrong with them.
-fn with_shells(tables: &Tables, shells: Option<Shells>, chooses_mesh: bool, mut faults: Faults) -> CheckedWhole<Scene> {
+fn with_shells(
+    tables: &Tables,
+    shells: Option<Shells>,
+    chooses_mesh: bool,
+    folder: &Path,
+    mut faults: Faults,
+) -> CheckedWhole<Scene> {
     let load = faults.keep(load(tables, shells.as_ref()));
     let kinds = shells.iter().flat_map(|shells| &shells.all).map(|shell| shell.geometry.word()).collect();
     let is_structure = shells.as_ref().is_some_and(|shells| shells.are_named);
@@ -75,12 +82,19 @@ fn with_shells(tables: &Tables, shells: Option<Shells>, chooses_mesh: bool, mut 
     let solver = faults.keep(solver(tables, &load));
     let continuation = faults.keep(continuation(tables, &load));
     let connections = connections(tables, &shells, &mut faults);
+    let imperfections = imperfections(tables, &shells, folder, &mut faults);
     let structure = structure(tables, &load, &shells, &mut faults);
-    let (Some(solver), Some(continuation), Some((joints, bonds)), Some((supports, (springs, masses), actions, probes))) =
-        (solver, continuation, connections, structure)
+    let (
+        Some(solver),
+        Some(continuation),
+        Some((joints, bonds)),
+        Some(imperfections),
+        Some((supports, (springs, masses), actions, probes)),
+    ) = (solver, continuation, connections, imperfections, structure)
     else {
         return Err(faults.0);
     };
+    faults.keep(check_symmetry(tables, &supports, symmetry));
     let output = tables.one("output").data();
     let expect = Some(tables.one("expect")).filter(|table| table.is_given).map(Table::data);
     let named = shells.named();
@@ -95,6 +109,7 @@ fn with_shells(tables: &Tables, shells: Option<Shells>, chooses_mesh: bool, mut 
         shells: named,
         joints,
         bonds,
+        imperfections,
         symmetry,
         load,
         supports,

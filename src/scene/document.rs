@@ -66,6 +66,12 @@ impl<'t> Written<'t> {
         self.entries.iter().find(|entry| entry.name == name)
     }
 
+    /// What a setting calls it among others of its array: its name, or "action 2" where it has none.
+    fn settings_name(&self) -> String {
+        let name = self.entry("name").and_then(|entry| entry.value.get_ref().as_str()).map(str::to_owned);
+        name.unwrap_or_else(|| format!("{} {}", self.name, self.number.unwrap_or_default()))
+    }
+
     /// The name of the table in errors: `[geometry]`, `[[support]] 2`, `[[support]] "root"`.
     pub fn title(&self) -> String {
         let name = self.entry("name").and_then(|entry| entry.value.get_ref().as_str());
@@ -226,7 +232,7 @@ impl<'t> Document<'t> {
         shells.nth(shell).map_or(&self.end, |table| &table.place).clone()
     }
 
-    /// Applies one setting, `section.key=value`.
+    /// Applies one setting: `section.key=value`, or `section.NAME.key=value` for one of several tables, by its name.
     fn set(&mut self, source: usize, setting: &'t str) -> Checked<()> {
         let whole = TextSpan { source, span: 0..setting.len() };
         let Some((path, value_text)) = setting.split_once('=') else {
@@ -235,43 +241,105 @@ impl<'t> Document<'t> {
         };
         let start = path.len() - path.trim_start().len();
         let place = TextSpan { source, span: start..start + path.trim().len() };
-        let Some((section, name)) = path.trim().split_once('.') else {
+        let Some((section, rest)) = path.trim().split_once('.') else {
             return Err(meant::setting_without_section(self.sections, path.trim(), &place));
         };
         let section_place = TextSpan { source, span: start..start + section.len() };
-        if self.is_array(section) {
-            let problem = Problem::Table {
-                table: format!("[[{section}]]"),
-                problem: "a setting cannot name one of several tables".into(),
-                remedy: "change it in the scene file".into(),
-            };
-            return Err(Fault::new(problem, &section_place));
-        }
-        let name_place = TextSpan { source, span: start + section.len() + 1..place.span.end };
+        let (target, name) = match self.is_array(section) {
+            true => self.named_target(section, rest).map_err(|problem| Fault::new(problem, &place))?,
+            false => (self.single_target(section, &section_place), rest),
+        };
+        let name_place = TextSpan { source, span: place.span.end - name.len()..place.span.end };
 
         let value_start = setting.len() - value_text.trim_start().len();
         let base = TextSpan { source, span: value_start..setting.len() };
         let value =
             setting_value(value_text.trim()).map_err(|error| syntax::fault(&error, value_text.trim(), &base))?;
 
-        let displaced = self.section(section).map_or(vec![], |section| meant::stands_in_for(section, name));
-        let at = self.tables.iter().position(|table| table.name == section).unwrap_or(self.tables.len());
-        if at == self.tables.len() {
-            let (name, entries) = (section.to_owned(), Vec::new());
-            self.tables.push(Written {
-                name,
-                number: None,
-                below: None,
-                place: section_place,
-                entries,
-                own_line: false,
-            });
-        }
-        let entries = &mut self.tables[at].entries;
-        entries.retain(|entry| entry.name != name && !displaced.contains(&&*entry.name));
-        entries.push(Entry { name: name.into(), place: name_place, value, base });
+        let table = match target {
+            Target::Table(index) => &mut self.tables[index],
+            Target::BelowShell(shell, index) => &mut self.of_shells[shell][index],
+        };
+        let section = self.sections.iter().find(|section| section.name == table.name);
+        let displaced = section.map_or(vec![], |section| meant::stands_in_for(section, name));
+        table.entries.retain(|entry| entry.name != name && !displaced.contains(&&*entry.name));
+        table.entries.push(Entry { name: name.into(), place: name_place, value, base });
         Ok(())
     }
+
+    /// The table of which there is one, which is added where the file has none.
+    fn single_target(&mut self, section: &str, place: &TextSpan) -> Target {
+        let at = self.tables.iter().position(|table| table.name == section).unwrap_or(self.tables.len());
+        if at == self.tables.len() {
+            let (name, place) = (section.to_owned(), place.clone());
+            self.tables.push(Written { name, number: None, below: None, place, entries: Vec::new(), own_line: false });
+        }
+        Target::Table(at)
+    }
+
+    /// The table of an array that a setting names, and the key in it; of a shell also the tables below it.
+    fn named_target<'p>(&mut self, section: &str, path: &'p str) -> Result<(Target, &'p str), Problem> {
+        let wrong =
+            |problem: String, remedy: String| Problem::Table { table: format!("[[{section}]]"), problem, remedy };
+        let items = || self.tables.iter().enumerate().filter(|(_, table)| table.name == section);
+        let names: Vec<(usize, String)> = items().map(|(index, table)| (index, table.settings_name())).collect();
+        // Names may have points in them: the longest one that the path begins with is meant.
+        let begins =
+            |(_, name): &&(usize, String)| path.strip_prefix(&**name).is_some_and(|rest| rest.starts_with('.'));
+        let Some((index, name)) = names.iter().filter(begins).max_by_key(|(_, name)| name.len()) else {
+            let list = names.iter().map(|(_, name)| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+            return Err(match names.is_empty() {
+                true => {
+                    wrong("the scene has none that a setting could change".into(), "add one to the scene file".into())
+                }
+                false => wrong(
+                    format!("\"{path}\" does not begin with the name of one of them and a point"),
+                    format!("write such as `{section}.{}.KEY=VALUE`; the names are {list}", names[0].1),
+                ),
+            });
+        };
+        let key = &path[name.len() + 1..];
+        let below = key.split_once('.').filter(|(table, _)| section == SHELL && OF_A_SHELL.contains(table));
+        let Some((table, below)) = below else { return Ok((Target::Table(*index), key)) };
+        if self.is_array(table) {
+            return Err(wrong(
+                format!("a setting cannot name one of several tables of [[shell.{table}]], which have no names"),
+                "change it in the scene file".into(),
+            ));
+        }
+        let shell = names.iter().position(|(at, _)| at == index).unwrap_or_default();
+        Ok((self.below_shell(shell, *index, table), below))
+    }
+
+    /// The table below a shell, with what it has of the one for all shells where it has none of its own.
+    fn below_shell(&mut self, shell: usize, at: usize, name: &str) -> Target {
+        let own = &self.of_shells[shell];
+        if let Some(index) = own.iter().position(|table| table.name == name) {
+            return Target::BelowShell(shell, index);
+        }
+        let title = self.tables[at].title();
+        let is_taken = |table: &&Written<'t>| table.name == name || (name == "material" && table.name == "ply");
+        let shared: Vec<Written<'t>> = self.tables.iter().filter(is_taken).cloned().collect();
+        let added = match shared.iter().any(|table| table.name == name) {
+            true => shared,
+            false => {
+                let place = self.tables[at].place.clone();
+                let (name, below) = (name.to_owned(), Some(title.clone()));
+                vec![Written { name, number: None, below, place, entries: Vec::new(), own_line: false }]
+            }
+        };
+        let own = &mut self.of_shells[shell];
+        own.extend(added.into_iter().map(|table| Written { below: Some(title.clone()), own_line: false, ..table }));
+        Target::BelowShell(shell, own.iter().position(|table| table.name == name).unwrap_or_default())
+    }
+}
+
+/// A table that a setting changes.
+enum Target {
+    /// One of [`Document::tables`].
+    Table(usize),
+    /// One of those below a shell.
+    BelowShell(usize, usize),
 }
 
 /// A key and its value in the file.

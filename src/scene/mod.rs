@@ -15,6 +15,7 @@
 //! | `read`, `regions` | one entry to one value, within the limits of its key |
 //! | `table`, `tables` | one table, and all of them, with every default filled in |
 //! | `shells`, `connections` | the shells of a structure, and what connects them |
+//! | `imperfections`, `offset_grid` | where their surfaces differ from the perfect ones |
 //! | `geometries`, `nurbs`, `profiles`, `materials`, `supports`, `actions`, `histories`, `probes` | tables to data, and what must hold between their keys |
 //! | `sections` | springs and masses on rigid sections |
 //! | `meshes` | the mesh that a run starts with, and how it is refined |
@@ -43,6 +44,7 @@ mod geometries;
 mod help;
 mod histories;
 mod identity;
+mod imperfections;
 mod key_table;
 mod keys;
 mod materials;
@@ -54,6 +56,7 @@ mod nearness;
 #[cfg(test)]
 mod new_key;
 mod nurbs;
+mod offset_grid;
 mod probes;
 mod problem;
 mod profiles;
@@ -76,11 +79,11 @@ mod write;
 pub use check::{parse, parse_with_settings};
 pub use data::{
     Action, ActionKind, Adapt, ArcLength, ArcLengthWord, Axis, Bond, Component, Edge, EndRotation, Expectation,
-    ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Indicator, Joint, JointKind, LengthLimit, Load,
-    LoadSteps, LoadedArea, Material, MeshSpec, Motion, NumbersIn, NurbsPatch, OrthotropicLaw, Output,
-    ParametricDirection, Ply, PointMass, Pose, Probe, ProbeKind, ProfilePiece, Quadrature, Reaction, Region, Scene,
-    Seam, SectionTurns, Sense, Shell, ShellEdge, Solver, Splitting, Spring, Stage, Strengths, Support,
-    SurfaceDirection, Symmetry, SyncPolicy,
+    ExpectedOutcome, ForceVector, FreeWord, Geometry, History, Hold, Imperfection, ImperfectionKind, Indicator, Joint,
+    JointKind, LengthLimit, Load, LoadSteps, LoadedArea, Material, MeshSpec, Motion, NumbersIn, NurbsPatch, OffsetGrid,
+    OrthotropicLaw, Output, ParametricDirection, Ply, PointMass, Pose, Probe, ProbeKind, ProfilePiece, Quadrature,
+    Reaction, Region, Scene, Seam, SectionTurns, Sense, Shell, ShellEdge, Solver, Splitting, Spring, Stage, Strengths,
+    Support, SurfaceDirection, Symmetry, SyncPolicy,
 };
 pub use difference::Difference;
 pub(crate) use difference::shown_values;

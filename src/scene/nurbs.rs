@@ -61,6 +61,12 @@ pub(super) fn nurbs(table: &Table, folder: &std::path::Path) -> Checked<NurbsPat
 
 /// Reads a surface from a file of its own; why it cannot be read otherwise.
 fn read(path: &std::path::Path) -> Result<NurbsFile, String> {
+    let text = read_text(path)?;
+    serde_json::from_str(&text).map_err(|error| format!("{} cannot be read: {error}", path.display()))
+}
+
+/// Reads a file that a scene names; why it cannot be read otherwise.
+pub(super) fn read_text(path: &std::path::Path) -> Result<String, String> {
     let wrong = |error: String| format!("{} cannot be read: {error}", path.display());
     match std::fs::metadata(path) {
         // A device or a pipe may never end.
@@ -72,9 +78,8 @@ fn read(path: &std::path::Path) -> Result<NurbsFile, String> {
         _ => {}
     }
     let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-    // Some programs put a byte-order mark in front, which JSON does not know.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    serde_json::from_str(text).map_err(|error| wrong(error.to_string()))
+    // Some programs put a byte-order mark in front.
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
 /// Why a patch is no tensor-product surface.

@@ -66,6 +66,7 @@ impl Scene {
             ("mass", _) => json!(self.masses),
             ("joint", _) => json!(self.joints),
             ("bond", _) => json!(self.bonds),
+            ("imperfection", _) => json!(self.imperfections),
             _ => Value::Null,
         };
         let items = items.as_array().into_iter().flatten().filter_map(Value::as_object);
@@ -87,11 +88,16 @@ impl Scene {
             .flat_map(|(key, value)| match (section.name, &**key) {
                 ("joint", "edges") => vec![("edges".to_owned(), list(value, &edge))],
                 ("bond", "shells") => vec![("shells".to_owned(), list(value, &name))],
-                ("support" | "action" | "probe", "shell" | "also") => vec![],
+                ("support" | "action" | "probe" | "imperfection", "shell" | "also") => vec![],
                 _ => as_written(key, value),
             })
             .collect();
-        if self.shells.is_empty() || !["support", "action", "probe"].contains(&section.name) {
+        let is_on_a_shell = match section.name {
+            "support" | "action" | "probe" => true,
+            "imperfection" => values.contains_key("offsets_mm"),
+            _ => false,
+        };
+        if self.shells.is_empty() || !is_on_a_shell {
             return values;
         }
         // The first shell is not written in the data of a scene, and nor is it where an action is on all of them.

@@ -8,6 +8,7 @@
 //! | `knots` | whether knots make a spline space |
 //! | `arc` | exact curves |
 //! | `insertion` | knot insertion |
+//! | `interpolation` | splines through given values |
 //! | `coarsening` | best approximation on fewer knots |
 //! | `grid` | numbering of rows and columns |
 //! | `patch`, `mesh` | a spline space with its geometry; the surfaces of a structure |
@@ -18,6 +19,7 @@ mod basis;
 mod coarsening;
 mod grid;
 mod insertion;
+mod interpolation;
 mod knots;
 mod mesh;
 mod patch;
@@ -28,6 +30,7 @@ pub use basis::{DEGREES, Spans, basis_derivatives, basis_derivatives_len, find_s
 pub use coarsening::Coarsening;
 pub use grid::Grid;
 pub use insertion::{insert_knots, insert_knots_into_net};
+pub use interpolation::{Interpolation, MeasuredSurface};
 pub use knots::{KnotFlaw, check_knots, control_count, without_knots};
 pub use mesh::{Elements, KnotLists, Mesh, knot_counts};
 pub use patch::{Patch, cartesian};

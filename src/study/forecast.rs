@@ -110,7 +110,8 @@ impl Forecast {
             load_steps: scene.continuation.is_none().then(|| scene.load.target() / scene.load.longest_increment()),
             finest,
             symmetric: match &start.mesh.patches[..] {
-                [patch] => symmetric_lines(scene, patch),
+                // What is imperfect is no mirror image of itself.
+                [patch] if scene.imperfections.is_empty() => symmetric_lines(scene, patch),
                 _ => [false; 2],
             },
             step: is_tried.then(|| step_cost(scene, start)),

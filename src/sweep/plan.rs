@@ -10,7 +10,7 @@ use super::sampling::points;
 use super::sweep_file::{Combine, SweepFile};
 use crate::digest::Feed;
 use crate::record::NUMERICS_REVISION;
-use crate::scene::{Geometry, Scene, parse, parse_with_settings};
+use crate::scene::{Scene, parse, parse_with_settings};
 use crate::study::{is_comparable, run_name, short_name};
 
 /// Columns of what is wrong with a scene: it goes on record, and is read on whatever terminal.
@@ -194,10 +194,10 @@ pub fn planned_from(sweep_text: &str, scene_text: &str, scene_file: &str) -> Str
     feed.finish().to_hex().to_string()
 }
 
-/// A scene needs no other file: a surface from a file of its own goes into the text.
+/// A scene needs no other file: what is in files of their own goes into the text.
 fn whole(scene_text: &str, name: &str) -> String {
     match parse(scene_text, name) {
-        Ok(scene) if matches!(scene.geometry, Geometry::Nurbs(_)) => scene.to_toml(),
+        Ok(scene) if scene.may_read_files() => scene.to_toml(),
         _ => scene_text.to_owned(),
     }
 }

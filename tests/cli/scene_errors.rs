@@ -786,3 +786,191 @@ fn general_supports_actions_and_probes() {
         ]),
     );
 }
+
+/// A plate with imperfections.
+const IMPERFECT: &str = r#"[geometry]
+kind = "plate"
+length_mm = 100.0
+width_mm = 40.0
+
+[material]
+kind = "isotropic"
+youngs_modulus_mpa = 70000.0
+poissons_ratio = 0.3
+thickness_mm = 0.5
+
+[[imperfection]]
+name = "bow"
+kind = "modes"
+modes = [1]
+amplitude = 0.5
+
+[[imperfection]]
+name = "shape"
+kind = "random-field"
+seed = 3
+correlation_mm = 20.0
+deviation = 0.2
+
+[[imperfection]]
+name = "measured"
+kind = "grid"
+u = [0.0, 0.5, 1.0]
+v = [0.0, 1.0]
+offsets_mm = [0.0, 0.0, 0.1, 0.1, 0.0, 0.0]
+
+[load]
+kind = "steps"
+factor = 1.0
+increment = 0.1
+
+[[support]]
+name = "root"
+on = "u-start"
+kind = "clamped"
+
+[[action]]
+name = "tip.load"
+on = "u-end"
+kind = "line-force"
+force_n_per_mm = [-1.0, 0.0, 0.0]
+"#;
+
+fn imperfection_errors(slips: &[(&str, &str)]) -> String {
+    let show = |(right, wrong): &(&str, &str)| {
+        assert_eq!(IMPERFECT.matches(right).count(), 1, "`{right}` does not name one place");
+        match parse(&IMPERFECT.replace(right, wrong), "scene.toml") {
+            Ok(_) => panic!("`{wrong}` is taken"),
+            Err(error) => report(&error),
+        }
+    };
+    slips.iter().map(show).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn imperfections() {
+    let grid = "u = [0.0, 0.5, 1.0]";
+    pin(
+        "imperfections",
+        &imperfection_errors(&[
+            ("modes = [1]", "modes = [0]"),
+            ("modes = [1]", "modes = [1.5]"),
+            ("modes = [1]", "modes = [1, 2, 1]\nseed = 1"),
+            ("modes = [1]", "modes = []"),
+            ("modes = [1]", "modes = [1, 2]"),
+            ("modes = [1]", "modes = [1]\nseed = 1"),
+            ("modes = [1]\namplitude = 0.5", "modes = [1, 2]\nseed = 4\namplitude = -0.5"),
+            ("amplitude = 0.5", "amplitude = 0"),
+            ("amplitude = 0.5", "amplitude_mm = 0.5"),
+            ("seed = 3\n", ""),
+            ("seed = 3", "seed = -1"),
+            ("deviation = 0.2", "amplitude = 0.2"),
+            ("name = \"shape\"", "name = \"bow\""),
+            (grid, "shell = \"web\"\nu = [0.0, 0.5, 1.0]"),
+            (grid, "u = [0.0, 0.5, 0.9]"),
+            (grid, "u = [0.0, 0.5, 0.5, 1.0]"),
+            (grid, "u = [0.0, 1.0]"),
+            (grid, "u = [0.0]"),
+            (
+                "kind = \"clamped\"",
+                "kind = \"clamped\"\n[[support]]\nname = \"middle\"\non = \"v=0.5\"\nkind = \"symmetric\"",
+            ),
+            (grid, "file = \"nowhere.csv\"\nu = [0.0, 0.5, 1.0]"),
+        ]),
+    );
+}
+
+/// Slips in a measured grid, whose file is in the folder of the scene.
+#[test]
+fn measured_grids() {
+    let folder = tempfile::tempdir().unwrap();
+    let right = "u,v,offset_mm\n0,0,0\n0,0.5,0\n0,1,0\n0.5,0,0.1\n0.5,0.5,0.1\n0.5,1,0.1\n1,0,0\n1,0.5,0\n1,1,0\n";
+    let scene = folder.path().join("scene.toml").to_str().unwrap().to_owned();
+    let text = IMPERFECT.replace(
+        "u = [0.0, 0.5, 1.0]\nv = [0.0, 1.0]\noffsets_mm = [0.0, 0.0, 0.1, 0.1, 0.0, 0.0]\n",
+        "file = \"offsets.csv\"\n",
+    );
+    let read = |csv: &str| {
+        std::fs::write(folder.path().join("offsets.csv"), csv).unwrap();
+        parse(&text, &scene)
+    };
+    let taken = read(&format!("\u{feff}{}\n\n", right.replace('\n', "\r\n"))).unwrap();
+    // The scene that a log keeps has the grid in it.
+    assert_eq!(parse(&taken.to_toml(), "elsewhere.toml").unwrap(), taken);
+    assert!(taken.may_read_files());
+    let errors: Vec<String> = [
+        ("u,v,offset_mm", "u,v,w_mm"),
+        ("0.5,0.5,0.1", "0.5,0.5"),
+        ("0.5,0.5,0.1", "0.5,0.5,nan"),
+        ("0.5,0.5,0.1", "0.5,0.5,none"),
+        ("0.5,0.5,0.1\n", ""),
+        ("0.5,1,0.1\n", ""),
+        ("1,1,0\n", ""),
+        ("0.5,0.5,0.1", "0.5,0.6,0.1"),
+        ("0,0.5,0\n0,1,0", "0,1,0\n0,0.5,0"),
+        ("1,0,0\n", "0.4,0,0\n"),
+        ("1,1,0\n", "1,1,0\n1,1,0\n"),
+        ("0.5,0.5,0.1", "0.5,1.5,0.1"),
+        ("1,0,0\n1,0.5,0\n1,1,0\n", ""),
+        ("0.5,0,0.1\n0.5,0.5,0.1\n0.5,1,0.1\n1,0,0\n1,0.5,0\n1,1,0\n", ""),
+    ]
+    .into_iter()
+    .map(|(right_part, wrong)| {
+        assert_eq!(right.matches(right_part).count(), 1, "{right_part}");
+        let error = read(&right.replace(right_part, wrong)).map(|_| wrong.to_owned()).unwrap_err();
+        error.plain().replace(folder.path().to_str().unwrap(), "FOLDER")
+    })
+    .collect();
+    std::fs::remove_file(folder.path().join("offsets.csv")).unwrap();
+    pin("measured_grids", &errors.join("\n\n"));
+    let missing = parse(&text, &scene).unwrap_err().plain();
+    assert!(missing.contains("offsets.csv cannot be read"), "{missing}");
+}
+
+/// Settings name one of several tables, and tables of a shell.
+#[test]
+fn settings_of_named_tables() {
+    let frame = include_str!("../../pipelines/structures/right-angle-frame.toml");
+    let set = |text: &str, settings: &[&str]| {
+        parse_with_settings(text, "scene.toml", settings).map_err(|error| report(&error))
+    };
+    let plain = set(IMPERFECT, &[]).unwrap();
+    let by_file = |from: &str, to: &str| parse(&IMPERFECT.replace(from, to), "scene.toml").unwrap();
+    assert_eq!(set(IMPERFECT, &["imperfection.shape.seed=9"]).unwrap(), by_file("seed = 3", "seed = 9"));
+    assert_eq!(
+        set(IMPERFECT, &["action.tip.load.force_n_per_mm=[0.0, 0.0, 2.0]"]).unwrap(),
+        by_file("[-1.0, 0.0, 0.0]", "[0.0, 0.0, 2.0]")
+    );
+    assert_eq!(set(IMPERFECT, &["support.root.kind=hinged"]).unwrap(), by_file("\"clamped\"", "\"hinged\""));
+    assert_eq!(set(IMPERFECT, &["imperfection.shape.seed=9", "imperfection.shape.seed=3"]).unwrap(), plain);
+    let unnamed = IMPERFECT.replace("name = \"shape\"\n", "");
+    let second = set(&unnamed, &["imperfection.imperfection 2.seed=9"]).unwrap();
+    assert_eq!(second, parse(&unnamed.replace("seed = 3", "seed = 9"), "scene.toml").unwrap());
+    // One shell alone: what it shared with the others it has for itself then.
+    let own = set(
+        frame,
+        &["shell.arm.mesh.elements=[8, 4]", "shell.arm.material.thickness_mm=0.5", "shell.column.geometry.width_mm=10"],
+    )
+    .unwrap();
+    let of_file = parse(frame, "scene.toml").unwrap();
+    assert_eq!(own.shells[0].mesh, of_file.shells[0].mesh);
+    assert_eq!((own.shells[1].mesh.elements, own.shells[1].mesh.degree), ([8, 4], of_file.shells[1].mesh.degree));
+    assert_eq!(own.shells[0].material.thickness_mm(), of_file.shells[0].material.thickness_mm());
+    assert_eq!(own.shells[1].material.thickness_mm(), 0.5);
+    assert_ne!(own.shells[0].geometry, of_file.shells[0].geometry);
+    assert_eq!(own.shells[1].geometry, of_file.shells[1].geometry);
+    let wrong = [
+        (IMPERFECT, "imperfection.seed=3"),
+        (IMPERFECT, "imperfection.shap.seed=3"),
+        (IMPERFECT, "imperfection.shape=3"),
+        (IMPERFECT, "imperfection.shape.sed=3"),
+        (IMPERFECT, "imperfection.shape.seed=-3"),
+        (IMPERFECT, "joint.corner.kind=hinge"),
+        (frame, "shell.arm.mesh.elements=many"),
+        (frame, "shell.arm.mesh.element=3"),
+        (frame, "shell.arm.ply.angle_deg=3"),
+        (frame, "shell.leg.mesh.elements=3"),
+    ];
+    let errors: Vec<String> = wrong.into_iter().map(|(text, setting)| set(text, &[setting]).unwrap_err()).collect();
+    pin("settings_of_named_tables", &errors.join("\n"));
+}

@@ -47,6 +47,7 @@ pub fn scene() -> Scene {
         bonds: vec![],
         springs: Vec::new(),
         masses: Vec::new(),
+        imperfections: Vec::new(),
         symmetry: Symmetry::Quarter,
         load: Load::EndRotation(EndRotation {
             sense: Sense::Opposite,

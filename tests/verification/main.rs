@@ -17,6 +17,7 @@ mod forecasts;
 mod foundation;
 mod free_strain;
 mod house;
+mod imperfections;
 mod imports;
 mod laminates;
 mod links;

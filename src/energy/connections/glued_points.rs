@@ -1,5 +1,7 @@
 //! Points of the area over which two shells are glued: where their faces lie together.
 
+use std::borrow::Cow;
+
 use super::coupled::CoupledPoint;
 use super::glue::Glue;
 use super::layer::{Layer, Side};
@@ -9,20 +11,26 @@ use crate::shell::{cross, dot, norm};
 use crate::spline::{Patch, Spans, mid_surface_point};
 use crate::units::place;
 
-/// Finds the points at which two shells are glued.
+/// Finds the points at which two shells are glued, where their perfect surfaces lie together; the layer keeps the gap that the shells
+/// have.
 ///
 /// # Errors
 /// Where their faces do not lie together anywhere, or the shells cross each other.
-pub(super) fn glued_points(bond: &Bond, members: &[Member]) -> Result<Vec<CoupledPoint<Glue>>, ModelError> {
+pub(super) fn glued_points(
+    bond: &Bond,
+    members: &[Member],
+    perfect: &[Member],
+) -> Result<Vec<CoupledPoint<Glue>>, ModelError> {
     let sides = bond.shells.map(|shell| {
         let Member { scene, patch, points, .. } = &members[shell];
-        Side { patch, first: points.start, material: &scene.material }
+        Side { patch, perfect: Cow::Borrowed(perfect[shell].patch), first: points.start, material: &scene.material }
     });
+    let searched = bond.shells.map(|shell| perfect[shell].patch);
     let layer = Layer::new(bond, sides);
     let (mut points, mut nearest) = (Vec::new(), (f64::INFINITY, [0.0; 3]));
     let mut guess = None;
-    for (at, weight) in points_of(sides[0].patch, sides[1].patch) {
-        let here = mid_surface_point(sides[0].patch, &[], at);
+    for (at, weight) in points_of(searched[0], searched[1]) {
+        let here = mid_surface_point(searched[0], &[], at);
         let found = layer.other.nearest(here.position, guess);
         guess = Some(found);
         let Some(faces) = layer.faces([at, found]) else { continue };

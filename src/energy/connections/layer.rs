@@ -1,5 +1,7 @@
 //! The layer of glue of a bond: where the faces of its two shells lie together, and how stiff it is there.
 
+use std::borrow::Cow;
+
 use super::coupled::{CoupledPoint, SurfaceSide};
 use super::glue::Glue;
 use crate::model::moduli_mpa;
@@ -19,9 +21,11 @@ const STARTS: usize = 2;
 const STEPS: usize = 30;
 
 /// One of the shells that a bond glues.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Side<'a> {
     pub patch: &'a Patch,
+    /// Its perfect surface, on which is seen what is glued: an imperfection parts no faces, and brings none together.
+    pub perfect: Cow<'a, Patch>,
     /// Number of its first control point.
     pub first: usize,
     pub material: &'a Material,
@@ -44,7 +48,6 @@ pub(super) struct Layer<'a> {
 #[derive(Debug)]
 pub(super) struct Faces {
     at: [[f64; 2]; 2],
-    positions: [[f64; 3]; 2],
     /// The sides on which the faces lie, as seen along the normals.
     signs: [f64; 2],
     /// Distance of the faces, mm; below 0 where the shells cross each other.
@@ -53,27 +56,28 @@ pub(super) struct Faces {
 
 impl<'a> Layer<'a> {
     pub fn new(bond: &Bond, sides: [Side<'a>; 2]) -> Self {
-        let thickness = sides.map(|side| side.material.thickness_mm());
+        let thickness = sides.each_ref().map(|side| side.material.thickness_mm());
         let mean = 0.5 * (thickness[0] + thickness[1]);
-        let [one, other] = sides.map(|side| moduli_mpa(side.material)[1]);
+        let [one, other] = sides.each_ref().map(|side| moduli_mpa(side.material)[1]);
+        let searched = Searched::new(sides[1].perfect.clone());
         Self {
             sides,
             thickness,
             tolerance: bond.gap_mm.unwrap_or(TOGETHER * mean),
             stiffness: bond.stiffness * one.max(other) / mean,
-            other: Searched::new(sides[1].patch),
+            other: searched,
         }
     }
 
-    /// Position of a point of the undeformed first (0) or second (1) shell, mm.
+    /// Position of a point of the perfect first (0) or second (1) shell, mm.
     pub fn position(&self, side: usize, at: [f64; 2]) -> [f64; 3] {
-        mid_surface_point(self.sides[side].patch, &[], at).position
+        mid_surface_point(&self.sides[side].perfect, &[], at).position
     }
 
     /// Looks at the faces at parameters of both shells; `None` where they do not face each other.
     pub fn faces(&self, at: [[f64; 2]; 2]) -> Option<Faces> {
         let mean = 0.5 * (self.thickness[0] + self.thickness[1]);
-        let points = [0, 1].map(|k| mid_surface_point(self.sides[k].patch, &[], at[k]));
+        let points = [0, 1].map(|k| mid_surface_point(&self.sides[k].perfect, &[], at[k]));
         let normals = points.each_ref().map(|point| {
             let normal = cross(point.derivatives[0], point.derivatives[1]);
             scaled(1.0 / norm(normal), normal)
@@ -87,11 +91,12 @@ impl<'a> Layer<'a> {
             return None;
         }
         let sign = along.signum();
-        Some(Faces { at, positions, signs: [sign, -sign * aligned.signum()], gap: along.abs() - mean })
+        Some(Faces { at, signs: [sign, -sign * aligned.signum()], gap: along.abs() - mean })
     }
 
     /// The layer between two faces, over an area in mm².
-    pub fn glued(&self, Faces { at, positions, signs, .. }: &Faces, area: f64) -> CoupledPoint<Glue> {
+    pub fn glued(&self, Faces { at, signs, .. }: &Faces, area: f64) -> CoupledPoint<Glue> {
+        let positions = [0, 1].map(|k| mid_surface_point(self.sides[k].patch, &[], at[k]).position);
         let surfaces = [0, 1].map(|k| SurfaceSide::new(self.sides[k].patch, self.sides[k].first, at[k]));
         let undeformed = surfaces.each_ref().map(|side| side.undeformed);
         let to_faces = [0, 1].map(|k| 0.5 * signs[k] * self.thickness[k]);
@@ -115,25 +120,26 @@ impl<'a> Layer<'a> {
 /// A patch on which nearest points are searched.
 #[derive(Debug)]
 pub(super) struct Searched<'a> {
-    patch: &'a Patch,
+    patch: Cow<'a, Patch>,
     samples: Vec<([f64; 2], [f64; 3])>,
 }
 
 impl<'a> Searched<'a> {
-    pub fn new(patch: &'a Patch) -> Self {
+    pub fn new(patch: Cow<'a, Patch>) -> Self {
         let [us, vs] = [0, 1].map(|direction| {
             let spans = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
             let within = |[from, to]: [f64; 2]| (0..STARTS).map(move |k| from + (to - from) * k as f64 / STARTS as f64);
             spans.into_iter().flat_map(within).chain([1.0]).collect::<Vec<f64>>()
         });
         let all = us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v]));
-        Self { patch, samples: all.map(|at| (at, mid_surface_point(patch, &[], at).position)).collect() }
+        let samples = all.map(|at| (at, mid_surface_point(&patch, &[], at).position)).collect();
+        Self { patch, samples }
     }
 
     /// Finds the parameters of the point nearest to another one, from a guess that is likely near.
     pub fn nearest(&self, point: [f64; 3], guess: Option<[f64; 2]>) -> [f64; 2] {
         let away = |at: [f64; 2]| {
-            let apart = sub(mid_surface_point(self.patch, &[], at).position, point);
+            let apart = sub(mid_surface_point(&self.patch, &[], at).position, point);
             dot(apart, apart)
         };
         let near = |(_, position): &([f64; 2], [f64; 3])| {
@@ -152,7 +158,7 @@ impl<'a> Searched<'a> {
     /// Newton's method without the curvature, within the parameters.
     fn descend(&self, point: [f64; 3], mut at: [f64; 2]) -> [f64; 2] {
         for _ in 0..STEPS {
-            let surface = mid_surface_point(self.patch, &[], at);
+            let surface = mid_surface_point(&self.patch, &[], at);
             let [a1, a2, ..] = surface.derivatives;
             let gap = sub(point, surface.position);
             let (g11, g12, g22) = (dot(a1, a1), dot(a1, a2), dot(a2, a2));

@@ -25,7 +25,7 @@ use self::coupled::Coupling;
 use self::glue::Glue;
 use self::kept_angle::KeptAngle;
 use crate::energy::{At, Tangent, Term};
-use crate::model::{ModelError, edge_pairs, members};
+use crate::model::{ModelError, edge_pairs, members, perfect_on};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
@@ -70,8 +70,14 @@ impl Connections {
                 list.push(Connection { name: pair.joint.name.clone(), energy });
             }
         }
+        if scene.bonds.is_empty() {
+            return Ok(Self { list });
+        }
+        // What is glued is seen on the perfect shells: an imperfection parts no faces, and brings none together.
+        let perfect = perfect_on(scene, mesh)?;
+        let perfect_members = crate::model::members(scene, &perfect);
         for bond in &scene.bonds {
-            let points = glued_points::glued_points(bond, &members)?;
+            let points = glued_points::glued_points(bond, &members, &perfect_members)?;
             let energy = Energy::Bond(Arc::new(Coupling::new(points)));
             list.push(Connection { name: bond.name.clone(), energy });
         }

@@ -3,8 +3,11 @@
 //! A point of the first shell has the layer between it and the nearest point of the second, as the term has at its quadrature points.
 //! A point of the second one has that of the nearest point of the first.
 
+use std::borrow::Cow;
+
 use super::glue::Traction;
 use super::layer::{Layer, Searched, Side};
+use crate::model::perfect_on;
 use crate::scene::{Bond, Scene};
 use crate::spline::Mesh;
 
@@ -42,13 +45,20 @@ impl<'a> GluedLayers<'a> {
     /// Finds the layers of a scene on a mesh; none where it has no bond.
     pub fn new(scene: &'a Scene, mesh: &'a Mesh) -> Self {
         let ranges = mesh.ranges();
+        // A mesh of a run has a perfect one, or the run would not have begun.
+        let perfect = perfect_on(scene, mesh).unwrap_or(Cow::Borrowed(mesh));
         let of_bond = |bond: &'a Bond| {
             let sides = bond.shells.map(|shell| Side {
                 patch: &mesh.patches[shell],
+                perfect: match &perfect {
+                    Cow::Borrowed(_) => Cow::Borrowed(&mesh.patches[shell]),
+                    Cow::Owned(perfect) => Cow::Owned(perfect.patches[shell].clone()),
+                },
                 first: ranges[shell].start,
                 material: &scene.shells[shell].material,
             });
-            GluedLayer { shells: bond.shells, layer: Layer::new(bond, sides), one: Searched::new(sides[0].patch) }
+            let one = Searched::new(sides[0].perfect.clone());
+            GluedLayer { shells: bond.shells, layer: Layer::new(bond, sides), one }
         };
         Self { list: scene.bonds.iter().map(of_bond).collect() }
     }

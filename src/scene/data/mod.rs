@@ -12,11 +12,13 @@
 //! | `output` | what is written besides the states |
 //! | `structure`, `connection` | several shells, and what connects them |
 //! | `section` | what hangs on rigid sections |
+//! | `imperfection` | where the surfaces differ from the perfect ones |
 
 mod boundary;
 mod connection;
 mod expectation;
 mod geometry;
+mod imperfection;
 mod material;
 mod mesh;
 mod output;
@@ -32,6 +34,7 @@ pub use boundary::{
 pub use connection::{Bond, Joint, JointKind};
 pub use expectation::{Expectation, ExpectedOutcome};
 pub use geometry::{Geometry, NurbsPatch, ProfilePiece, Seam};
+pub use imperfection::{Imperfection, ImperfectionKind, OffsetGrid};
 pub use material::{Material, OrthotropicLaw, Ply, Strengths};
 pub use mesh::{MeshSpec, Quadrature};
 pub use output::{NumbersIn, Output, SyncPolicy};
@@ -65,6 +68,9 @@ pub struct Scene {
     /// What joins shells over areas.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bonds: Vec<Bond>,
+    /// Where the undeformed surfaces differ from the perfect ones.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub imperfections: Vec<Imperfection>,
     /// Which part of the shell is modelled.
     pub symmetry: Symmetry,
     /// What drives the run: how far, and in which steps.
@@ -116,7 +122,24 @@ impl Scene {
         self.shells.get(shell).map(|shell| &*shell.name)
     }
 
-    /// The scene of one shell alone, with the supports, actions and probes that are its own, and the actions on all shells.
+    /// The scene without its imperfections.
+    pub fn perfect(&self) -> Cow<'_, Scene> {
+        match self.imperfections.is_empty() {
+            true => Cow::Borrowed(self),
+            false => Cow::Owned(Scene { imperfections: Vec::new(), ..self.clone() }),
+        }
+    }
+
+    /// Whether parts of the scene may be in files of their own: written as TOML it is whole.
+    pub fn may_read_files(&self) -> bool {
+        let is_nurbs = |geometry: &Geometry| matches!(geometry, Geometry::Nurbs(_));
+        let is_grid = |imperfection: &Imperfection| matches!(imperfection.kind, ImperfectionKind::Grid { .. });
+        is_nurbs(&self.geometry)
+            || self.shells.iter().any(|shell| is_nurbs(&shell.geometry))
+            || self.imperfections.iter().any(is_grid)
+    }
+
+    /// The scene of one perfect shell alone, with the supports, actions and probes that are its own, and the actions on all shells.
     /// A scene of one shell is returned as it is.
     pub fn of_shell(&self, shell: usize) -> Cow<'_, Scene> {
         let Some(own) = self.shells.get(shell) else { return Cow::Borrowed(self) };
@@ -136,6 +159,7 @@ impl Scene {
             bonds: Vec::new(),
             springs: Vec::new(),
             masses: Vec::new(),
+            imperfections: Vec::new(),
             ..self.clone()
         })
     }

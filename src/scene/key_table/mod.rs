@@ -7,11 +7,13 @@
 //! | `geometry`, `material` | what the shell is |
 //! | `shells` | several shells, and what connects them |
 //! | `sections` | springs and masses on rigid sections |
+//! | `imperfections` | where the surfaces differ from the perfect ones |
 //! | `structure` | what holds it, what acts on it, what is measured |
 //! | `mesh`, `run` | how it is made discrete and solved |
 //! | `output` | what is written of it, and how it is to end |
 
 mod geometry;
+mod imperfections;
 mod material;
 mod mesh;
 mod output;
@@ -37,6 +39,12 @@ pub static SECTIONS: &[Section] = &[
     ),
     many("joint", "What joins two shells of a structure along an edge of each.", shells::JOINT),
     many("bond", "What glues two shells of a structure together over an area.", shells::BOND),
+    many(
+        "imperfection",
+        "Where the undeformed surfaces differ from the perfect ones that the scene describes; several add up. What else the scene \
+         says is of the perfect ones.",
+        imperfections::IMPERFECTION,
+    ),
     one("symmetry", false, "Which part of the shell is modelled.", mesh::SYMMETRY),
     one("load", true, "What moves the shell.", run::LOAD),
     many("support", "What holds the shell, where [load] is of kind \"steps\"; at least one.", structure::SUPPORT),
