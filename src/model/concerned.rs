@@ -20,7 +20,7 @@ impl ModelError {
             Self::NotALine { action } | Self::Overhang { action, .. } | Self::LoadNotMirrored { action, .. } => {
                 Some(("action", Some(action)))
             }
-            Self::EdgesApart { joint, .. } => Some(("joint", Some(joint))),
+            Self::EdgesApart { joint, .. } | Self::NotSmooth { joint, .. } => Some(("joint", Some(joint))),
             Self::NothingGlued { bond, .. } | Self::ShellsCross { bond, .. } => Some(("bond", Some(bond))),
             Self::Imperfection(error) => Some(("imperfection", error.imperfection())),
             Self::NotASection { probe } => Some(("probe", Some(probe))),

@@ -8,13 +8,15 @@
 use crate::model::ModelError;
 use crate::model::edge::{centroid_and_length, edge_parameters, on_edge, rows_of, side};
 use crate::model::member::{Member, members};
-use crate::scene::{Joint, Scene, ShellEdge};
-use crate::shell::{dot, norm, scaled, sub};
+use crate::scene::{Joint, JointKind, Scene, ShellEdge};
+use crate::shell::{cross, dot, norm, scaled, sub};
 use crate::spline::{KnotLists, Mesh, Patch, Spans, SurfacePoint};
 use crate::units::place;
 
 /// Distance of edges that meet, relative to the smaller thickness.
 const MEETING: f64 = 1e-2;
+/// Angle between surfaces, in degrees, up to which a joint may be smooth: imperfections and coarse curves make less.
+const SMOOTH_DEG: f64 = 5.0;
 /// Distance of points that are one, and difference of weights, relative to the length of an edge.
 const SAME: f64 = 1e-9;
 /// Difference of knots that are one.
@@ -165,6 +167,9 @@ fn edge_pair<'a>(joint: &'a Joint, members: &'a [Member<'a>]) -> Result<EdgePair
     let thickness = |edge: &PairedEdge| members[edge.at.shell].scene.material.thickness_mm();
     let tolerance = MEETING * thickness(&edges[0]).min(thickness(&edges[1]));
     check_meeting(joint, &edges, tolerance)?;
+    if joint.kind == JointKind::Smooth {
+        check_smooth(joint, &edges)?;
+    }
     let matching = [false, true].into_iter().find(|reversed| do_match(&edges, *reversed, SAME * lengths[0]));
     let conforms = matching.is_some_and(|reversed| do_conform(&edges, reversed, SAME * lengths[0]));
     Ok(EdgePair { joint, edges, matching, conforms })
@@ -184,6 +189,25 @@ fn check_meeting(joint: &Joint, edges: &[PairedEdge; 2], tolerance: f64) -> Resu
     let (distance, at) = apart.fold((0.0, [0.0; 3]), |worst, one| if one.0 > worst.0 { one } else { worst });
     match distance > tolerance {
         true => Err(ModelError::EdgesApart { joint: joint.name.clone(), distance, at: place(at), most: tolerance }),
+        false => Ok(()),
+    }
+}
+
+/// Refuses a smooth joint of surfaces that meet at an angle.
+fn check_smooth(joint: &Joint, edges: &[PairedEdge; 2]) -> Result<(), ModelError> {
+    let normal = |point: &SurfacePoint| {
+        let normal = cross(point.derivatives[0], point.derivatives[1]);
+        scaled(1.0 / norm(normal), normal)
+    };
+    let angles = samples(&edges[0]).into_iter().map(|at| {
+        let here = edges[0].point(at);
+        let there = edges[1].point(edges[1].nearest(here.position).0);
+        let turned = norm(cross(normal(&here), normal(&there)));
+        (turned.min(1.0).asin().to_degrees(), here.position)
+    });
+    let (angle_deg, at) = angles.fold((0.0, [0.0; 3]), |worst, one| if one.0 > worst.0 { one } else { worst });
+    match angle_deg > SMOOTH_DEG {
+        true => Err(ModelError::NotSmooth { joint: joint.name.clone(), angle_deg, at: place(at) }),
         false => Ok(()),
     }
 }

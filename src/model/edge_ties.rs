@@ -96,12 +96,16 @@ impl<'a> Lines<'a> {
             };
             // Inwards on one side is outwards on the other.
             let sign = if order.is_multiple_of(2) { 1.0 } else { -1.0 };
-            (0..4).all(|c| {
-                let (a, size) = sum(one, &factors[0], c);
-                let (b, other_size) = sum(other, &factors[1], c);
-                let scale = sign * ratio.powi(order as i32);
-                (a - scale * b).abs() <= CONTINUOUS * (size + scale.abs() * other_size)
-            })
+            let scale = sign * ratio.powi(order as i32);
+            let compared = |c: usize| {
+                let ((a, size), (b, other_size)) = (sum(one, &factors[0], c), sum(other, &factors[1], c));
+                ((a - scale * b).abs(), size + scale.abs() * other_size)
+            };
+            // A coordinate alone may be no more than rounding: in the plane y = 0 all of y is.
+            let places = [0, 1, 2].map(compared);
+            let size = places.iter().fold(0.0_f64, |most, (_, size)| most.max(*size));
+            let (difference, weights) = compared(3);
+            places.iter().all(|(difference, _)| *difference <= CONTINUOUS * size) && difference <= CONTINUOUS * weights
         })
     }
 }
@@ -206,12 +210,12 @@ fn speed_ratio(lines: &Lines) -> Option<f64> {
     (other > 0.0).then(|| one / other)
 }
 
-/// Whether a section holds the shells at the first and at the last line across a joint.
+/// Whether a section that turns the shells' normals holds them at the first and at the last line across a joint.
 fn held_ends(pair: &EdgePair, all: &[Support]) -> [bool; 2] {
     let mut held = [false; 2];
     for (k, edge) in pair.edges.iter().enumerate() {
         let reversed = k == 1 && pair.matching == Some(true);
-        let sections = all.iter().filter(|support| matches!(support.hold, Hold::Rigid { .. }));
+        let sections = all.iter().filter(|support| matches!(support.hold, Hold::Rigid { normals_turn: true, .. }));
         for on in sections.flat_map(Support::edges).filter(|on| on.shell == edge.at.shell) {
             let (direction, at_end) = side(on.edge);
             if direction == edge.running() {

@@ -266,6 +266,19 @@ pub enum ModelError {
         /// Name of the support.
         section: String,
     },
+    /// A joint is to be smooth where the surfaces meet at an angle.
+    #[error(
+        "joint \"{joint}\" is to be smooth, and its surfaces meet at an angle of {angle_deg:.1}° at {at}: write `kind = \"kept-angle\"`, or \
+         let the surfaces go on in each other's direction"
+    )]
+    NotSmooth {
+        /// Name of the joint.
+        joint: String,
+        /// Angle between the tangent planes, degrees.
+        angle_deg: f64,
+        /// Where, in words.
+        at: String,
+    },
     /// The edges of a joint do not meet.
     #[error(
         "joint \"{joint}\": its edges are {} mm apart at {at}, and edges that are at most {} mm apart are joined; move one of the \

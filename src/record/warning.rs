@@ -232,8 +232,8 @@ impl Warning {
                 )
             }
             Self::SoftConnection { connection, energy_share, .. } => format!(
-                "\"{connection}\" stores {} % of the energy, and a connection that holds stores less than {} %: write shorter elements \
-                 beside it, or a larger `stiffness`",
+                "\"{connection}\" stores {} % of the energy, and a connection that holds stores less than {} %: write more elements \
+                 on the side that has fewer, or numbers of elements that are multiples of each other",
                 significant(100.0 * energy_share, 2),
                 100.0 * SOFT
             ),

@@ -31,7 +31,7 @@ fn probe(report: &Report, name: &str) -> f64 {
     report.probes.iter().find(|probe| probe.name == name).unwrap_or_else(|| panic!("no probe {name}")).value
 }
 
-fn table(text: &str) -> Vec<Vec<f64>> {
+pub fn table(text: &str) -> Vec<Vec<f64>> {
     let numbers = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect();
     text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())).map(numbers).collect()
 }

@@ -70,7 +70,7 @@ pub(super) struct SurfaceSide {
     /// Control points, numbered as in the structure.
     pub controls: Vec<usize>,
     /// Functions of u, a₁ and a₂.
-    functions: [Vec<f64>; 3],
+    pub functions: [Vec<f64>; 3],
     /// No displacement, and a₁ and a₂ of the undeformed surface.
     pub undeformed: Local,
 }

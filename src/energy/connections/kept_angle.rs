@@ -1,24 +1,20 @@
-//! The energy that keeps the angle between two surfaces along an edge, and their displacements together where their control points
-//! are not shared (Herrema, Johnson, Proserpio, Wu, Kiendl & Hsu 2019, *Penalty coupling of non-matching isogeometric
-//! Kirchhoff–Love shell patches*).
+//! The energy that keeps the angle between two surfaces along an edge (Herrema, Johnson, Proserpio, Wu, Kiendl & Hsu 2019, *Penalty
+//! coupling of non-matching isogeometric Kirchhoff–Love shell patches*).
 //!
-//! E = ½ α_r ∫ [(Δ a₃·a₃′)² + (Δ a_n·a₃′)²] ds + ½ α_d ∫ |Δ(x − x′)|² ds on the undeformed edge, with the normals a₃, a₃′ of
-//! the two surfaces, the normal a_n of the edge within the first one, and Δ for the change since the undeformed state. a₃·a₃′
-//! and a_n·a₃′ are cosine and sine of the angle between the surfaces; the second one makes the angle unique. α_r = c D/h
-//! and α_d = c A/h.
+//! E = ½ α ∫ [(Δ a₃·a₃′)² + (Δ a_n·a₃′)²] ds on the undeformed edge, with the normals a₃, a₃′ of the two surfaces, the normal a_n of
+//! the edge within the first one, and Δ for the change since the undeformed state. a₃·a₃′ and a_n·a₃′ are cosine and sine of the
+//! angle between the surfaces; the second one makes the angle unique. α = c D/h.
 
 use super::coupled::{Derivatives, FIRST_TANGENT, LOCAL, Local, PointLaw, moved};
-use crate::shell::{FrameVector, TANGENTS, dot, sub};
+use crate::shell::{FrameVector, TANGENTS, dot};
 
 /// The energy at a point of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct KeptAngle {
     /// Direction (0 or 1) of the first surface that runs along the edge.
     pub running: usize,
-    /// α_r times the weight of the point, N·mm.
+    /// α times the weight of the point, N·mm.
     pub rotation: f64,
-    /// α_d times the weight of the point, N/mm.
-    pub displacement: f64,
     /// Cosine and sine of the angle between the undeformed surfaces.
     pub angle: [f64; 2],
 }
@@ -43,11 +39,9 @@ impl PointLaw for KeptAngle {
     fn energy(&self, sides: &[Local; 2]) -> f64 {
         let angle = Self::angle_of(sides, self.running);
         let turned: f64 = (0..2).map(|k| (angle[k] - self.angle[k]).powi(2)).sum();
-        let apart = sub(sides[0][0], sides[1][0]);
-        0.5 * (self.rotation * turned + self.displacement * dot(apart, apart))
+        0.5 * self.rotation * turned
     }
 
-    /// Forces of the displacement add nothing to the tangent: they do not turn.
     fn stressed(&self, sides: &[Local; 2], rates: &[Local; 2]) -> Self {
         let (after, before, step) = moved(sides, rates);
         let [after, before] = [after, before].map(|sides| Self::angle_of(&sides, self.running));
@@ -55,26 +49,11 @@ impl PointLaw for KeptAngle {
     }
 
     fn add_derivatives(&self, sides: &[Local; 2], sums: &mut Derivatives) {
-        if self.displacement != 0.0 {
-            let apart = sub(sides[0][0], sides[1][0]);
-            for c in 0..3 {
-                let force = self.displacement * apart[c];
-                sums.gradient[c] += force;
-                sums.gradient[LOCAL + c] -= force;
-                for (p, q, sign) in
-                    [(c, c, 1.0), (LOCAL + c, LOCAL + c, 1.0), (c, LOCAL + c, -1.0), (LOCAL + c, c, -1.0)]
-                {
-                    sums.hessian[p][q] += sign * self.displacement;
-                }
-            }
-        }
-        if self.rotation != 0.0 {
-            let tangents = [sides[0][1], sides[0][2]];
-            let other = FrameVector::normal([sides[1][1], sides[1][2]]);
-            let vectors = [FrameVector::normal(tangents), FrameVector::edge_normal(tangents, self.running)];
-            for (vector, reference) in vectors.iter().zip(self.angle) {
-                add_product(sums, self.rotation, vector, &other, reference);
-            }
+        let tangents = [sides[0][1], sides[0][2]];
+        let other = FrameVector::normal([sides[1][1], sides[1][2]]);
+        let vectors = [FrameVector::normal(tangents), FrameVector::edge_normal(tangents, self.running)];
+        for (vector, reference) in vectors.iter().zip(self.angle) {
+            add_product(sums, self.rotation, vector, &other, reference);
         }
     }
 }
@@ -120,7 +99,7 @@ mod tests {
     fn the_energy_of_a_joint_has_these_derivatives() {
         for running in [0, 1] {
             let angle = [0.3, -0.9];
-            check(&KeptAngle { running, rotation: 3.0, displacement: 5.0, angle }, &sides(), 10.0);
+            check(&KeptAngle { running, rotation: 3.0, angle }, &sides(), 10.0);
         }
     }
 
@@ -130,8 +109,7 @@ mod tests {
             let (sin, cos) = angle.sin_cos();
             [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0; 3], [1.0, 0.0, 0.0], [0.0, cos, sin]]]
         };
-        let law =
-            KeptAngle { running: 0, rotation: 1.0, displacement: 0.0, angle: KeptAngle::angle_of(&turned(2.5), 0) };
+        let law = KeptAngle { running: 0, rotation: 1.0, angle: KeptAngle::angle_of(&turned(2.5), 0) };
         assert_eq!(law.energy(&turned(2.5)), 0.0);
         assert!((law.opened(&turned(2.6)).abs() - 0.1).abs() < 1e-14);
         assert!((law.energy(&turned(2.6)) - (1.0 - 0.1_f64.cos())).abs() < 1e-14, "4 sin²(φ/2)/2");

@@ -3,19 +3,21 @@
 //! | file | what |
 //! |---|---|
 //! | `coupled` | energies at points at which two surfaces meet, and their sums |
-//! | `kept_angle` | the energy of a joint |
+//! | `kept_angle`, `mean_gap` | the energies of a joint: of the angle, and of gaps between edges |
 //! | `glue` | the energy of a bond |
 //! | `layer` | where the faces that a bond glues lie together |
-//! | `edge_points`, `glued_points` | where energies are summed up |
+//! | `joint` | a joint, and where its energies are summed up |
+//! | `glued_points` | where the energy of a bond is summed up |
 //! | `tractions` | what bonds carry anywhere on their shells |
 //! | `state` | what joints and bonds show of a state |
 
 mod coupled;
-mod edge_points;
 mod glue;
 mod glued_points;
+mod joint;
 mod kept_angle;
 mod layer;
+mod mean_gap;
 mod state;
 mod tractions;
 
@@ -23,7 +25,7 @@ use std::sync::Arc;
 
 use self::coupled::Coupling;
 use self::glue::Glue;
-use self::kept_angle::KeptAngle;
+use self::joint::Joint;
 use crate::energy::{At, Tangent, Term};
 use crate::model::{ModelError, edge_pairs, members, perfect_on};
 use crate::scene::Scene;
@@ -48,7 +50,7 @@ struct Connection {
 
 #[derive(Clone, Debug)]
 enum Energy {
-    Joint(Arc<Coupling<KeptAngle>>),
+    Joint(Arc<Joint>),
     Bond(Arc<Coupling<Glue>>),
 }
 
@@ -64,9 +66,8 @@ impl Connections {
         }
         let members = members(scene, mesh);
         for pair in edge_pairs(scene, &members)? {
-            let points = edge_points::edge_points(&pair, &members);
-            if !points.is_empty() {
-                let energy = Energy::Joint(Arc::new(Coupling::new(points)));
+            if let Some(joint) = Joint::of(&pair, &members) {
+                let energy = Energy::Joint(Arc::new(joint));
                 list.push(Connection { name: pair.joint.name.clone(), energy });
             }
         }

@@ -202,6 +202,7 @@ impl std::fmt::Display for Limits {
             (false, true) => write!(f, "greater than {low} and at most {high}"),
             (false, false) if self.high.value.is_infinite() => write!(f, "greater than {low}"),
             (false, false) => write!(f, "greater than {low} and less than {high}"),
+            (true, false) if self.high.value.is_infinite() => write!(f, "at least {low}"),
             (true, false) => write!(f, "at least {low} and less than {high}"),
         }
     }
