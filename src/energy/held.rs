@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use crate::energy::{At, TermSource, Terms};
+use crate::energy::{At, Connections, TermSource, Terms};
 use crate::model::{
     BlockPattern, Blocks, Body, Connectivity, FreeMotions, HELD, ModelError, Tables, Unknowns, free_motions,
 };
@@ -65,7 +65,8 @@ impl FreeMotions {
         own: &[Arc<dyn TermSource>],
     ) -> Result<[Self; 2], ModelError> {
         let tables = Tables::of_structure(scene, mesh);
-        let terms = Terms::new(scene, mesh, &tables, own)?;
+        // Joints and bonds hold nothing of the whole structure, and are too stiff to compare with.
+        let terms = Terms::with_connections(scene, mesh, &tables, own, &Connections::default())?;
         let parts: Vec<&Connectivity> = tables.iter().map(|tables| &tables.connectivity).collect();
         let pattern = BlockPattern::new(&parts, &terms.pairs());
         let mut stiffness = Blocks::zeros(&pattern);

@@ -10,16 +10,17 @@ use foldline::journal::Manifest;
 use foldline::pipeline::{Run, Stages};
 use foldline::record::{MemorySink, NUMERICS_REVISION};
 
-use crate::program::{SMALL, scene};
+use crate::program::{SMALL, STRUCTURE, scene};
 
 /// Load steps, refinement and a snap; arc length to a bifurcation and the branch behind it; a growing increment; a tolerance,
-/// knots that leave, and a return to before a jump on a refined mesh.
-const SCENES: [(&str, &str); 5] = [
+/// knots that leave, and a return to before a jump on a refined mesh; shells that are joined, glued and hung on a spring.
+const SCENES: [(&str, &str); 6] = [
     ("small", SMALL),
     ("path", include_str!("path.toml")),
     ("column", include_str!("column.toml")),
     ("growing", include_str!("../../checkpoints/golden/growing.toml")),
     ("tolerance", include_str!("tolerance.toml")),
+    ("structure", STRUCTURE),
 ];
 
 fn chain_of(text: &str) -> String {

@@ -43,8 +43,8 @@ fn last(stages: Vec<(State, Record)>) -> Report {
     stages.last().unwrap().1.report.clone()
 }
 
-/// What holds at every equilibrium of the beam: each half of the flange stands at 90 ± 0.01° on the web, the halves go on in each other,
-/// and the root carries the force.
+/// What holds at every equilibrium of the beam: each half of the flange stands at 90 ± 0.01° on the web up to the force of the paper, and
+/// beyond it within as many times that, the halves go on in each other, and the root carries the force.
 fn is_held_together(report: &Report) {
     let opened = |name: &str| {
         let joint = report.connections.iter().find(|joint| joint.name == name);
@@ -52,9 +52,11 @@ fn is_held_together(report: &Report) {
     };
     let [flange, web] = [opened("flange"), opened("web")];
     let at = report.parameter;
-    assert!(web < 0.01, "right half and web, at {at}: {web}°");
+    // Up to the force of the paper, and beyond it in proportion.
+    let most = 0.01 * at.max(1.0);
+    assert!(web < most, "right half and web, at {at}: {web}°");
     // No joint lies between the left half and the web: their angle errs by both at most.
-    assert!(flange + web < 0.01, "left half and web, at {at}: {flange}° and {web}°");
+    assert!(flange + web < most, "left half and web, at {at}: {flange}° and {web}°");
     assert!((reading(report, "root force") / (10.0 * at) - 1.0).abs() < 1e-5, "at {at}");
     assert_eq!(report.negative_pivots, 0, "at {at}");
 }
@@ -189,7 +191,8 @@ fn is_the_slit_ring(scene: Scene) {
         }
         assert_eq!(report.connections.len(), 3, "each joint stores energy");
         for joint in &report.connections {
-            assert!(joint.opened_deg.unwrap().abs() < 0.01, "at {at}: {joint:?}");
+            // A thousandth of the turn by which the ring is twisted.
+            assert!(joint.opened_deg.unwrap().abs() < 0.18, "at {at}: {joint:?}");
             assert!(joint.energy_share < 1e-3, "at {at}: {joint:?}");
         }
         assert_eq!(report.negative_pivots, 0, "at {at}");
@@ -209,4 +212,44 @@ fn a_slit_ring_in_finer_sectors_lifts_as_the_ring() {
     let elements = [[6, 12], [5, 11], [7, 13], [6, 12]];
     scene.shells.iter_mut().zip(elements).for_each(|(shell, elements)| shell.mesh.elements = elements);
     is_the_slit_ring(scene);
+}
+
+/// A ring plate clamped at its inner edge under pressure, in four sectors whose elements do not match, is the ring plate of one shell: the
+/// sectors keep what the coarser one can, and are not too stiff.
+#[test]
+fn a_ring_plate_in_sectors_is_the_ring_plate() {
+    let sector = |name: &str, from: f64, elements: [usize; 2]| {
+        format!(
+            "[[shell]]\nname = \"{name}\"\n[shell.geometry]\nkind = \"annulus\"\ninner_radius_mm = 6.0\nouter_radius_mm = 10.0\nfrom_deg = {from:?}\n\
+             arc_deg = 90.0\n[shell.mesh]\nelements = {elements:?}\n"
+        )
+    };
+    let names = ["s1", "s2", "s3", "s4"];
+    let counts = [[7, 8], [4, 7], [6, 9], [5, 8]];
+    let shells: String = (0..4).map(|k| sector(names[k], 90.0 * k as f64, counts[k])).collect();
+    let joints: String = (0..4)
+        .map(|k| {
+            let next = names[(k + 1) % 4];
+            format!("[[joint]]\nkind = \"smooth\"\nedges = [\"{}.v-end\", \"{next}.v-start\"]\n", names[k])
+        })
+        .collect();
+    let held: String = names
+        .iter()
+        .map(|name| {
+            format!(
+                "[[support]]\nkind = \"clamped\"\nshell = \"{name}\"\non = \"u-start\"\n\
+                 [[action]]\nkind = \"pressure\"\nshell = \"{name}\"\npressure_mpa = 1e-5\nfollower = false\n"
+            )
+        })
+        .collect();
+    let rest = "[material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = 21e3\npoissons_ratio = 0.3\nthickness_mm = 0.03\n\
+                [load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n\
+                [[probe]]\nname = \"w\"\nkind = \"displacement\"\nshell = \"s1\"\non = [1.0, 0.5]\ncomponent = \"z\"\n";
+    let report = last(run(read(&[shells.as_str(), &joints, rest, &held].concat())));
+    let one = "[geometry]\nkind = \"annulus\"\ninner_radius_mm = 6.0\nouter_radius_mm = 10.0\narc_deg = 360.0\n[mesh]\nelements = [8, 40]\n\
+               [[support]]\nkind = \"clamped\"\non = \"u-start\"\n\
+               [[action]]\nkind = \"pressure\"\npressure_mpa = 1e-5\nfollower = false\n";
+    let whole = last(run(read(&[one, &rest.replace("shell = \"s1\"\n", "")].concat())));
+    let off = reading(&report, "w") / reading(&whole, "w") - 1.0;
+    assert!(reading(&whole, "w").abs() > 1e-4 && off.abs() < 1e-3, "{off:.1e}");
 }
