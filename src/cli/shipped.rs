@@ -97,6 +97,7 @@ pub(super) const SHIPPED: &[Shipped] = shipped! {
     "studies/length"
     "studies/radius-thickness"
     "sweeps/fold-moments"
+    "sweeps/imperfect-trac-booms"
     "sweeps/mesh-error"
     "sweeps/roof-snap"
     "sweeps/scattered-springs"

@@ -45,6 +45,7 @@ pub fn scene() -> Scene {
         shells: vec![],
         joints: vec![],
         bonds: vec![],
+        imperfections: vec![],
         symmetry: Symmetry::Quarter,
         load: Load::EndRotation(EndRotation {
             sense: Sense::Opposite,

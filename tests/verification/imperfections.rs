@@ -313,7 +313,7 @@ fn the_surface_has_the_variance_and_the_correlation() {
 /// A plate with the sagitta of a cylinder measured on it is the cylinder: as a cantilever it is as stiff as one that is drawn.
 #[test]
 fn a_measured_cylinder_is_a_cylinder() {
-    let (radius, width, points) = (30.0_f64, 40.0, 21);
+    let (radius, width, points) = (30.0_f64, 40.0, 41);
     let places: Vec<f64> = (0..points).map(|k| f64::from(k) / f64::from(points - 1)).collect();
     let sagitta: Vec<f64> =
         places.iter().map(|v| (radius * radius - (width * (v - 0.5)).powi(2)).sqrt() - radius).collect();
@@ -321,7 +321,7 @@ fn a_measured_cylinder_is_a_cylinder() {
     let text = |geometry: &str, imperfection: &str| {
         read(&format!(
             "{geometry}[material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = 70000.0\npoissons_ratio = 0.3\nthickness_mm = 1.0\n\
-             [mesh]\ndegree = [3, 3]\nelements = [12, 12]\n{imperfection}[load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n\
+             [mesh]\ndegree = [3, 3]\nelements = [12, 24]\n{imperfection}[load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n\
              [[support]]\nkind = \"clamped\"\non = \"u-start\"\n[[support]]\nname = \"end\"\nkind = \"rigid\"\non = \"u-end\"\nx_mm = \"free\"\nz_mm = \"free\"\nrotation_y_deg = \"free\"\n\
              [[action]]\nkind = \"section-force\"\nsection = \"end\"\nforce_n = [0.0, 0.0, 0.01]\n"
         ))
@@ -336,9 +336,10 @@ fn a_measured_cylinder_is_a_cylinder() {
         "",
     );
     let mesh = mesh(&measured);
+    // 5/384 h⁴ f⁗ of cubics on elements of 1.7 mm is 9e-5 mm where the cylinder is steepest; at ends it is some times that.
     for k in 0..=50 {
         let [_, y, z] = mid_surface_point(&mesh.patches[0], &[], [0.37, f64::from(k) / 50.0]).position;
-        assert!(((y - 0.5 * width).hypot(z + radius) - radius).abs() < 1e-4, "{y} {z}");
+        assert!(((y - 0.5 * width).hypot(z + radius) - radius).abs() < 5e-4, "{y} {z}");
     }
     let energy = |scene: &Scene| run(scene.clone()).pop().unwrap().1.report.strain_energy_n_mm;
     let (one, other) = (energy(&measured), energy(&drawn));
@@ -429,4 +430,46 @@ fn what_is_imperfect_is_said() {
     };
     assert!(lost.contains("% of imperfection \"fine\""), "{lost}");
     assert!(remarks("").is_empty());
+}
+
+/// A closed tube stays closed and smooth across its seam, and shells that a smooth joint ties have as many derivatives as before.
+#[test]
+fn ties_hold_in_an_imperfect_surface() {
+    let material =
+        "[material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = 70000.0\npoissons_ratio = 0.3\nthickness_mm = 0.5\n";
+    let rest = "[load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n[[action]]\nkind = \"pressure\"\npressure_mpa = 0.001\n";
+    let field = FIELD.replace("60.0", "30.0");
+    let tube = read(&format!(
+        "[geometry]\nkind = \"cylinder-panel\"\nlength_mm = 60.0\nradius_mm = 20.0\narc_deg = 360.0\nseam = \"smooth\"\n{material}\
+         [mesh]\nelements = [6, 12]\n{field}[[support]]\nkind = \"clamped\"\non = \"u-start\"\n{rest}"
+    ));
+    assert!(Stages::new(tube.clone()).start().is_ok());
+    let mesh_of_tube = mesh(&tube);
+    for k in 0..=10 {
+        let u = f64::from(k) / 10.0;
+        let [start, end] = [0.0, 1.0].map(|v| mid_surface_point(&mesh_of_tube.patches[0], &[], [u, v]));
+        assert!(distance(start.position, end.position) < 1e-13);
+        let normal = |d: [[f64; 3]; 5]| {
+            let n = [0, 1, 2].map(|c| d[0][(c + 1) % 3] * d[1][(c + 2) % 3] - d[0][(c + 2) % 3] * d[1][(c + 1) % 3]);
+            n.map(|x| x / distance(n, [0.0; 3]))
+        };
+        assert!(distance(normal(start.derivatives), normal(end.derivatives)) < 1e-12, "{u}");
+    }
+    let halves = read(&format!(
+        "{material}[mesh]\ndegree = [4, 3]\nelements = [4, 3]\n\
+         [[shell]]\nname = \"one\"\n[shell.geometry]\nkind = \"plate\"\nlength_mm = 20.0\nwidth_mm = 10.0\n\
+         [[shell]]\nname = \"two\"\nposition_mm = [20.0, 0.0, 0.0]\n[shell.geometry]\nkind = \"plate\"\nlength_mm = 20.0\nwidth_mm = 10.0\n\
+         [[joint]]\nkind = \"smooth\"\nedges = [\"one.u-end\", \"two.u-start\"]\n{field}\
+         [[support]]\nkind = \"clamped\"\non = \"u-start\"\nshell = \"one\"\n{}",
+        rest.replace("kind = \"pressure\"", "kind = \"pressure\"\nshell = \"two\"")
+    ));
+    let unknowns = |scene: &Scene| {
+        let mut stages = Stages::new(scene.clone());
+        let start = stages.start().unwrap();
+        (stages.unknowns(&start).unwrap(), Terms::on(scene, &start.mesh, &[]).unwrap().pairs().len())
+    };
+    let mut perfect = halves.clone();
+    perfect.imperfections.clear();
+    // As many unknowns: every tie of the perfect one. No joint has an energy.
+    assert_eq!(unknowns(&halves), unknowns(&perfect));
 }

@@ -5,10 +5,10 @@ use crate::scene::keys::Presence::{Default, Follows, Unless};
 use crate::scene::keys::Reach::Names;
 use crate::scene::keys::{Key, Kind, Length, Limit, Limits, choice};
 
-/// Seeds are exact as numbers of any program.
+/// Seeds of 32 bits, which are exact as numbers of any program.
 const SEED: Limits = Limits {
     low: Limit::included(0.0, "a seed has no sign"),
-    high: Limit::included(9_007_199_254_740_991.0, "beyond 2^53 not every whole number is a number of its own"),
+    high: Limit::included(4_294_967_295.0, "no more bits are needed: 2^32 - 1 is the largest"),
 };
 
 const MODES: Limits = Limits {
