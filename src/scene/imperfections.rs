@@ -1,13 +1,33 @@
 //! The array of tables `[[imperfection]]`: where the undeformed surfaces differ from the perfect ones.
 
+use std::borrow::Cow;
 use std::path::Path;
 
-use super::data::{Hold, Imperfection, ImperfectionKind, OffsetGrid, Region, Support, Symmetry};
+use super::data::{Geometry, Hold, Imperfection, ImperfectionKind, OffsetGrid, Region, Scene, Support, Symmetry};
 use super::fault::{Checked, Faults};
 use super::offset_grid;
 use super::shells::Shells;
 use super::table::{Table, data};
 use super::tables::Tables;
+
+impl Scene {
+    /// The scene without its imperfections.
+    pub fn perfect(&self) -> Cow<'_, Scene> {
+        match self.imperfections.is_empty() {
+            true => Cow::Borrowed(self),
+            false => Cow::Owned(Scene { imperfections: Vec::new(), ..self.clone() }),
+        }
+    }
+
+    /// Whether parts of the scene may be in files of their own: written as TOML it is whole.
+    pub fn may_read_files(&self) -> bool {
+        let is_nurbs = |geometry: &Geometry| matches!(geometry, Geometry::Nurbs(_));
+        let is_grid = |imperfection: &Imperfection| matches!(imperfection.kind, ImperfectionKind::Grid { .. });
+        is_nurbs(&self.geometry)
+            || self.shells.iter().any(|shell| is_nurbs(&shell.geometry))
+            || self.imperfections.iter().any(is_grid)
+    }
+}
 
 /// Reads all imperfections; `None` where something is wrong with them.
 pub(super) fn imperfections(

@@ -122,23 +122,6 @@ impl Scene {
         self.shells.get(shell).map(|shell| &*shell.name)
     }
 
-    /// The scene without its imperfections.
-    pub fn perfect(&self) -> Cow<'_, Scene> {
-        match self.imperfections.is_empty() {
-            true => Cow::Borrowed(self),
-            false => Cow::Owned(Scene { imperfections: Vec::new(), ..self.clone() }),
-        }
-    }
-
-    /// Whether parts of the scene may be in files of their own: written as TOML it is whole.
-    pub fn may_read_files(&self) -> bool {
-        let is_nurbs = |geometry: &Geometry| matches!(geometry, Geometry::Nurbs(_));
-        let is_grid = |imperfection: &Imperfection| matches!(imperfection.kind, ImperfectionKind::Grid { .. });
-        is_nurbs(&self.geometry)
-            || self.shells.iter().any(|shell| is_nurbs(&shell.geometry))
-            || self.imperfections.iter().any(is_grid)
-    }
-
     /// The scene of one perfect shell alone, with the supports, actions and probes that are its own, and the actions on all shells.
     /// A scene of one shell is returned as it is.
     pub fn of_shell(&self, shell: usize) -> Cow<'_, Scene> {
