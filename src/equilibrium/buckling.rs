@@ -19,6 +19,7 @@ use crate::equilibrium::assembly::subtract;
 use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::equations::Equations;
 use crate::equilibrium::solve_error::SolveError;
+use crate::equilibrium::tangent_stiffness::TangentStiffness;
 use crate::equilibrium::vector::{product, scale_to_one};
 use crate::equilibrium::workspace::Workspace;
 use crate::model::{BLOCK, Blocks, PointTable};
@@ -115,19 +116,31 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
     let stiffness = tangent.matrix();
     let free = rates.len();
     let mut block = (2 * count + MORE).min(free);
+    let mut shift = 0.0;
     loop {
-        tangent.solver.matrix_mut().copy_from_slice(&stiffness);
+        let shifted = combined(&stiffness, &stress_matrix, shift);
+        tangent.solver.matrix_mut().copy_from_slice(&shifted);
         tangent.factorize_formed()?;
         let product_with = |values: &[f64], vector: &[f64]| tangent.solver.multiply(values, vector);
         let solve = |vector: &mut Vec<f64>| tangent.solver.solve(vector);
-        let found = Subspace::new(free, block).settled(count, &stiffness, &stress_matrix, &product_with, &solve);
+        let mut found = Subspace::new(free, block).settled(count, &shifted, &stress_matrix, &product_with, &solve);
+        found.iter_mut().for_each(|(factor, _)| *factor += shift);
+        // Where more modes of the reversed load lie nearer to 0 than the subspace holds, it has none of the load itself.
+        if shift == 0.0 && found.iter().all(|(factor, _)| *factor <= 0.0) {
+            let near = found.iter().map(|(factor, _)| -factor).fold(f64::INFINITY, f64::min);
+            let below = below_first(tangent, (&stiffness, &stress_matrix), near)?;
+            if let Some(below) = below {
+                shift = below;
+                continue;
+            }
+        }
         let positive: Vec<&(f64, Vec<f64>)> = found.iter().filter(|(factor, _)| *factor > 0.0).take(count).collect();
         let last = positive.last().map(|(factor, _)| *factor);
         let counted = match last {
             None => 0,
             Some(last) => {
-                let shifted = stiffness.iter().zip(&stress_matrix).map(|(k, s)| k + (1.0 + BEYOND) * last * s);
-                tangent.solver.matrix_mut().iter_mut().zip(shifted).for_each(|(value, shifted)| *value = shifted);
+                let beyond = combined(&stiffness, &stress_matrix, (1.0 + BEYOND) * last);
+                tangent.solver.matrix_mut().copy_from_slice(&beyond);
                 tangent.factorize_formed()?.count
             }
         };
@@ -147,6 +160,47 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
         return Ok(BucklingModes { modes: modes.collect(), counted, reversed });
     }
 }
+
+/// K + λ K_σ.
+fn combined(stiffness: &[f64], stress: &[f64], factor: f64) -> Vec<f64> {
+    stiffness.iter().zip(stress).map(|(k, s)| k + factor * s).collect()
+}
+
+/// Finds a load factor below the first one at which K + λ K_σ loses a positive pivot, and not far from it, by counting pivots from `near`
+/// on; `None` where it loses none up to [`FARTHEST`] times that.
+fn below_first(
+    tangent: &mut TangentStiffness,
+    (stiffness, stress): (&[f64], &[f64]),
+    near: f64,
+) -> Result<Option<f64>, SolveError> {
+    let mut count = |factor: f64| {
+        tangent.solver.matrix_mut().copy_from_slice(&combined(stiffness, stress, factor));
+        tangent.factorize_formed().map(|negative| negative.count)
+    };
+    if !(near.is_finite() && near > 0.0) {
+        return Ok(None);
+    }
+    let (mut below, mut above) = (0.0, near);
+    while count(above)? == 0 {
+        (below, above) = (above, 2.0 * above);
+        if above > FARTHEST * near {
+            return Ok(None);
+        }
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (below + above);
+        match count(middle)? {
+            0 => below = middle,
+            _ => above = middle,
+        }
+    }
+    Ok(Some(below))
+}
+
+/// Largest load factor that is searched, relative to that of the reversed load.
+const FARTHEST: f64 = 1e6;
+/// Halvings of the stretch in which the first load factor lies: the subspace then turns towards it from near by.
+const HALVINGS: usize = 5;
 
 /// Vectors that turn towards the modes with the smallest load factors.
 struct Subspace {

@@ -46,7 +46,7 @@ fn help_on_scenes_table_by_table() {
     assert_eq!(stdout(&["help", "scene", "[[support]]"]), stdout(&["help", "scene", "support"]));
     let schema: serde_json::Value = serde_json::from_str(&stdout(&["help", "scene", "--json-schema"])).unwrap();
     assert_eq!(schema["required"], serde_json::json!(["load"]));
-    insta::assert_snapshot!(refusal(&["help", "scene", "suport"], 2), @"error: no help on `suport`; there is help on geometry, material, ply, mesh, shell, joint, bond, symmetry, load, support, spring, mass, action, probe, adapt, solver, continuation, pipeline, output, expect, places; did you mean `support`?");
+    insta::assert_snapshot!(refusal(&["help", "scene", "suport"], 2), @"error: no help on `suport`; there is help on geometry, material, ply, mesh, shell, joint, bond, imperfection, symmetry, load, support, spring, mass, action, probe, adapt, solver, continuation, pipeline, output, expect, places; did you mean `support`?");
     refusal(&["help", "run", "support"], 2);
     refusal(&["help", "run", "--json-schema"], 2);
 }
