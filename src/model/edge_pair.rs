@@ -199,15 +199,14 @@ fn check_smooth(joint: &Joint, edges: &[PairedEdge; 2]) -> Result<(), ModelError
         let normal = cross(point.derivatives[0], point.derivatives[1]);
         scaled(1.0 / norm(normal), normal)
     };
-    let angles = samples(&edges[0]).into_iter().map(|at| {
+    let angle_deg = samples(&edges[0]).into_iter().fold(0.0_f64, |most, at| {
         let here = edges[0].point(at);
         let there = edges[1].point(edges[1].nearest(here.position).0);
         let turned = norm(cross(normal(&here), normal(&there)));
-        (turned.min(1.0).asin().to_degrees(), here.position)
+        most.max(turned.min(1.0).asin().to_degrees())
     });
-    let (angle_deg, at) = angles.fold((0.0, [0.0; 3]), |worst, one| if one.0 > worst.0 { one } else { worst });
     match angle_deg > SMOOTH_DEG {
-        true => Err(ModelError::NotSmooth { joint: joint.name.clone(), angle_deg, at: place(at) }),
+        true => Err(ModelError::NotSmooth { joint: joint.name.clone(), angle_deg }),
         false => Ok(()),
     }
 }

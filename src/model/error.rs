@@ -259,8 +259,7 @@ pub enum ModelError {
     },
     /// A section moment is asked for across a line that ends in a rigid section.
     #[error(
-        "a section moment is found from all that acts on one side of the line, and the rigid section \"{section}\", on which something \
-         acts, lies on both sides: read the reaction of a support instead"
+        "a section moment takes all that acts on one side, and section \"{section}\" lies on both: read the reaction of a support instead"
     )]
     SectionAcross {
         /// Name of the support.
@@ -268,16 +267,13 @@ pub enum ModelError {
     },
     /// A joint is to be smooth where the surfaces meet at an angle.
     #[error(
-        "joint \"{joint}\" is to be smooth, and its surfaces meet at an angle of {angle_deg:.1}° at {at}: write `kind = \"kept-angle\"`, or \
-         let the surfaces go on in each other's direction"
+        "joint \"{joint}\" is to be smooth, and its surfaces meet at {angle_deg:.1}°: write `kind = \"kept-angle\"`, or turn one of them"
     )]
     NotSmooth {
         /// Name of the joint.
         joint: String,
         /// Angle between the tangent planes, degrees.
         angle_deg: f64,
-        /// Where, in words.
-        at: String,
     },
     /// The edges of a joint do not meet.
     #[error(

@@ -75,7 +75,8 @@ fn kill_and_resume(random: &mut Random, trial: usize, took: [Duration; 2], hits:
 fn killed_at_random_instants() {
     let wanted = std::env::var("FOLDLINE_KILLS").ok().map(|text| text.parse::<usize>().unwrap());
     let began = Instant::now();
-    (Straight::small(), Straight::structure());
+    Straight::small();
+    Straight::structure();
     let place = Sandbox::new();
     let took = SCENES.map(|scene| {
         let start = Instant::now();

@@ -246,7 +246,7 @@ fn a_ring_plate_in_sectors_is_the_ring_plate() {
                 [load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n\
                 [[probe]]\nname = \"w\"\nkind = \"displacement\"\nshell = \"s1\"\non = [1.0, 0.5]\ncomponent = \"z\"\n";
     let report = last(run(read(&[shells.as_str(), &joints, rest, &held].concat())));
-    let one = "[geometry]\nkind = \"annulus\"\ninner_radius_mm = 6.0\nouter_radius_mm = 10.0\narc_deg = 360.0\n[mesh]\nelements = [8, 40]\n\
+    let one = "[geometry]\nkind = \"annulus\"\ninner_radius_mm = 6.0\nouter_radius_mm = 10.0\narc_deg = 360.0\nseam = \"smooth\"\n[mesh]\nelements = [8, 40]\n\
                [[support]]\nkind = \"clamped\"\non = \"u-start\"\n\
                [[action]]\nkind = \"pressure\"\npressure_mpa = 1e-5\nfollower = false\n";
     let whole = last(run(read(&[one, &rest.replace("shell = \"s1\"\n", "")].concat())));
