@@ -258,17 +258,13 @@ pub enum ModelError {
         what: &'static str,
     },
     /// A section moment is asked for across a line that ends in a rigid section.
-    #[error(
-        "a section moment takes all that acts on one side, and section \"{section}\" lies on both: read the reaction of a support instead"
-    )]
+    #[error("section \"{section}\" lies on both sides of the line of a section moment: read a reaction instead")]
     SectionAcross {
         /// Name of the support.
         section: String,
     },
     /// A joint is to be smooth where the surfaces meet at an angle.
-    #[error(
-        "joint \"{joint}\" is to be smooth, and its surfaces meet at {angle_deg:.1}°: write `kind = \"kept-angle\"`, or turn one of them"
-    )]
+    #[error("joint \"{joint}\" is smooth, and its surfaces meet at {angle_deg:.1}°: write `kind = \"kept-angle\"`")]
     NotSmooth {
         /// Name of the joint.
         joint: String,
