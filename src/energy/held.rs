@@ -26,7 +26,7 @@ pub fn check_held(
 ) -> Result<(), ModelError> {
     let points = &unknowns.points;
     let mut free = free_motions(Body::around(points), unknowns.supports(), points);
-    if free.basis.ncols() > 0 && !(own.is_empty() && scene.springs.is_empty()) {
+    if free.basis.ncols() > 0 && Terms::may_store(scene, own) {
         [free, _] = free.parted_by_terms(scene, mesh, own)?;
     }
     match free.basis.ncols() {

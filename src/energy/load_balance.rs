@@ -50,7 +50,7 @@ pub fn check_balance(
             });
         }
     }
-    if !(own.is_empty() && scene.springs.is_empty()) {
+    if Terms::may_store(scene, own) {
         let [_, by_terms] = held.free.parted_by_terms(scene, mesh, own)?;
         if by_terms.basis.ncols() > 0 {
             return Err(ModelError::HeldByTerms {

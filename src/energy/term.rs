@@ -1,5 +1,6 @@
 //! Energies and loads, each a [`Term`], and the matrix that takes their tangents.
 
+use std::collections::BTreeSet;
 use std::fmt::Debug;
 
 use crate::digest::Hash;
@@ -82,6 +83,12 @@ pub trait Term: Debug + Send + Sync {
     fn factors(&self, _parameter: f64) -> Vec<f64> {
         Vec::new()
     }
+}
+
+/// All ordered pairs of some control points, each once.
+pub(super) fn pairs_among(points: impl IntoIterator<Item = usize>) -> Vec<[usize; 2]> {
+    let points: BTreeSet<usize> = points.into_iter().collect();
+    points.iter().flat_map(|i| points.iter().map(|j| [*i, *j])).collect()
 }
 
 /// Maker of a [`Term`] of the caller's own for every mesh of a run. Its name and hash are recorded in the log.

@@ -23,6 +23,11 @@ struct Named {
 }
 
 impl Terms {
+    /// Whether terms other than shells, joints and bonds may store energy: springs, and terms of the caller's own.
+    pub fn may_store(scene: &Scene, own: &[Arc<dyn TermSource>]) -> bool {
+        !(scene.springs.is_empty() && own.is_empty())
+    }
+
     /// Makes the terms of a scene's actions and those of the caller's own.
     ///
     /// # Errors

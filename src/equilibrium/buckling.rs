@@ -118,7 +118,7 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
     let mut block = (2 * count + MORE).min(free);
     let mut shift = 0.0;
     loop {
-        let shifted = combined(&stiffness, &stress_matrix, shift);
+        let shifted: Vec<f64> = stiffness.iter().zip(&stress_matrix).map(|(k, s)| k + shift * s).collect();
         tangent.solver.matrix_mut().copy_from_slice(&shifted);
         tangent.factorize_formed()?;
         let product_with = |values: &[f64], vector: &[f64]| tangent.solver.multiply(values, vector);
@@ -128,8 +128,7 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
         // Where more modes of the reversed load lie nearer to 0 than the subspace holds, it has none of the load itself.
         if shift == 0.0 && found.iter().all(|(factor, _)| *factor <= 0.0) {
             let near = found.iter().map(|(factor, _)| -factor).fold(f64::INFINITY, f64::min);
-            let below = below_first(tangent, (&stiffness, &stress_matrix), near)?;
-            if let Some(below) = below {
+            if let Some(below) = below_first(tangent, (&stiffness, &stress_matrix), near)? {
                 shift = below;
                 continue;
             }
@@ -138,11 +137,7 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
         let last = positive.last().map(|(factor, _)| *factor);
         let counted = match last {
             None => 0,
-            Some(last) => {
-                let beyond = combined(&stiffness, &stress_matrix, (1.0 + BEYOND) * last);
-                tangent.solver.matrix_mut().copy_from_slice(&beyond);
-                tangent.factorize_formed()?.count
-            }
+            Some(last) => tangent.factorize_sum(&stiffness, (1.0 + BEYOND) * last, &stress_matrix)?.count,
         };
         // A cluster that the subspace did not hold whole: a larger one does.
         if counted > positive.len() && block < free {
@@ -161,11 +156,6 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
     }
 }
 
-/// K + λ K_σ.
-fn combined(stiffness: &[f64], stress: &[f64], factor: f64) -> Vec<f64> {
-    stiffness.iter().zip(stress).map(|(k, s)| k + factor * s).collect()
-}
-
 /// Finds a load factor below the first one at which K + λ K_σ loses a positive pivot, and not far from it, by counting pivots from `near`
 /// on; `None` where it loses none up to [`FARTHEST`] times that.
 fn below_first(
@@ -173,10 +163,7 @@ fn below_first(
     (stiffness, stress): (&[f64], &[f64]),
     near: f64,
 ) -> Result<Option<f64>, SolveError> {
-    let mut count = |factor: f64| {
-        tangent.solver.matrix_mut().copy_from_slice(&combined(stiffness, stress, factor));
-        tangent.factorize_formed().map(|negative| negative.count)
-    };
+    let mut count = |factor: f64| tangent.factorize_sum(stiffness, factor, stress).map(|negative| negative.count);
     if !(near.is_finite() && near > 0.0) {
         return Ok(None);
     }

@@ -149,12 +149,8 @@ struct Slicing<'w> {
 impl Slicing<'_> {
     /// Factors K − σ M; returns the number of eigenvalues below σ.
     fn count_below(&mut self, shift: f64) -> Result<usize, SolveError> {
-        let solver = &mut self.tangent.solver;
-        for (value, (k, m)) in solver.matrix_mut().iter_mut().zip(self.stiffness.iter().zip(&self.mass)) {
-            *value = k - shift * m;
-        }
         self.tried += 1;
-        self.tangent.factorize_formed().map(|negative| negative.count)
+        self.tangent.factorize_sum(&self.stiffness, -shift, &self.mass).map(|negative| negative.count)
     }
 
     /// Puts the shift below the lowest eigenvalue and not far from it, and leaves its factor in the solver.

@@ -48,6 +48,16 @@ impl TangentStiffness {
         factored.map_err(|cause| SolveError::Factor { cause, effort: Effort::default() })
     }
 
+    /// Factors the sum A + λ B of two matrices with the structure of the stiffness, given by their values.
+    ///
+    /// # Errors
+    /// Where a pivot is zero or not a number.
+    pub(super) fn factorize_sum(&mut self, a: &[f64], factor: f64, b: &[f64]) -> Result<NegativePivots, SolveError> {
+        let sums = a.iter().zip(b).map(|(a, b)| a + factor * b);
+        self.solver.matrix_mut().iter_mut().zip(sums).for_each(|(value, sum)| *value = sum);
+        self.factorize_formed()
+    }
+
     /// Copies the matrix that was formed, which its factor will overwrite.
     pub(super) fn matrix(&mut self) -> Vec<f64> {
         self.solver.matrix_mut().to_vec()

@@ -9,7 +9,7 @@ use crate::model::ModelError;
 use crate::model::edge::{centroid_and_length, edge_parameters, on_edge, rows_of, side};
 use crate::model::member::{Member, members};
 use crate::scene::{Joint, JointKind, Scene, ShellEdge};
-use crate::shell::{cross, dot, norm, scaled, sub};
+use crate::shell::{cross, dot, norm, scaled, sub, unit_normal};
 use crate::spline::{KnotLists, Mesh, Patch, Spans, SurfacePoint};
 use crate::units::place;
 
@@ -167,9 +167,6 @@ fn edge_pair<'a>(joint: &'a Joint, members: &'a [Member<'a>]) -> Result<EdgePair
     let thickness = |edge: &PairedEdge| members[edge.at.shell].scene.material.thickness_mm();
     let tolerance = MEETING * thickness(&edges[0]).min(thickness(&edges[1]));
     check_meeting(joint, &edges, tolerance)?;
-    if joint.kind == JointKind::Smooth {
-        check_smooth(joint, &edges)?;
-    }
     let matching = [false, true].into_iter().find(|reversed| do_match(&edges, *reversed, SAME * lengths[0]));
     let conforms = matching.is_some_and(|reversed| do_conform(&edges, reversed, SAME * lengths[0]));
     Ok(EdgePair { joint, edges, matching, conforms })
@@ -177,34 +174,29 @@ fn edge_pair<'a>(joint: &'a Joint, members: &'a [Member<'a>]) -> Result<EdgePair
 
 /// Parameters along an edge at which it is compared with another one: the ends, and points of every span.
 fn samples(edge: &PairedEdge) -> Vec<f64> {
-    let within = |[from, to]: [f64; 2]| (0..SAMPLES).map(move |k| from + (to - from) * k as f64 / SAMPLES as f64);
-    edge.spans().into_iter().flat_map(within).chain([1.0]).collect()
+    let running = edge.running();
+    Spans::of(&edge.patch.knots[running], edge.patch.degree[running]).samples(SAMPLES)
 }
 
+/// Refuses edges that do not meet, and a smooth joint of surfaces that meet at an angle.
 fn check_meeting(joint: &Joint, edges: &[PairedEdge; 2], tolerance: f64) -> Result<(), ModelError> {
-    let apart = samples(&edges[0]).into_iter().map(|at| {
-        let position = edges[0].point(at).position;
-        (edges[1].nearest(position).1, position)
-    });
-    let (distance, at) = apart.fold((0.0, [0.0; 3]), |worst, one| if one.0 > worst.0 { one } else { worst });
-    match distance > tolerance {
-        true => Err(ModelError::EdgesApart { joint: joint.name.clone(), distance, at: place(at), most: tolerance }),
-        false => Ok(()),
-    }
-}
-
-/// Refuses a smooth joint of surfaces that meet at an angle.
-fn check_smooth(joint: &Joint, edges: &[PairedEdge; 2]) -> Result<(), ModelError> {
-    let normal = |point: &SurfacePoint| {
-        let normal = cross(point.derivatives[0], point.derivatives[1]);
-        scaled(1.0 / norm(normal), normal)
-    };
-    let angle_deg = samples(&edges[0]).into_iter().fold(0.0_f64, |most, at| {
+    let (mut worst, mut angle_deg) = ((0.0, [0.0; 3]), 0.0_f64);
+    for at in samples(&edges[0]) {
         let here = edges[0].point(at);
-        let there = edges[1].point(edges[1].nearest(here.position).0);
-        let turned = norm(cross(normal(&here), normal(&there)));
-        most.max(turned.min(1.0).asin().to_degrees())
-    });
+        let (beside, distance) = edges[1].nearest(here.position);
+        if distance > worst.0 {
+            worst = (distance, here.position);
+        }
+        if joint.kind == JointKind::Smooth {
+            let [one, other] = [&here, &edges[1].point(beside)]
+                .map(|SurfacePoint { derivatives: [a1, a2, ..], .. }| unit_normal([*a1, *a2]));
+            angle_deg = angle_deg.max(norm(cross(one, other)).min(1.0).asin().to_degrees());
+        }
+    }
+    let (distance, at) = worst;
+    if distance > tolerance {
+        return Err(ModelError::EdgesApart { joint: joint.name.clone(), distance, at: place(at), most: tolerance });
+    }
     match angle_deg > SMOOTH_DEG {
         true => Err(ModelError::NotSmooth { joint: joint.name.clone(), angle_deg }),
         false => Ok(()),

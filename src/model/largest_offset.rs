@@ -26,7 +26,7 @@ pub fn largest_offset(scene: &Scene, perfect: &Mesh, moves: &[[f64; 3]]) -> Offs
     let mut largest = Offset { mm: 0.0, at: perfect.point(0) };
     for (patch, range) in perfect.patches.iter().zip(perfect.ranges()) {
         let own = &moves[range];
-        let [us, vs] = [0, 1].map(|direction| samples(patch, direction));
+        let [us, vs] = [0, 1].map(|k| Spans::of(&patch.knots[k], patch.degree[k]).samples(SAMPLES));
         for at in us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])) {
             let [before, after] = mid_surface_points(patch, [&[], own], at);
             let mm = norm(sub(after.position, before.position));
@@ -36,12 +36,6 @@ pub fn largest_offset(scene: &Scene, perfect: &Mesh, moves: &[[f64; 3]]) -> Offs
         }
     }
     largest
-}
-
-fn samples(patch: &Patch, direction: usize) -> Vec<f64> {
-    let spans = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
-    let within = |[from, to]: [f64; 2]| (0..SAMPLES).map(move |k| from + (to - from) * k as f64 / SAMPLES as f64);
-    spans.into_iter().flat_map(within).chain([1.0]).collect()
 }
 
 /// A point of an integral over the surfaces of a mesh.

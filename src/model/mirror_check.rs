@@ -13,7 +13,7 @@ use crate::model::parametrize::parameters_of;
 use crate::model::scene_supports::supports_of;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{ActionKind, ForceVector, Material, Region, Scene, SurfaceDirection};
-use crate::shell::{cross, dot, shell_stiffness, thermal_strain};
+use crate::shell::{cross, dot, shell_stiffness, thermal_strain, unit_normal};
 use crate::spline::Patch;
 use crate::units::{place, significant};
 
@@ -65,7 +65,7 @@ fn check_natural_states(scene: &Scene, mesh: &Patch, mirror: &Mirror) -> Result<
         };
         for point in &points {
             let (e1, along) = (unit(point.derivatives[0]), unit(point.derivatives[1 - mirror.direction]));
-            let normal = unit(cross(point.derivatives[0], point.derivatives[1]));
+            let normal = unit_normal([point.derivatives[0], point.derivatives[1]]);
             let (cos, sin) = (dot(along, e1), dot(along, cross(normal, e1)));
             let shear = |[s11, s22, s12]: [f64; 3]| 2.0 * cos * sin * (s22 - s11) + (cos * cos - sin * sin) * s12;
             let size = |strain: [f64; 3]| strain.iter().map(|s| s.abs()).fold(0.0, f64::max);

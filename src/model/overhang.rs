@@ -6,7 +6,7 @@ use crate::model::limits::ANGLE;
 use crate::model::parametrize::sample_parameters;
 use crate::model::symmetry_plane::unit;
 use crate::scene::{ActionKind, ForceVector, LoadedArea, Scene};
-use crate::shell::{cross, dot, norm};
+use crate::shell::{dot, norm, unit_normal};
 use crate::spline::{Patch, mid_surface_point};
 use crate::units::place;
 
@@ -27,7 +27,7 @@ pub(super) fn check_overhangs(scene: &Scene, patch: &Patch) -> Result<(), ModelE
         let [us, vs] = [0, 1].map(|direction| sample_parameters(patch, direction));
         let points = us.iter().flat_map(|u| vs.iter().map(|v| mid_surface_point(patch, &[], [*u, *v])));
         let facing = points.map(|point| {
-            let normal = unit(cross(point.derivatives[0], point.derivatives[1]));
+            let normal = unit_normal([point.derivatives[0], point.derivatives[1]]);
             (dot(normal, unit(force)), point.position)
         });
         let [mut least, mut most] = [(0.0, [0.0; 3]); 2];

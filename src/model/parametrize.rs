@@ -5,7 +5,7 @@
 
 use crate::model::profile::{profile_knots, profile_segments};
 use crate::scene::{Geometry, ProfilePiece, Region, Scene};
-use crate::spline::{Patch, Spans, segment_count};
+use crate::spline::{Patch, Spans, greville_points, segment_count};
 
 /// Halvings of an interval after which it has no more digits.
 const BISECTIONS: usize = 53;
@@ -93,9 +93,7 @@ pub fn line_place(scene: &Scene, patch: &Patch, on: Region) -> Option<LinePlace>
     let Region::Line(direction, fraction) = on else { return None };
     let direction = direction.index();
     let parameter = parameters_of(&scene.geometry, [fraction; 2])[direction];
-    let degree = patch.degree[direction];
-    let greville = |k: usize| patch.knots[direction][k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64;
-    let count = patch.control_counts()[direction];
-    let first_beyond = (0..count).find(|k| greville(*k) > parameter).unwrap_or(count);
+    let greville = greville_points(&patch.knots[direction], patch.degree[direction]);
+    let first_beyond = greville.iter().position(|at| *at > parameter).unwrap_or(greville.len());
     Some(LinePlace { direction, parameter, first_beyond })
 }

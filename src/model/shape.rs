@@ -1,15 +1,12 @@
 //! The mid-surface of a scene as an exact NURBS surface in its fewest elements.
 
-use nalgebra::DMatrix;
-
 use crate::model::ModelError;
 use crate::model::joint::smoothed;
 use crate::model::profile::profile_curve;
 use crate::model::soundness::{check_normals, check_seam, closed_directions};
 use crate::scene::{Geometry, NurbsPatch, Scene, Seam};
 use crate::spline::{
-    Grid, HomogeneousCurve, Patch, basis_derivatives, basis_derivatives_len, circular_arc, control_count, find_span,
-    straight_line,
+    Grid, HomogeneousCurve, Patch, circular_arc, collocation, control_count, greville_points, straight_line,
 };
 
 /// A surface, and the number of elements that the scene asks for.
@@ -165,22 +162,10 @@ fn raised(mesh: &Patch, direction: usize) -> Patch {
     }
     let degree = mesh.degree[direction] + 1;
     let count = control_count(&knots, degree);
-    let greville: Vec<f64> = (0..count)
-        .map(|k| (knots[k + 1..k + 1 + degree].iter().sum::<f64>() / degree as f64).clamp(0.0, 1.0))
-        .collect();
-    let collocate = |knots: &[f64], degree: usize, count: usize| {
-        let mut matrix = DMatrix::zeros(greville.len(), count);
-        for (row, parameter) in greville.iter().enumerate() {
-            let span = find_span(knots, degree, *parameter);
-            let mut basis = vec![0.0; basis_derivatives_len(degree).max(3 * (degree + 1))];
-            basis_derivatives(knots, degree, span, *parameter, &mut basis);
-            (0..=degree).for_each(|a| matrix[(row, span - degree + a)] = basis[a]);
-        }
-        matrix
-    };
+    let greville = greville_points(&knots, degree);
     let counts = mesh.control_counts();
-    let values = collocate(old, mesh.degree[direction], counts[direction]);
-    let square = collocate(&knots, degree, count);
+    let values = collocation(old, mesh.degree[direction], &greville);
+    let square = collocation(&knots, degree, &greville);
     // Nonsingular by Schoenberg and Whitney: each Greville point lies inside the support of its function.
     let map = square.lu().solve(&values).unwrap_or(values);
     let across = counts[1 - direction];

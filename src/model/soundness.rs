@@ -71,9 +71,7 @@ pub fn check_normals(patch: &Patch) -> Result<(), ModelError> {
 /// turning points.
 fn parameters(patch: &Patch, direction: usize) -> Vec<f64> {
     let steps = 2 * patch.degree[direction] + 1;
-    let bounds = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
-    let inside = |[from, to]: [f64; 2]| (0..steps).map(move |k| from + (to - from) * k as f64 / steps as f64);
-    bounds.into_iter().flat_map(inside).chain([1.0]).collect()
+    Spans::of(&patch.knots[direction], patch.degree[direction]).samples(steps)
 }
 
 /// Whether the normal turns over between two points, however near each other they are.

@@ -98,6 +98,11 @@ impl Supports {
         ModelError::Contradiction { support, other: other.map(|footprint| footprint.name.clone()) }
     }
 
+    /// Finds the support of this name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.footprints.iter().position(|footprint| footprint.name == name)
+    }
+
     pub(super) fn push(&mut self, owner: Option<usize>, expression: Expression) {
         self.constraints.push(expression);
         self.owner.push(owner);

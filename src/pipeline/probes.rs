@@ -134,12 +134,12 @@ impl Reader<'_> {
         component: Reaction,
     ) -> Result<(f64, &'static str, Option<[f64; 2]>), ModelError> {
         let spring = self.scene.springs.iter().find(|spring| spring.name == support);
-        let footprints = &self.discretization.unknowns.supports().footprints;
+        let supports = self.discretization.unknowns.supports();
         let holder = spring.map_or(support, |spring| &spring.section);
-        let Some(index) = footprints.iter().position(|trace| trace.name == holder) else {
+        let Some(index) = supports.find(holder) else {
             return Err(ModelError::NoSuchSupport { support: holder.to_owned() });
         };
-        let trace = &footprints[index];
+        let trace = &supports.footprints[index];
         let pole = trace.section.map_or(trace.pole, |section| add(trace.pole, self.placement.translation(section)));
         let [force, moment] = match spring {
             None => {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::adapt::{Coarsened, Finest, project_displacements};
 use crate::digest::Hash;
-use crate::energy::{At, TermSource, check_balance, check_held, remarks, strain_energy};
+use crate::energy::{At, TermSource, Terms, check_balance, check_held, remarks, strain_energy};
 use crate::equilibrium::{Configuration, Iterate, Workspace, WorkspaceError};
 use crate::model::{FreeStrains, MOST_CONTROL_POINTS, Member, ModelError, Tables, members};
 use crate::pipeline::StageError;
@@ -276,7 +276,7 @@ impl Stages {
 
     /// Computes the energy that springs and terms of the caller's own store in the model, N·mm.
     fn stored_by_terms(&mut self, state: &State) -> Result<f64, StageError> {
-        if self.own.is_empty() && self.scene.springs.is_empty() {
+        if !Terms::may_store(&self.scene, &self.own) {
             return Ok(0.0);
         }
         let (_, work) = self.workspace(&state.mesh, state.step, Stage::RefineKnots)?;

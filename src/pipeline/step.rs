@@ -5,7 +5,7 @@ use crate::pipeline::StageError;
 use crate::pipeline::probes::{read_connections, read_probes};
 use crate::pipeline::step_control::{Attempt, energy_released, is_jump_on_refinement, known_release};
 use crate::record::{Outcome, Report, Warning};
-use crate::scene::{Parameter, Scene, Stage};
+use crate::scene::{Parameter, Scene, Spring, Stage};
 use crate::shell::norm;
 use crate::state::{Course, DriveMemory, State, StepControl};
 
@@ -93,22 +93,20 @@ impl Step<'_> {
 
     /// Refuses a state in which a section with a spring of rotation has turned beyond what the spring can tell.
     fn check_springs(&self, next: &State) -> Result<(), StageError> {
+        if self.scene.springs.is_empty() {
+            return Ok(());
+        }
+        let unknowns = &self.work.discretization().unknowns;
+        let supports = unknowns.supports();
+        let Coordinates { placement, .. } = Coordinates::of(unknowns, Configuration::of(next));
         let springs = self.scene.springs.iter().filter(|spring| spring.rotation_n_mm_per_deg != [0.0; 3]);
-        for spring in springs {
-            let unknowns = &self.work.discretization().unknowns;
-            let footprint = unknowns.supports().footprints.iter().find(|footprint| footprint.name == spring.section);
-            let Some(section) = footprint.and_then(|footprint| footprint.section) else { continue };
-            let Coordinates { placement, .. } = Coordinates::of(unknowns, Configuration::of(next));
-            let angle_deg = norm(placement.turn(section)).to_degrees();
+        for Spring { name, section, .. } in springs {
+            let index = supports.find(section).and_then(|support| supports.footprints[support].section);
+            let angle_deg = index.map_or(0.0, |index| norm(placement.turn(index)).to_degrees());
             if angle_deg > FARTHEST_TURN_DEG {
-                let spring = spring.name.clone();
-                return Err(StageError::SpringTurnedOver {
-                    step: next.step,
-                    spring,
-                    section: footprint.map_or_else(String::new, |footprint| footprint.name.clone()),
-                    angle_deg,
-                    parameter: self.shown(next.parameter),
-                });
+                let (spring, section) = (name.clone(), section.clone());
+                let parameter = self.shown(next.parameter);
+                return Err(StageError::SpringTurnedOver { step: next.step, spring, section, angle_deg, parameter });
             }
         }
         Ok(())

@@ -42,8 +42,8 @@ fn check(
     }
     match load {
         Load::EndRotation(_) => {
-            let of_steps = ["support", "spring", "mass", "action"].into_iter().flat_map(|name| tables.all(name));
-            if let Some(table) = of_steps.into_iter().next() {
+            let mut of_steps = ["support", "spring", "mass", "action"].into_iter().flat_map(|name| tables.all(name));
+            if let Some(table) = of_steps.next() {
                 return Err(table.wrong(
                     None,
                     "turning ends are the supports and the load of this scene",

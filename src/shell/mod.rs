@@ -42,4 +42,4 @@ pub use point_batch::PointBatch;
 pub use quadrature::gauss_legendre;
 pub use stretching_batch::StretchingBatch;
 pub(crate) use surface_frame::{FrameVector, TANGENTS};
-pub(crate) use vector::{add, basis_vector, cross, dot, norm, scaled, sub};
+pub(crate) use vector::{add, basis_vector, cross, dot, norm, scaled, sub, unit_normal};

@@ -28,3 +28,9 @@ pub(crate) fn basis_vector(c: usize) -> [f64; 3] {
 pub(crate) fn norm(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
+
+/// The unit normal of a surface with these tangents.
+pub(crate) fn unit_normal([a1, a2]: [[f64; 3]; 2]) -> [f64; 3] {
+    let normal = cross(a1, a2);
+    scaled(1.0 / norm(normal), normal)
+}

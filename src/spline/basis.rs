@@ -36,6 +36,15 @@ impl Spans {
         self.bounds.iter().map(|[from, to]| 0.5 * (from + to)).collect()
     }
 
+    /// Points that divide each element into so many parts, the ends of all elements among them.
+    pub fn samples(&self, parts: usize) -> Vec<f64> {
+        let within = |[from, to]: &[f64; 2]| {
+            let [from, to] = [*from, *to];
+            (0..parts).map(move |k| from + (to - from) * k as f64 / parts as f64)
+        };
+        self.bounds.iter().flat_map(within).chain(self.bounds.last().map(|[_, end]| *end)).collect()
+    }
+
     /// Number of elements.
     pub fn count(&self) -> usize {
         self.index.len()

@@ -20,7 +20,7 @@ pub fn greville_points(knots: &[f64], degree: usize) -> Vec<f64> {
 }
 
 /// Values of all functions (columns) at some parameters (rows).
-fn collocation(knots: &[f64], degree: usize, parameters: &[f64]) -> DMatrix<f64> {
+pub fn collocation(knots: &[f64], degree: usize, parameters: &[f64]) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(parameters.len(), control_count(knots, degree));
     let mut basis = vec![0.0; basis_derivatives_len(degree)];
     for (row, parameter) in parameters.iter().enumerate() {

@@ -123,3 +123,9 @@ impl SurfaceSamples {
 pub(super) fn cells_of(counts: [usize; 2]) -> Grid {
     Grid::new(counts.map(|count| count.saturating_sub(1)))
 }
+
+/// Least and largest value, without those that are no numbers; 0 where there is none, as JSON has no number for that.
+pub(super) fn number_range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let [low, high] = values.fold([f64::NAN; 2], |[low, high], value| [low.min(value), high.max(value)]);
+    if low.is_nan() { [0.0; 2] } else { [low, high] }
+}

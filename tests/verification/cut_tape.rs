@@ -7,7 +7,7 @@
 use foldline::record::{Outcome, Report};
 use foldline::scene::{Scene, parse};
 
-use crate::support::{run, steps};
+use crate::support::{reading, run, steps};
 
 /// Rotation of each end at load factor 1: a little beyond the snap at 9.9 degrees.
 const TURN_DEG: f64 = 10.5;
@@ -180,9 +180,8 @@ impl Bent {
         let stages = run(tape.scene());
         let reports: Vec<&Report> = steps(&stages).into_iter().map(|(_, record)| &record.report).collect();
         assert!(reports.iter().all(|report| report.outcome == Outcome::Done && report.negative_pivots == 0));
-        let read = |report: &Report, name: &str| report.probes.iter().find(|probe| probe.name == name).unwrap().value;
         let point = |report: &&Report| {
-            let moment = (read(report, "root") - read(report, "tip")) / 2.0;
+            let moment = (reading(report, "root") - reading(report, "tip")) / 2.0;
             [report.parameter, moment, report.strain_energy_n_mm]
         };
         let jumps: Vec<usize> = (0..reports.len()).filter(|k| reports[*k].jumped).collect();

@@ -5,17 +5,13 @@ use foldline::scene::{Scene, parse};
 use foldline::state::State;
 
 use crate::benchmarks::table;
-use crate::support::{run, scene, steps};
+use crate::support::{reading, run, scene, steps};
 
 const T_BEAM: &str = include_str!("../../pipelines/verification/t-beam.toml");
 
 /// Elements of the left and the right half of the flange and of the web, ever finer.
 const MESHES: [[[usize; 2]; 3]; 3] =
     [[[28, 2], [36, 3], [30, 3]], [[36, 3], [46, 4], [40, 4]], [[48, 3], [60, 4], [54, 4]]];
-
-fn reading(report: &Report, name: &str) -> f64 {
-    report.probes.iter().find(|probe| probe.name == name).unwrap_or_else(|| panic!("no probe {name}")).value
-}
 
 /// A text with one part of it replaced, which must be there.
 fn with(text: &str, before: &str, after: &str) -> String {

@@ -10,7 +10,7 @@ use foldline::record::Report;
 use foldline::scene::{Scene, parse};
 use foldline::state::State;
 
-use crate::support::run;
+use crate::support::{reading, run};
 
 /// Length of the strip, mm.
 const L: f64 = 100.0;
@@ -25,10 +25,6 @@ fn strip(rest: &str) -> Scene {
          [mesh]\ndegree = [4, 2]\nelements = [8, 1]\n[load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 0.25\n{rest}"
     );
     parse(&text, "strip.toml").unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn reading(report: &Report, name: &str) -> f64 {
-    report.probes.iter().find(|probe| probe.name == name).unwrap().value
 }
 
 fn end(scene: Scene) -> (State, Report) {

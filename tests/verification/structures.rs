@@ -4,19 +4,14 @@ use foldline::energy::Terms;
 use foldline::equilibrium::{Configuration, Workspace, linear_buckling};
 use foldline::model::{ModelError, starting_mesh};
 use foldline::pipeline::Stages;
-use foldline::record::Report;
 use foldline::scene::{Scene, parse};
 use foldline::state::State;
 use rayon::ThreadPoolBuilder;
 
-use crate::support::{run, scene, steps};
+use crate::support::{reading, run, scene, steps};
 
 fn read(text: &str) -> Scene {
     parse(text, "structure.toml").unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn reading(report: &Report, name: &str) -> f64 {
-    report.probes.iter().find(|probe| probe.name == name).unwrap().value
 }
 
 /// Two strips at a right angle under a dead force at the end of the arm: tip and corner of a planar inextensible elastica (ODE, tolerance

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use foldline::pipeline::{Ending, Run, Stages};
-use foldline::record::{MemorySink, Record};
+use foldline::record::{MemorySink, Record, Report};
 use foldline::scene::{Scene, Stage, parse};
 use foldline::state::State;
 
@@ -37,4 +37,9 @@ pub fn steps(stages: &[(State, Record)]) -> Vec<&(State, Record)> {
 /// Stages of one kind.
 pub fn of(stages: &[(State, Record)], stage: Stage) -> impl Iterator<Item = &(State, Record)> {
     stages.iter().filter(move |(_, record)| record.report.stage == stage)
+}
+
+/// What a probe reads at an equilibrium.
+pub fn reading(report: &Report, name: &str) -> f64 {
+    report.probes.iter().find(|probe| probe.name == name).unwrap_or_else(|| panic!("no probe {name}")).value
 }

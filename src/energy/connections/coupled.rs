@@ -71,6 +71,8 @@ pub(super) struct SurfaceSide {
     pub controls: Vec<usize>,
     /// Functions of u, a₁ and a₂.
     pub functions: [Vec<f64>; 3],
+    /// Where it is undeformed, mm.
+    pub position: [f64; 3],
     /// No displacement, and a₁ and a₂ of the undeformed surface.
     pub undeformed: Local,
 }
@@ -84,6 +86,7 @@ impl SurfaceSide {
             at,
             controls: patch.window(window).map(|point| first + point).collect(),
             functions: [value, one, two],
+            position: surface.position,
             undeformed: [[0.0; 3], surface.derivatives[0], surface.derivatives[1]],
         }
     }

@@ -7,16 +7,17 @@ use crate::energy::{At, Tangent, Term};
 use crate::model::{EdgePair, Member, PairedEdge, SAME_KNOT, gauss_points, is_tied_smoothly};
 use crate::scene::JointKind;
 use crate::shell::{norm, shell_stiffness};
+use crate::spline::greville_points;
 
 /// The energies of a joint, each `None` where control points that are shared do all of it.
 #[derive(Debug)]
 pub(super) struct Joint {
     /// Keeps the edges together.
-    pub gaps: Option<MeanGaps>,
+    gaps: Option<MeanGaps>,
     /// Keeps the angle.
-    pub angle: Option<Coupling<KeptAngle>>,
-    /// Where the angle is looked at: close together, and at both ends.
-    pub seen: Vec<CoupledPoint<KeptAngle>>,
+    angle: Option<Coupling<KeptAngle>>,
+    /// Where else the angle is looked at: at both ends; and close together, where its energy is summed up at few points.
+    others: Vec<CoupledPoint<KeptAngle>>,
 }
 
 impl Joint {
@@ -33,13 +34,22 @@ impl Joint {
             let points: Vec<GapPoint> = points.iter().map(|point| edge.gap(*point)).collect();
             MeanGaps::new(&points, fewer_functions(pair))
         });
-        let seen = match keeps_angle {
-            true => points.iter().copied().chain([[0.0; 2], [1.0, 0.0]]).map(|point| edge.angle(point)).collect(),
-            false => Vec::new(),
+        if !keeps_angle {
+            return Some(Self { gaps, angle: None, others: Vec::new() });
+        }
+        let ends = [[0.0; 2], [1.0, 0.0]];
+        let (at, others) = match pair.conforms {
+            true => (points, ends.to_vec()),
+            false => (few_points(pair), [points, ends.to_vec()].concat()),
         };
-        let at = if pair.conforms { points } else { few_points(pair) };
-        let angle = keeps_angle.then(|| Coupling::new(at.into_iter().map(|point| edge.angle(point)).collect()));
-        Some(Self { gaps, angle, seen })
+        let [at, others] = [at, others].map(|points| points.into_iter().map(|point| edge.angle(point)).collect());
+        Some(Self { gaps, angle: Some(Coupling::new(at)), others })
+    }
+
+    /// Where the angle is looked at: close together, and at both ends.
+    pub fn seen(&self) -> impl Iterator<Item = &CoupledPoint<KeptAngle>> {
+        let own = self.angle.iter().filter(|_| self.gaps.is_none()).flat_map(|angle| &angle.points);
+        own.chain(&self.others)
     }
 
     fn terms(&self) -> impl Iterator<Item = &dyn Term> {
@@ -121,14 +131,9 @@ impl Along<'_> {
 fn few_points(pair: &EdgePair) -> Vec<[f64; 2]> {
     let fewer = fewer_functions(pair);
     let edge = &pair.edges[fewer];
-    let (knots, degree) = (&edge.patch.knots[edge.running()], edge.patch.degree[edge.running()]);
-    let greville = (0..knots.len() - degree - 1).map(|i| knots[i + 1..=i + degree].iter().sum::<f64>() / degree as f64);
-    let ends = {
-        let mut ends = [0.0, 1.0].map(|end| pair.opposite(end));
-        ends.sort_by(f64::total_cmp);
-        ends
-    };
-    let seen = greville.filter_map(|at| match fewer {
+    let greville = greville_points(&edge.patch.knots[edge.running()], edge.patch.degree[edge.running()]);
+    let ends = part_of_second(pair);
+    let seen = greville.into_iter().filter_map(|at| match fewer {
         0 => Some(at),
         _ => (at > ends[0] && at < ends[1]).then(|| pair.back(at)),
     });
@@ -143,10 +148,16 @@ fn few_points(pair: &EdgePair) -> Vec<[f64; 2]> {
 /// The edge (0 or 1) that has fewer functions along the joint: the one with fewer knot spans there.
 fn fewer_functions(pair: &EdgePair) -> usize {
     let [one, other] = &pair.edges;
-    let mut ends = [0.0, 1.0].map(|end| pair.opposite(end));
-    ends.sort_by(f64::total_cmp);
+    let ends = part_of_second(pair);
     let within = |[from, to]: &[f64; 2]| from.max(ends[0]) + SAME_KNOT < to.min(ends[1]);
     usize::from(other.spans().iter().filter(|span| within(span)).count() < one.spans().len())
+}
+
+/// Parameters of the second edge between which the first one lies on it.
+fn part_of_second(pair: &EdgePair) -> [f64; 2] {
+    let mut ends = [0.0, 1.0].map(|end| pair.opposite(end));
+    ends.sort_by(f64::total_cmp);
+    ends
 }
 
 /// Largest stiffness against stretching and against bending of the two shells, N/mm and N·mm.

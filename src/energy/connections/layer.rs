@@ -6,7 +6,7 @@ use super::coupled::{CoupledPoint, SurfaceSide};
 use super::glue::Glue;
 use crate::model::moduli_mpa;
 use crate::scene::{Bond, Material};
-use crate::shell::{add, cross, dot, norm, scaled, sub};
+use crate::shell::{add, cross, dot, norm, scaled, sub, unit_normal};
 use crate::spline::{Patch, Spans, SurfacePoint, mid_surface_point};
 
 /// Distance of faces that lie together, relative to the mean thickness.
@@ -78,10 +78,7 @@ impl<'a> Layer<'a> {
     pub fn faces(&self, at: [[f64; 2]; 2]) -> Option<Faces> {
         let mean = 0.5 * (self.thickness[0] + self.thickness[1]);
         let points = [0, 1].map(|k| mid_surface_point(&self.sides[k].perfect, &[], at[k]));
-        let normals = points.each_ref().map(|point| {
-            let normal = cross(point.derivatives[0], point.derivatives[1]);
-            scaled(1.0 / norm(normal), normal)
-        });
+        let normals = points.each_ref().map(|SurfacePoint { derivatives: [a1, a2, ..], .. }| unit_normal([*a1, *a2]));
         let positions = points.map(|SurfacePoint { position, .. }| position);
         let apart = sub(positions[1], positions[0]);
         let along = dot(apart, normals[0]);
@@ -96,13 +93,12 @@ impl<'a> Layer<'a> {
 
     /// The layer between two faces, over an area in mm².
     pub fn glued(&self, Faces { at, signs, .. }: &Faces, area: f64) -> CoupledPoint<Glue> {
-        let positions = [0, 1].map(|k| mid_surface_point(self.sides[k].patch, &[], at[k]).position);
         let surfaces = [0, 1].map(|k| SurfaceSide::new(self.sides[k].patch, self.sides[k].first, at[k]));
         let undeformed = surfaces.each_ref().map(|side| side.undeformed);
         let to_faces = [0, 1].map(|k| 0.5 * signs[k] * self.thickness[k]);
         let stiffness = self.stiffness * area;
         let flat = Glue { stiffness, area, to_faces, gap: [0.0; 3], at_rest: [0.0; 3] };
-        let gap = add(sub(positions[0], positions[1]), flat.across(&undeformed));
+        let gap = add(sub(surfaces[0].position, surfaces[1].position), flat.across(&undeformed));
         // Components of the gap on a₁, a₂ and a₃.
         let [_, a1, a2] = undeformed[0];
         let normal = cross(a1, a2);
@@ -126,11 +122,7 @@ pub(super) struct Searched<'a> {
 
 impl<'a> Searched<'a> {
     pub fn new(patch: Cow<'a, Patch>) -> Self {
-        let [us, vs] = [0, 1].map(|direction| {
-            let spans = Spans::of(&patch.knots[direction], patch.degree[direction]).bounds;
-            let within = |[from, to]: [f64; 2]| (0..STARTS).map(move |k| from + (to - from) * k as f64 / STARTS as f64);
-            spans.into_iter().flat_map(within).chain([1.0]).collect::<Vec<f64>>()
-        });
+        let [us, vs] = [0, 1].map(|k| Spans::of(&patch.knots[k], patch.degree[k]).samples(STARTS));
         let all = us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v]));
         let samples = all.map(|at| (at, mid_surface_point(&patch, &[], at).position)).collect();
         Self { patch, samples }

@@ -13,6 +13,7 @@
 use std::collections::BTreeMap;
 
 use super::coupled::SurfaceSide;
+use crate::energy::term::pairs_among;
 use crate::energy::{At, Tangent, Term};
 use crate::shell::{add, dot, scaled};
 
@@ -73,9 +74,7 @@ impl MeanGap {
 
 impl Term for MeanGaps {
     fn pairs(&self) -> Vec<[usize; 2]> {
-        let of_gap = |MeanGap { shares, .. }: &MeanGap| -> Vec<[usize; 2]> {
-            shares.iter().flat_map(|(i, _)| shares.iter().map(|(j, _)| [*i, *j])).collect()
-        };
+        let of_gap = |gap: &MeanGap| pairs_among(gap.shares.iter().map(|(point, _)| *point));
         let mut pairs: Vec<[usize; 2]> = self.0.iter().flat_map(of_gap).collect();
         pairs.sort_unstable();
         pairs.dedup();

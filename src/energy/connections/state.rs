@@ -39,8 +39,7 @@ impl Connection {
         let (energy_n_mm, opened_deg, tractions) = match &self.energy {
             Energy::Bond(glue) => (glue.energy(at), None, greatest(glue, at)),
             Energy::Joint(joint) => {
-                let opened =
-                    joint.seen.iter().map(|point| point.law.opened(&point.deformed(at.displacement)).to_degrees());
+                let opened = joint.seen().map(|point| point.law.opened(&point.deformed(at.displacement)).to_degrees());
                 let largest = opened.fold(None, |most: Option<f64>, angle| {
                     Some(most.map_or(angle, |most| if angle.abs() > most.abs() { angle } else { most }))
                 });

@@ -6,6 +6,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::energy::term::pairs_among;
 use crate::energy::{At, Tangent, Term};
 use crate::model::{EdgeRows, Member, ModelError, edge_rows};
 use crate::scene::{Axis, History, Hold, Scene, ShellEdge, Support};
@@ -236,8 +237,7 @@ impl TurningCouple {
 
 impl Term for TurningCouple {
     fn pairs(&self) -> Vec<[usize; 2]> {
-        let numbers: Vec<usize> = self.points.iter().map(|(point, _)| *point).collect();
-        numbers.iter().flat_map(|i| numbers.iter().map(|j| [*i, *j])).collect()
+        pairs_among(self.points.iter().map(|(point, _)| *point))
     }
 
     fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {

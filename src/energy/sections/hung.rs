@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 
 use super::frame::{POSE, SectionFrame};
+use crate::energy::term::pairs_among;
 use crate::energy::{At, Tangent, Term};
 use crate::shell::{FrameVector, TANGENTS, add, dot, scaled};
 use crate::spline::Mesh;
@@ -105,10 +106,7 @@ impl<L: PoseLaw> Hung<L> {
 
 impl<L: PoseLaw> Term for Hung<L> {
     fn pairs(&self) -> Vec<[usize; 2]> {
-        let mut numbers: Vec<usize> = self.frame.points.iter().map(|(point, _)| *point).collect();
-        numbers.sort_unstable();
-        numbers.dedup();
-        numbers.iter().flat_map(|i| numbers.iter().map(|j| [*i, *j])).collect()
+        pairs_among(self.frame.points.iter().map(|(point, _)| *point))
     }
 
     fn energy(&self, at: At) -> f64 {

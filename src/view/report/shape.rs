@@ -12,6 +12,7 @@ use crate::view::bonded::ShellsOfState;
 use crate::view::colour::VIRIDIS;
 use crate::view::export::{WholePoint, WholeShell, base64};
 use crate::view::fields::{Field, fields_of};
+use crate::view::samples::number_range;
 
 /// Most points of all shells in a frame.
 const MOST_POINTS: usize = 4000;
@@ -105,9 +106,9 @@ impl Shape {
         let sampled: Vec<Sampled> = states.iter().map(|at| Sampled::new(scene, &at.state, &grids, &offered)).collect();
         let coordinates =
             |c: usize| sampled.iter().flat_map(move |frame| frame.points.iter().map(move |point| point[c]));
-        let bounds = [0, 1, 2].map(|c| range(coordinates(c)));
+        let bounds = [0, 1, 2].map(|c| number_range(coordinates(c)));
         let ranges: Vec<[f64; 2]> = (0..offered.len())
-            .map(|index| range(sampled.iter().flat_map(|frame| frame.values[index].iter().copied())))
+            .map(|index| number_range(sampled.iter().flat_map(|frame| frame.values[index].iter().copied())))
             .collect();
         let has_blanks: Vec<bool> = (0..offered.len())
             .map(|index| sampled.iter().any(|frame| frame.values[index].iter().any(|value| value.is_nan())))
@@ -208,13 +209,6 @@ fn divided(mesh: &Patch, direction: usize, parts: usize) -> Vec<f64> {
     let inner =
         bounds.iter().flat_map(|[from, to]| (1..=parts).map(move |k| from + (to - from) * k as f64 / parts as f64));
     bounds.first().map(|[from, _]| *from).into_iter().chain(inner).collect()
-}
-
-/// Least and largest value, without those that are no numbers.
-fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let [low, high] = values.fold([f64::NAN; 2], |[low, high], value| [low.min(value), high.max(value)]);
-    // JSON has none for a field without a single number.
-    if low.is_nan() { [0.0; 2] } else { [low, high] }
 }
 
 /// Numbers as 16 bits over their ranges, little-endian, in base64; with blanks, what is no number is [`BLANK`].

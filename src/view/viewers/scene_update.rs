@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::Timestamp;
 use crate::view::SurfaceSamples;
 use crate::view::colour::Colour;
+use crate::view::samples::number_range;
 
 /// A surface with values on its points, and the values at the dark and the bright end of the colours.
 pub(super) struct Coloured {
@@ -18,8 +19,7 @@ impl Coloured {
     /// Colours a surface over the range of its own values.
     pub(super) fn new(samples: SurfaceSamples) -> Self {
         let values = vertex_values(&samples);
-        let range = values.iter().fold([f64::NAN; 2], |[low, high], value| [low.min(*value), high.max(*value)]);
-        let range = if range[0].is_nan() { [0.0; 2] } else { range };
+        let range = number_range(values.iter().copied());
         Self { samples, values, range }
     }
 }
