@@ -9,7 +9,7 @@ use crate::model::parametrize::fractions_of;
 use crate::model::random_field::RandomField;
 use crate::scene::{Geometry, Imperfection, ImperfectionKind, Scene};
 use crate::shell::{cross, dot, norm, scaled, sub};
-use crate::spline::{Interpolation, MeasuredSurface, Mesh, mid_surface_point};
+use crate::spline::{Interpolation, Mesh, ScalarSurface, mid_surface_point};
 
 /// Share of a field that a mesh does not show from which on that is said.
 const NOT_SHOWN: f64 = 0.1;
@@ -26,7 +26,7 @@ pub enum ImperfectionField<'s> {
         /// Its geometry.
         geometry: &'s Geometry,
         /// Offsets at fractions of u and v.
-        offsets: MeasuredSurface,
+        offsets: ScalarSurface,
         /// Factor of them.
         scale: f64,
     },
@@ -43,7 +43,7 @@ impl<'s> ImperfectionField<'s> {
             ImperfectionKind::Grid { shell, offsets, scale } => Some(Self::Measured {
                 shell: *shell,
                 geometry: scene.shells.get(*shell).map_or(&scene.geometry, |own| &own.geometry),
-                offsets: MeasuredSurface::through([&offsets.u, &offsets.v], &offsets.offsets_mm),
+                offsets: ScalarSurface::through([&offsets.u, &offsets.v], &offsets.offsets_mm),
                 scale: *scale,
             }),
         }

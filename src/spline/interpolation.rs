@@ -83,19 +83,23 @@ fn solve_both(factors: &[LU<f64, Dyn, Dyn>; 2], right: DMatrix<f64>) -> DMatrix<
     solve(&factors[1], half.transpose()).transpose()
 }
 
-/// The spline through values on a full grid of two variables.
+/// The spline of two variables through values on a full grid.
 #[derive(Debug)]
-pub struct MeasuredSurface {
+pub struct ScalarSurface {
     knots: [Vec<f64>; 2],
     degree: [usize; 2],
     control_values: DMatrix<f64>,
 }
 
-impl MeasuredSurface {
+impl ScalarSurface {
     /// Creates the spline through `values` at places that ascend each way, two or more of them; the second direction runs fastest.
     pub fn through(places: [&[f64]; 2], values: &[f64]) -> Self {
         let degree = places.map(|places| MEASURED_DEGREE.min(places.len() - 1));
-        let knots = [0, 1].map(|k| averaged_knots(places[k], degree[k]));
+        Self::of([0, 1].map(|k| averaged_knots(places[k], degree[k])), degree, places, values)
+    }
+
+    /// Creates the spline on given knots, with as many places each way as it has functions, which lie in their supports.
+    pub fn of(knots: [Vec<f64>; 2], degree: [usize; 2], places: [&[f64]; 2], values: &[f64]) -> Self {
         let factors = [0, 1].map(|k| collocation(&knots[k], degree[k], places[k]).lu());
         let right = DMatrix::from_row_iterator(places[0].len(), places[1].len(), values.iter().copied());
         Self { control_values: solve_both(&factors, right), knots, degree }
@@ -159,7 +163,7 @@ mod tests {
         let (us, vs) = ([0.0, 0.1, 0.35, 0.5, 0.8, 1.0], [0.0, 0.6, 1.0]);
         let function = |u: f64, v: f64| 1.0 - 2.0 * u + u.powi(3) * (1.0 + v - 0.5 * v * v);
         let values: Vec<f64> = us.iter().flat_map(|u| vs.iter().map(move |v| function(*u, *v))).collect();
-        let surface = MeasuredSurface::through([&us, &vs], &values);
+        let surface = ScalarSurface::through([&us, &vs], &values);
         for k in 0..50 {
             let (u, v) = (k as f64 / 49.0, (k as f64 * 0.618).fract());
             assert!((surface.at([u, v]) - function(u, v)).abs() < 1e-13, "{u} {v}");

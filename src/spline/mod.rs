@@ -30,7 +30,7 @@ pub use basis::{DEGREES, Spans, basis_derivatives, basis_derivatives_len, find_s
 pub use coarsening::Coarsening;
 pub use grid::Grid;
 pub use insertion::{insert_knots, insert_knots_into_net};
-pub use interpolation::{Interpolation, MeasuredSurface, collocation, greville_points};
+pub use interpolation::{Interpolation, ScalarSurface, collocation, greville_points};
 pub use knots::{KnotFlaw, check_knots, control_count, without_knots};
 pub use mesh::{Elements, KnotLists, Mesh, knot_counts};
 pub use patch::{Patch, cartesian};

@@ -20,14 +20,14 @@ impl<'a> ShellsOfState<'a> {
     /// Takes the shells apart.
     pub fn new(scene: &'a Scene, state: &'a State) -> Self {
         let members = members(scene, &state.mesh);
-        Self { scene, state, members, layers: GluedLayers::new(scene, &state.mesh) }
+        Self { scene, state, members, layers: GluedLayers::new(scene, &state.mesh, &state.displacement) }
     }
 
     /// The fields of each shell, in the order of the scene.
     pub fn fields(&self) -> impl ExactSizeIterator<Item = ShellFields<'_>> {
         self.members.iter().map(|Member { index, scene, patch, points }| {
             let Self { state: State { displacement, parameter, .. }, layers, .. } = self;
-            let glued = layers.of_shell(*index, displacement);
+            let glued = layers.of_shell(*index);
             ShellFields::new(scene, patch, &displacement[points.clone()], *parameter).with_bonds(glued)
         })
     }

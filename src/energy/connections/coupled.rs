@@ -197,12 +197,15 @@ impl<L: PointLaw> Term for Coupling<L> {
         let add = |point: &CoupledPoint<L>, sums: &mut Derivatives| {
             let sides = point.deformed(at.displacement);
             let of_rates = point.sides.each_ref().map(|side| side.rates(rates));
-            let mut without = Derivatives::zero();
-            point.law.add_derivatives(&sides, &mut without);
-            point.law.stressed(&sides, &of_rates).add_derivatives(&sides, sums);
-            for (sum, other) in sums.hessian.as_flattened_mut().iter_mut().zip(without.hessian.as_flattened()) {
-                *sum -= other;
-            }
+            // A law is quadratic in what stresses it: the difference of both senses leaves what is linear.
+            let [with, against] = [1.0, -1.0].map(|sign| {
+                let mut sums = Derivatives::zero();
+                let rates = of_rates.map(|side| side.map(|rate| scaled(sign, rate)));
+                point.law.stressed(&sides, &rates).add_derivatives(&sides, &mut sums);
+                sums.hessian
+            });
+            let both = with.as_flattened().iter().zip(against.as_flattened());
+            sums.hessian.as_flattened_mut().iter_mut().zip(both).for_each(|(sum, (a, b))| *sum += 0.5 * (a - b));
         };
         self.add_groups(&add, tangent);
     }

@@ -5,15 +5,15 @@ use crate::shell::{FrameVector, TANGENTS, add, basis_vector, cross, dot, norm, s
 
 /// The point of an area at which two shells are glued.
 ///
-/// ½ k |r|², r = x + c a₃ − (x′ + c′ a₃′) − g, with c and c′ the distances from the surfaces to the faces that are glued, and g the
-/// gap between the faces of the undeformed shells, carried along as components on a₁, a₂, a₃: fixed in space, a misfit
-/// would resist a rotation of the whole.
+/// ½ kₛ |r − s a₃|² + ½ kₙ s², s = r·a₃, r = x + c a₃ − (x′ + c′ a₃′) − g, with c and c′ the distances from the surfaces to the faces
+/// that are glued, and g the gap between the faces of the undeformed shells, carried along as components on a₁, a₂, a₃: fixed in
+/// space, a misfit would resist a rotation of the whole.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Glue {
-    /// k times the area of the point, N/mm.
-    pub stiffness: f64,
-    /// Undeformed area of the point, mm².
-    pub area: f64,
+    /// The stiffnesses that are summed up at the point times its area, N/mm: kₛ against slip, and kₙ against opening.
+    pub stiffness: [f64; 2],
+    /// k of the whole layer, N/mm³.
+    pub per_area: f64,
     /// c and c′, mm.
     pub to_faces: [f64; 2],
     /// Components of g on a₁, a₂ and a₃.
@@ -58,7 +58,7 @@ impl Traction {
 impl Glue {
     /// The traction −k r on the first shell, split along its deformed surface and normal.
     pub fn traction(&self, sides: &[Local; 2]) -> Traction {
-        let on_first = scaled(-self.stiffness / self.area, self.stretch(sides));
+        let on_first = scaled(-self.per_area, self.stretch(sides));
         let [_, a1, a2] = sides[0];
         let normal = FrameVector::normal([a1, a2]).value;
         let along = scaled(1.0 / norm(a1), a1);
@@ -74,7 +74,9 @@ impl Glue {
 impl PointLaw for Glue {
     fn energy(&self, sides: &[Local; 2]) -> f64 {
         let stretch = self.stretch(sides);
-        0.5 * self.stiffness * dot(stretch, stretch)
+        let [slip, opening] = self.stiffness;
+        let opened = dot(stretch, FrameVector::normal([sides[0][1], sides[0][2]]).value);
+        0.5 * (slip * dot(stretch, stretch) + (opening - slip) * opened * opened)
     }
 
     fn stressed(&self, sides: &[Local; 2], rates: &[Local; 2]) -> Self {
@@ -99,20 +101,59 @@ impl PointLaw for Glue {
                 slopes[k * LOCAL + FIRST_TANGENT + p] = add(straight, scaled(shares[k], normals[k].first[p]));
             }
         }
+        let [slip, opening] = self.stiffness;
         for p in 0..2 * LOCAL {
-            sums.gradient[p] += self.stiffness * dot(stretch, slopes[p]);
+            sums.gradient[p] += slip * dot(stretch, slopes[p]);
             for q in 0..2 * LOCAL {
-                sums.hessian[p][q] += self.stiffness * dot(slopes[p], slopes[q]);
+                sums.hessian[p][q] += slip * dot(slopes[p], slopes[q]);
             }
         }
-        for k in 0..2 {
-            let from = k * LOCAL + FIRST_TANGENT;
-            for p in 0..TANGENTS {
-                for q in 0..TANGENTS {
-                    sums.hessian[from + p][from + q] +=
-                        self.stiffness * shares[k] * dot(stretch, normals[k].second[p][q]);
+        // ∂²r, of the normals of one side each, times a vector.
+        let mut add_bends = |stiffness: f64, vector: [f64; 3]| {
+            for k in 0..2 {
+                let from = k * LOCAL + FIRST_TANGENT;
+                for p in 0..TANGENTS {
+                    for q in 0..TANGENTS {
+                        sums.hessian[from + p][from + q] +=
+                            stiffness * shares[k] * dot(vector, normals[k].second[p][q]);
+                    }
                 }
             }
+        };
+        add_bends(slip, stretch);
+        if opening != slip {
+            let opened = dot(stretch, normals[0].value);
+            add_bends((opening - slip) * opened, normals[0].value);
+            add_opening(sums, opening - slip, stretch, &slopes, &normals[0]);
+        }
+    }
+}
+
+/// Adds the derivatives of ½ k s², s = r·a₃, from those of r, but for the part k s a₃·∂²r.
+fn add_opening(
+    sums: &mut Derivatives,
+    stiffness: f64,
+    stretch: [f64; 3],
+    slopes: &[[f64; 3]; 2 * LOCAL],
+    normal: &FrameVector,
+) {
+    let opened = dot(stretch, normal.value);
+    let turn = |p: usize| match p {
+        FIRST_TANGENT..LOCAL => normal.first[p - FIRST_TANGENT],
+        _ => [0.0; 3],
+    };
+    let rates: Vec<f64> = (0..2 * LOCAL).map(|p| dot(slopes[p], normal.value) + dot(stretch, turn(p))).collect();
+    for p in 0..2 * LOCAL {
+        sums.gradient[p] += stiffness * opened * rates[p];
+        for q in 0..2 * LOCAL {
+            let mixed = dot(slopes[p], turn(q)) + dot(slopes[q], turn(p));
+            sums.hessian[p][q] += stiffness * (rates[p] * rates[q] + opened * mixed);
+        }
+    }
+    for p in 0..TANGENTS {
+        for q in 0..TANGENTS {
+            sums.hessian[FIRST_TANGENT + p][FIRST_TANGENT + q] +=
+                stiffness * opened * dot(stretch, normal.second[p][q]);
         }
     }
 }
@@ -127,16 +168,17 @@ mod tests {
         [[0.01, 0.02, -0.02], [1.05, 0.15, 0.0], [0.05, -1.0, 0.1]],
     ];
 
-    fn law() -> Glue {
-        let flat =
-            Glue { stiffness: 4.0, area: 1.0, to_faces: [0.3, 0.2], gap: [0.02, -0.03, 0.05], at_rest: [0.0; 3] };
+    fn law(stiffness: [f64; 2]) -> Glue {
+        let flat = Glue { stiffness, per_area: 4.0, to_faces: [0.3, 0.2], gap: [0.02, -0.03, 0.05], at_rest: [0.0; 3] };
         let at_rest = [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0; 3], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]];
         Glue { at_rest: flat.across(&at_rest), ..flat }
     }
 
     #[test]
     fn the_energy_of_a_layer_has_these_derivatives() {
-        check(&law(), &SIDES, 10.0);
+        for stiffness in [[4.0, 4.0], [4.0, 1.0], [0.0, 3.0]] {
+            check(&law(stiffness), &SIDES, 10.0);
+        }
     }
 
     /// Turned as one body about the origin, with a point 7 mm away, the layer is not stretched, whatever gap it had.
@@ -148,7 +190,8 @@ mod tests {
             [[7.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             [[7.02, 0.97, 0.55], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]],
         ];
-        let flat = Glue { stiffness: 1.0, area: 1.0, to_faces: [0.3, 0.2], gap: [0.0; 3], at_rest: [0.0; 3] };
+        let flat =
+            Glue { stiffness: [1.0, 0.3], per_area: 1.0, to_faces: [0.3, 0.2], gap: [0.0; 3], at_rest: [0.0; 3] };
         let undeformed = rest.map(|[_, a1, a2]: Local| [[0.0; 3], a1, a2]);
         let [x, y] = [rest[0][0], rest[1][0]];
         let gap = add(sub(x, y), flat.across(&undeformed));

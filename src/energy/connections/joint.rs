@@ -3,7 +3,7 @@
 use super::coupled::{CoupledPoint, Coupling, SurfaceSide};
 use super::kept_angle::KeptAngle;
 use super::mean_gap::{GapPoint, MeanGaps};
-use crate::energy::{At, Tangent, Term};
+use crate::energy::Term;
 use crate::model::{EdgePair, Member, PairedEdge, SAME_KNOT, gauss_points, is_tied_smoothly};
 use crate::scene::JointKind;
 use crate::shell::{norm, shell_stiffness};
@@ -52,35 +52,10 @@ impl Joint {
         own.chain(&self.others)
     }
 
-    fn terms(&self) -> impl Iterator<Item = &dyn Term> {
+    /// The terms of which it is the sum.
+    pub fn parts(&self) -> impl Iterator<Item = &dyn Term> {
         let gaps = self.gaps.iter().map(|gaps| gaps as &dyn Term);
         gaps.chain(self.angle.iter().map(|angle| angle as &dyn Term))
-    }
-}
-
-impl Term for Joint {
-    fn pairs(&self) -> Vec<[usize; 2]> {
-        self.terms().flat_map(Term::pairs).collect()
-    }
-
-    fn energy(&self, at: At) -> f64 {
-        self.terms().map(|term| term.energy(at)).sum::<f64>() + 0.0
-    }
-
-    fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
-        self.terms().for_each(|term| term.add_forces(at, forces));
-    }
-
-    fn has_tangent(&self) -> bool {
-        true
-    }
-
-    fn add_tangent(&self, at: At, tangent: &mut Tangent) {
-        self.terms().for_each(|term| term.add_tangent(at, tangent));
-    }
-
-    fn add_stress_stiffness(&self, at: At, rates: &[[f64; 3]], tangent: &mut Tangent) {
-        self.terms().for_each(|term| term.add_stress_stiffness(at, rates, tangent));
     }
 }
 

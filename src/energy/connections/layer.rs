@@ -6,8 +6,8 @@ use super::coupled::{CoupledPoint, SurfaceSide};
 use super::glue::Glue;
 use crate::model::moduli_mpa;
 use crate::scene::{Bond, Material};
-use crate::shell::{add, cross, dot, norm, scaled, sub, unit_normal};
-use crate::spline::{Patch, Spans, SurfacePoint, mid_surface_point};
+use crate::shell::{add, cross, dot, norm, scaled, shell_stiffness, sub, unit_normal};
+use crate::spline::{Patch, Spans, SurfacePoint, find_span, mid_surface_point};
 
 /// Distance of faces that lie together, relative to the mean thickness.
 const TOGETHER: f64 = 1e-3;
@@ -39,15 +39,17 @@ pub(super) struct Layer<'a> {
     /// Largest distance of faces that are glued, mm.
     pub tolerance: f64,
     /// k, N/mm³.
-    stiffness: f64,
-    /// The second shell.
-    pub other: Searched<'a>,
+    pub stiffness: f64,
+    /// 1/(1/A₁ + 1/A₂) of the stiffnesses of both shells against stretching, N/mm, and the like against bending, N mm.
+    both: [f64; 2],
+    searched: [Searched<'a>; 2],
 }
 
 /// Points of both shells whose faces look at each other.
 #[derive(Debug)]
 pub(super) struct Faces {
-    at: [[f64; 2]; 2],
+    /// Parameters of both.
+    pub at: [[f64; 2]; 2],
     /// The sides on which the faces lie, as seen along the normals.
     signs: [f64; 2],
     /// Distance of the faces, mm; below 0 where the shells cross each other.
@@ -59,23 +61,42 @@ impl<'a> Layer<'a> {
         let thickness = sides.each_ref().map(|side| side.material.thickness_mm());
         let mean = 0.5 * (thickness[0] + thickness[1]);
         let [one, other] = sides.each_ref().map(|side| moduli_mpa(side.material)[1]);
-        let searched = Searched::new(sides[1].perfect.clone());
+        let of_shells = sides.each_ref().map(|side| {
+            let stiffness = shell_stiffness(side.material, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+            [stiffness.membrane, stiffness.bending].map(|matrix| matrix[0][0].max(matrix[1][1]))
+        });
+        let both = [0, 1].map(|k| of_shells[0][k] * of_shells[1][k] / (of_shells[0][k] + of_shells[1][k]));
+        let searched = sides.each_ref().map(|side| Searched::new(side.perfect.clone()));
         Self {
             sides,
             thickness,
             tolerance: bond.gap_mm.unwrap_or(TOGETHER * mean),
             stiffness: bond.stiffness * one.max(other) / mean,
-            other: searched,
+            both,
+            searched,
         }
     }
 
-    /// Position of a point of the perfect first (0) or second (1) shell, mm.
-    pub fn position(&self, side: usize, at: [f64; 2]) -> [f64; 3] {
-        mid_surface_point(&self.sides[side].perfect, &[], at).position
+    /// The perfect first (0) or second (1) shell.
+    pub fn perfect(&self, side: usize) -> &Patch {
+        &self.sides[side].perfect
     }
 
-    /// Looks at the faces at parameters of both shells; `None` where they do not face each other.
-    pub fn faces(&self, at: [[f64; 2]; 2]) -> Option<Faces> {
+    /// Looks at the faces at a point of one side and the nearest point of the other one, whose parameters `guess` holds after it;
+    /// `None` where they do not face each other.
+    pub fn faces_at(&self, side: usize, at: [f64; 2], guess: &mut Option<[f64; 2]>) -> Option<Faces> {
+        let here = mid_surface_point(&self.sides[side].perfect, &[], at);
+        let found = self.searched[1 - side].nearest(here.position, *guess);
+        *guess = Some(found);
+        self.faces(if side == 0 { [at, found] } else { [found, at] })
+    }
+
+    /// Whether faces lie together.
+    pub fn is_glued(&self, faces: &Faces) -> bool {
+        faces.gap <= self.tolerance
+    }
+
+    fn faces(&self, at: [[f64; 2]; 2]) -> Option<Faces> {
         let mean = 0.5 * (self.thickness[0] + self.thickness[1]);
         let points = [0, 1].map(|k| mid_surface_point(&self.sides[k].perfect, &[], at[k]));
         let normals = points.each_ref().map(|SurfacePoint { derivatives: [a1, a2, ..], .. }| unit_normal([*a1, *a2]));
@@ -91,13 +112,27 @@ impl<'a> Layer<'a> {
         Some(Faces { at, signs: [sign, -sign * aligned.signum()], gap: along.abs() - mean })
     }
 
-    /// The layer between two faces, over an area in mm².
-    pub fn glued(&self, Faces { at, signs, .. }: &Faces, area: f64) -> CoupledPoint<Glue> {
+    /// Area of one side to that in its parameters, mm².
+    pub fn area_at(&self, side: usize, at: [f64; 2]) -> f64 {
+        let [a1, a2, ..] = mid_surface_point(&self.sides[side].perfect, &[], at).derivatives;
+        norm(cross(a1, a2))
+    }
+
+    /// The parts of the stiffness against slip and opening that are summed up between Greville points, or all of it, N/mm³
+    /// ([`super::bonded`]).
+    pub fn between(&self, at: [[f64; 2]; 2]) -> [f64; 2] {
+        let longest = [0, 1].map(|k| longest_of_element(&self.sides[k].perfect, at[k]));
+        let wave = std::f64::consts::PI / longest[0].max(longest[1]);
+        [self.both[0] * wave.powi(2), self.both[1] * wave.powi(4)].map(|part| part.min(self.stiffness))
+    }
+
+    /// The layer between two faces, over an area in mm², with the stiffnesses of its energy in N/mm³.
+    pub fn glued(&self, Faces { at, signs, .. }: &Faces, area: f64, stiffness: [f64; 2]) -> CoupledPoint<Glue> {
         let surfaces = [0, 1].map(|k| SurfaceSide::new(self.sides[k].patch, self.sides[k].first, at[k]));
         let undeformed = surfaces.each_ref().map(|side| side.undeformed);
         let to_faces = [0, 1].map(|k| 0.5 * signs[k] * self.thickness[k]);
-        let stiffness = self.stiffness * area;
-        let flat = Glue { stiffness, area, to_faces, gap: [0.0; 3], at_rest: [0.0; 3] };
+        let (stiffness, per_area) = (stiffness.map(|k| k * area), self.stiffness);
+        let flat = Glue { stiffness, per_area, to_faces, gap: [0.0; 3], at_rest: [0.0; 3] };
         let gap = add(sub(surfaces[0].position, surfaces[1].position), flat.across(&undeformed));
         // Components of the gap on a₁, a₂ and a₃.
         let [_, a1, a2] = undeformed[0];
@@ -113,15 +148,26 @@ impl<'a> Layer<'a> {
     }
 }
 
+/// Length of the longer side of an element, mm.
+fn longest_of_element(patch: &Patch, at: [f64; 2]) -> f64 {
+    let [a1, a2, ..] = mid_surface_point(patch, &[], at).derivatives;
+    let length = |direction: usize, tangent| {
+        let (knots, degree) = (&patch.knots[direction], patch.degree[direction]);
+        let span = find_span(knots, degree, at[direction]);
+        (knots[span + 1] - knots[span]) * norm(tangent)
+    };
+    length(0, a1).max(length(1, a2))
+}
+
 /// A patch on which nearest points are searched.
 #[derive(Debug)]
-pub(super) struct Searched<'a> {
+struct Searched<'a> {
     patch: Cow<'a, Patch>,
     samples: Vec<([f64; 2], [f64; 3])>,
 }
 
 impl<'a> Searched<'a> {
-    pub fn new(patch: Cow<'a, Patch>) -> Self {
+    fn new(patch: Cow<'a, Patch>) -> Self {
         let [us, vs] = [0, 1].map(|k| Spans::of(&patch.knots[k], patch.degree[k]).samples(STARTS));
         let all = us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v]));
         let samples = all.map(|at| (at, mid_surface_point(&patch, &[], at).position)).collect();
@@ -129,7 +175,7 @@ impl<'a> Searched<'a> {
     }
 
     /// Finds the parameters of the point nearest to another one, from a guess that is likely near.
-    pub fn nearest(&self, point: [f64; 3], guess: Option<[f64; 2]>) -> [f64; 2] {
+    fn nearest(&self, point: [f64; 3], guess: Option<[f64; 2]>) -> [f64; 2] {
         let away = |at: [f64; 2]| {
             let apart = sub(mid_surface_point(&self.patch, &[], at).position, point);
             dot(apart, apart)

@@ -6,14 +6,18 @@
 //! | `kept_angle`, `mean_gap` | the energies of a joint: of the angle, and of gaps between edges |
 //! | `glue` | the energy of a bond |
 //! | `layer` | where the faces that a bond glues lie together |
+//! | `bonded` | the energy of a bond, and what of it is summed up where |
 //! | `joint` | a joint, and where its energies are summed up |
-//! | `glued_points` | where the energy of a bond is summed up |
+//! | `greville_rule` | points of one direction of a patch at which a layer is summed up |
+//! | `glued_area` | where two shells are glued |
 //! | `tractions` | what bonds carry anywhere on their shells |
 //! | `state` | what joints and bonds show of a state |
 
+mod bonded;
 mod coupled;
 mod glue;
-mod glued_points;
+mod glued_area;
+mod greville_rule;
 mod joint;
 mod kept_angle;
 mod layer;
@@ -21,13 +25,15 @@ mod mean_gap;
 mod state;
 mod tractions;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
-use self::coupled::Coupling;
-use self::glue::Glue;
+use self::bonded::Bonded;
+use self::glued_area::GluedArea;
 use self::joint::Joint;
+use self::layer::{Layer, Side};
 use crate::energy::{At, Tangent, Term};
-use crate::model::{ModelError, edge_pairs, members, perfect_on};
+use crate::model::{Member, ModelError, edge_pairs, members, perfect_on};
 use crate::scene::Scene;
 use crate::spline::Mesh;
 
@@ -45,13 +51,30 @@ pub struct Connections {
 #[derive(Clone, Debug)]
 struct Connection {
     name: String,
-    energy: Energy,
+    energy: Arc<Energy>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 enum Energy {
-    Joint(Arc<Joint>),
-    Bond(Arc<Coupling<Glue>>),
+    Joint(Joint),
+    Bond(Bonded),
+}
+
+impl Energy {
+    /// The terms of which it is the sum.
+    fn parts(&self) -> Box<dyn Iterator<Item = &dyn Term> + '_> {
+        match self {
+            Self::Joint(joint) => Box::new(joint.parts()),
+            Self::Bond(bond) => Box::new(bond.parts()),
+        }
+    }
+
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Joint(_) => "joint",
+            Self::Bond(_) => "bond",
+        }
+    }
 }
 
 impl Connections {
@@ -67,7 +90,7 @@ impl Connections {
         let members = members(scene, mesh);
         for pair in edge_pairs(scene, &members)? {
             if let Some(joint) = Joint::of(&pair, &members) {
-                let energy = Energy::Joint(Arc::new(joint));
+                let energy = Arc::new(Energy::Joint(joint));
                 list.push(Connection { name: pair.joint.name.clone(), energy });
             }
         }
@@ -78,8 +101,14 @@ impl Connections {
         let perfect = perfect_on(scene, mesh)?;
         let perfect_members = crate::model::members(scene, &perfect);
         for bond in &scene.bonds {
-            let points = glued_points::glued_points(bond, &members, &perfect_members)?;
-            let energy = Energy::Bond(Arc::new(Coupling::new(points)));
+            let sides = bond.shells.map(|shell| {
+                let Member { scene, patch, points, .. } = &members[shell];
+                let perfect = Cow::Borrowed(perfect_members[shell].patch);
+                Side { patch, perfect, first: points.start, material: &scene.material }
+            });
+            let layer = Layer::new(bond, sides);
+            let area = GluedArea::new(&bond.name, &layer)?;
+            let energy = Arc::new(Energy::Bond(Bonded::new(&layer, area)));
             list.push(Connection { name: bond.name.clone(), energy });
         }
         Ok(Self { list })
@@ -87,26 +116,23 @@ impl Connections {
 
     /// Returns the term of each joint and bond, and what messages call it.
     pub(super) fn terms(&self) -> impl Iterator<Item = (String, Box<dyn Term>)> {
-        self.list.iter().map(|Connection { name, energy }| match energy {
-            Energy::Joint(coupling) => {
-                (format!("joint \"{name}\""), Box::new(Shared(coupling.clone())) as Box<dyn Term>)
-            }
-            Energy::Bond(coupling) => (format!("bond \"{name}\""), Box::new(Shared(coupling.clone())) as Box<dyn Term>),
+        self.list.iter().map(|Connection { name, energy }| {
+            (format!("{} \"{name}\"", energy.kind()), Box::new(Shared(energy.clone())) as Box<dyn Term>)
         })
     }
 }
 
-/// A term that others look at as well.
+/// An energy that others look at as well.
 #[derive(Debug)]
-struct Shared<T>(Arc<T>);
+struct Shared(Arc<Energy>);
 
-impl<T: Term> Term for Shared<T> {
+impl Term for Shared {
     fn pairs(&self) -> Vec<[usize; 2]> {
-        self.0.pairs()
+        self.0.parts().flat_map(Term::pairs).collect()
     }
 
     fn energy(&self, at: At) -> f64 {
-        self.0.energy(at)
+        self.0.parts().map(|part| part.energy(at)).sum::<f64>() + 0.0
     }
 
     /// The energy of a connection does not depend on the parameter.
@@ -115,18 +141,18 @@ impl<T: Term> Term for Shared<T> {
     }
 
     fn add_forces(&self, at: At, forces: &mut [[f64; 3]]) {
-        self.0.add_forces(at, forces);
+        self.0.parts().for_each(|part| part.add_forces(at, forces));
     }
 
     fn has_tangent(&self) -> bool {
-        self.0.has_tangent()
+        true
     }
 
     fn add_tangent(&self, at: At, tangent: &mut Tangent) {
-        self.0.add_tangent(at, tangent);
+        self.0.parts().for_each(|part| part.add_tangent(at, tangent));
     }
 
     fn add_stress_stiffness(&self, at: At, rates: &[[f64; 3]], tangent: &mut Tangent) {
-        self.0.add_stress_stiffness(at, rates, tangent);
+        self.0.parts().for_each(|part| part.add_stress_stiffness(at, rates, tangent));
     }
 }

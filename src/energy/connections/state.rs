@@ -1,8 +1,9 @@
 //! What joints and bonds show of a state.
 
-use super::coupled::{CoupledPoint, Coupling};
+use super::bonded::Bonded;
+use super::coupled::CoupledPoint;
 use super::glue::{Glue, Traction};
-use super::{Connection, Connections, Energy};
+use super::{Connection, Connections, Energy, Shared};
 use crate::energy::{At, Term};
 
 /// A joint or a bond in a state.
@@ -36,26 +37,27 @@ impl Connections {
 
 impl Connection {
     fn state(&self, at: At) -> ConnectionState {
-        let (energy_n_mm, opened_deg, tractions) = match &self.energy {
-            Energy::Bond(glue) => (glue.energy(at), None, greatest(glue, at)),
+        let energy_n_mm = Shared(self.energy.clone()).energy(at);
+        let (opened_deg, tractions) = match &*self.energy {
+            Energy::Bond(bond) => (None, greatest(bond, at)),
             Energy::Joint(joint) => {
                 let opened = joint.seen().map(|point| point.law.opened(&point.deformed(at.displacement)).to_degrees());
                 let largest = opened.fold(None, |most: Option<f64>, angle| {
                     Some(most.map_or(angle, |most| if angle.abs() > most.abs() { angle } else { most }))
                 });
-                (joint.energy(at), largest, None)
+                (largest, None)
             }
         };
         ConnectionState { name: self.name.clone(), energy_n_mm, opened_deg, tractions }
     }
 }
 
-/// The largest opening and shear tractions at the quadrature points of a bond, where its energy is summed up.
-fn greatest(glue: &Coupling<Glue>, at: At) -> Option<[GreatestTraction; 2]> {
+/// The largest opening and shear tractions at the Greville points of a bond.
+fn greatest(bond: &Bonded, at: At) -> Option<[GreatestTraction; 2]> {
     let of_point = |point: &CoupledPoint<Glue>| {
         let Traction { peel_mpa, shear_mpa: [one, two] } = point.law.traction(&point.deformed(at.displacement));
         [peel_mpa, one.hypot(two)].map(|mpa| GreatestTraction { mpa, at: point.sides[0].at })
     };
     let larger = |one: GreatestTraction, other: GreatestTraction| if other.mpa > one.mpa { other } else { one };
-    glue.points.iter().map(of_point).reduce(|all, one| [larger(all[0], one[0]), larger(all[1], one[1])])
+    bond.seen().iter().map(of_point).reduce(|all, one| [larger(all[0], one[0]), larger(all[1], one[1])])
 }
