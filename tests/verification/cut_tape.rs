@@ -1,8 +1,9 @@
 //! A tape spring that smooth joints cut into several shells is the tape spring of one shell: peak, snap and fold.
 //!
 //! Its ends are rigid sections that turn by opposite angles, in the sense that stretches the free edges. Of the moments of both ends
-//! half the difference is compared, which is the derivative of the energy with the angle: it is the same for a fold on either side of
-//! mid-length, and which of them a whole shell falls into is decided by rounding.
+//! half the difference is compared, each by its share of the angle, which is the derivative of the energy with the angle: it is the same
+//! for a fold on either side of mid-length, and which of them a spring falls into that is turned alike at both ends is decided by
+//! rounding.
 
 use foldline::record::{Outcome, Report};
 use foldline::scene::{Scene, parse};
@@ -47,6 +48,8 @@ struct Tape<'a> {
     degree: usize,
     /// Whether the normals of the shell at u = 0 and u = L turn with the sections; else they are hinged.
     clamped: [bool; 2],
+    /// Angle by which the tip turns back, as a share of that of the root.
+    tip_turn: f64,
     /// Distance by which the whole stands aside, mm.
     aside_mm: f64,
     /// Load factor to which the snap is located.
@@ -143,7 +146,7 @@ impl Tape<'_> {
             self.snap_tolerance,
             edges(0, "u-start"),
             edges(self.length.parts() - 1, "u-end"),
-            -TURN_DEG,
+            -self.tip_turn * TURN_DEG,
         )
     }
 }
@@ -181,7 +184,7 @@ impl Bent {
         let reports: Vec<&Report> = steps(&stages).into_iter().map(|(_, record)| &record.report).collect();
         assert!(reports.iter().all(|report| report.outcome == Outcome::Done && report.negative_pivots == 0));
         let point = |report: &&Report| {
-            let moment = (reading(report, "root") - reading(report, "tip")) / 2.0;
+            let moment = (reading(report, "root") - tape.tip_turn * reading(report, "tip")) / 2.0;
             [report.parameter, moment, report.strain_energy_n_mm]
         };
         let jumps: Vec<usize> = (0..reports.len()).filter(|k| reports[*k].jumped).collect();
@@ -245,6 +248,7 @@ fn coarse(width: Cut<'_>) -> Tape<'_> {
         arc: Arc::Panel,
         degree: 3,
         clamped: [true, true],
+        tip_turn: 1.0,
         aside_mm: 0.0,
         snap_tolerance: 0.002,
         tolerance: 1e-10,
@@ -252,17 +256,18 @@ fn coarse(width: Cut<'_>) -> Tape<'_> {
 }
 
 /// Cut across at knots, where the parts have the functions of the whole: to rounding, through the snap. An even number of elements
-/// along the arc has control points in the plane y = 0, an odd one has none. The far end is hinged, so that the spring does not
-/// fall to either side alike.
+/// along the arc has control points in the plane y = 0, an odd one has none. The far end is hinged and turns less, so that all fall to
+/// one side: a hinge alone lets 7 elements along the arc fold on the side of the root in one shell and on that of the tip in three,
+/// 3.5e-5 apart in energy.
 #[test]
-#[ignore = "with 7 elements along the arc one step differs by 3.5e-5 where 1e-9 is asked; why is open"]
 fn a_tape_spring_cut_across_is_the_one_shell() {
     for count in [7, 8] {
         let elements = [count];
-        let whole = Tape { clamped: [true, false], ..coarse(Cut { at: &[0.0, 1.0], elements: &elements }) };
+        let whole =
+            Tape { clamped: [true, false], tip_turn: 0.9, ..coarse(Cut { at: &[0.0, 1.0], elements: &elements }) };
         let three = Cut { at: &[0.0, 0.25, 0.625, 1.0], elements: &[6, 9, 9] };
         let [one, cut] = [whole, Tape { length: three, ..whole }].map(Bent::of);
-        assert!(one.peak() > 290.0 && one.fold() < 0.3 * one.peak(), "it folds: {one:?}");
+        assert!(one.peak() > 275.0 && one.fold() < 0.3 * one.peak(), "it folds: {one:?}");
         assert_eq!(cut.unknowns, one.unknowns, "{count} elements along the arc");
         let difference = cut.difference(&one);
         assert!(difference < 1e-9, "{count} elements along the arc: {difference:e}");
