@@ -38,7 +38,7 @@ pub struct Halving {
     pub energy: f64,
     /// Strain energy of the same shape with the quadrature of the halved elements.
     pub integrated: f64,
-    /// What finding equilibrium there would release, to first order.
+    /// What finding equilibrium there would release, to first order, but for modes that are critical.
     pub released: f64,
     /// The largest motion of a control point on the way there, mm.
     pub motion_mm: f64,
@@ -60,8 +60,9 @@ pub struct Halved {
 
 impl Halved {
     /// Relaxes an equilibrium on the mesh with every element halved, where `own` are user-defined terms; `None` where the
-    /// stiffness there has no factor, does not fit in memory, or there are more than a fifth of [`MOST_CONTROL_POINTS`].
-    pub fn of(scene: &Scene, own: &[Arc<dyn TermSource>], state: &State) -> Option<Self> {
+    /// stiffness there has no factor, does not fit in memory, or there are more than a fifth of [`MOST_CONTROL_POINTS`]. What lies in the
+    /// `critical` softest modes is left out of the energy: next to a critical point it says where that point lies.
+    pub fn of(scene: &Scene, own: &[Arc<dyn TermSource>], state: &State, critical: usize) -> Option<Self> {
         let mesh = &state.mesh;
         let finer = Arc::new(mesh.halved());
         if finer.point_count() > MOST_LOOKED_AT {
@@ -76,7 +77,8 @@ impl Halved {
         let energy = state.strain_energy_n_mm / scene.symmetry.copies() as f64;
         let largest = displacement.iter().map(|moved| norm(*moved)).fold(0.0, f64::max);
         let sizes_mm = [largest, longest_side(&finer)];
-        let (released, motion_mm) = (release.energy, release.motion_mm());
+        let soft = if critical > 0 { work.released_by_softest(&release, critical) } else { 0.0 };
+        let (released, motion_mm) = (release.energy - soft, release.motion_mm());
         let halving = Halving { energy, integrated, released, motion_mm, sizes_mm, held };
         let relaxed = release.after(1.0, &work);
         Some(Self { work, halving, relaxed, parameter: state.parameter, largest_force: state.largest_force_n })

@@ -1,10 +1,15 @@
 //! The energy that a state out of balance releases on its way to equilibrium, to first order.
 
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
 use crate::equilibrium::configuration::{Configuration, Coordinates};
 use crate::equilibrium::solve_error::SolveError;
 use crate::equilibrium::vector::product;
 use crate::equilibrium::workspace::Workspace;
 use crate::shell::norm;
+
+/// Vectors among which soft modes are sought, beyond their number.
+const MORE_VECTORS: usize = 2;
 
 /// One step of Newton's method from a state out of balance: with the residual r on the free unknowns and the stiffness K, the
 /// unknowns change by −K⁻¹r.
@@ -55,6 +60,44 @@ impl Workspace {
         let energy = -0.5 * product(&residual, &step);
         let motion = placement.velocity(&step, &[]);
         Ok(LinearRelease { energy, forces, motion, parameter, free, step })
+    }
+
+    /// The part of the energy of a release that lies in the `count` softest modes of the stiffness, found among the step and what the
+    /// inverse of the stiffness, which has to be that of the release still, makes of it. At a critical point these modes have hardly any
+    /// stiffness, and ½ (r·φ)²/μ says how far off that point is and not what the mesh cannot show.
+    pub fn released_by_softest(&mut self, release: &LinearRelease, count: usize) -> f64 {
+        let (mut space, mut solved): (Vec<DVector<f64>>, Vec<DVector<f64>>) = (Vec::new(), Vec::new());
+        let mut next = DVector::from_column_slice(&release.step);
+        for _ in 0..count + MORE_VECTORS {
+            // Twice, since what is nearly in the space leaves rounding in it.
+            for _ in 0..2 {
+                space.iter().for_each(|own| next.axpy(-own.dot(&next), own, 1.0));
+            }
+            let size = next.norm();
+            if size.is_nan() || size <= f64::MIN_POSITIVE {
+                break;
+            }
+            space.push(next / size);
+            next = space[space.len() - 1].clone();
+            self.tangent.solver.solve(next.as_mut_slice());
+            solved.push(next.clone());
+        }
+        let inverse = DMatrix::from_fn(space.len(), space.len(), |i, j| {
+            0.5 * (space[i].dot(&solved[j]) + space[j].dot(&solved[i]))
+        });
+        let modes = SymmetricEigen::new(inverse);
+        let step = DVector::from_iterator(
+            space.len(),
+            space.iter().map(|own| own.iter().zip(&release.step).map(|(own, step)| own * step).sum::<f64>()),
+        );
+        let mut softest: Vec<(f64, f64)> = modes
+            .eigenvalues
+            .iter()
+            .zip(modes.eigenvectors.column_iter())
+            .map(|(compliance, mode)| (*compliance, 0.5 * mode.dot(&step).powi(2) / compliance))
+            .collect();
+        softest.sort_by(|one, other| other.0.abs().total_cmp(&one.0.abs()));
+        softest.into_iter().take(count).map(|(_, energy)| energy).filter(|energy| energy.is_finite()).sum()
     }
 
     /// Computes a displacement again from its free unknowns, so that supports and joints hold on this mesh: on a finer one than that

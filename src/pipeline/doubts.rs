@@ -8,7 +8,7 @@ use crate::equilibrium::{Configuration, Equilibrium, LinearBuckling, Solved, Wor
 use crate::model::{Member, members};
 use crate::pipeline::probes::read_probes;
 use crate::pipeline::step_control::next_stage;
-use crate::record::{LARGE, Reading, Report, Warning};
+use crate::record::{CriticalPoint, LARGE, Reading, Report, Warning};
 use crate::scene::{Scene, Stage};
 use crate::state::{Refinement, State};
 
@@ -35,8 +35,8 @@ const LARGE_STRAIN: f64 = 0.05;
 pub(super) enum ReadAt {
     /// The last equilibrium before a jump.
     BeforeJump,
-    /// A critical point that was passed.
-    AtCriticalPoint,
+    /// A critical point that was passed, with so many modes that are critical.
+    AtCriticalPoint { modes: usize },
     /// The end of the run.
     AtEnd,
 }
@@ -52,10 +52,12 @@ pub(super) fn doubtful<'s>(
     // Only at the first critical point is the first mode the one that buckles.
     let is_first = before.negative_pivots == 0;
     let jumped = (report.jumped && solved).then_some((before, ReadAt::BeforeJump));
-    let ended = if report.critical_point.is_some() && solved && is_first {
-        Some((after, ReadAt::AtCriticalPoint))
-    } else {
-        next_stage(scene, after).is_none().then_some((after, ReadAt::AtEnd))
+    let critical = report.critical_point.filter(|_| solved && is_first);
+    let ended = match critical {
+        Some(CriticalPoint { pivots_changed, .. }) => {
+            Some((after, ReadAt::AtCriticalPoint { modes: pivots_changed.unsigned_abs().max(1) as usize }))
+        }
+        None => next_stage(scene, after).is_none().then_some((after, ReadAt::AtEnd)),
     };
     jumped.into_iter().chain(ended)
 }
@@ -96,7 +98,11 @@ impl Doubts<'_> {
             return None;
         }
         let state = self.state;
-        let mut halved = Halved::of(self.scene, self.own, state)?;
+        let critical = match read_at {
+            ReadAt::AtCriticalPoint { modes } => modes,
+            ReadAt::BeforeJump | ReadAt::AtEnd => 0,
+        };
+        let mut halved = Halved::of(self.scene, self.own, state, critical)?;
         let halving = halved.halving();
         let (parameter, elements) = (state.parameter, state.mesh.elements());
         let energy_share = halving.energy_share();
@@ -104,7 +110,7 @@ impl Doubts<'_> {
             return (!halving.is_still()).then_some(Warning::CoarseElements { parameter, elements, energy_share });
         }
         // Beyond a critical point the current mesh is unstable as well.
-        let is_stable = read_at == ReadAt::AtCriticalPoint || state.negative_pivots == 0;
+        let is_stable = critical > 0 || state.negative_pivots == 0;
         let buckled = if is_stable { halved.buckling() } else { None };
         if let Some(LinearBuckling { parameter: at, .. }) = buckled {
             return (at < (1.0 - LATE) * parameter).then_some(Warning::LateBuckling {

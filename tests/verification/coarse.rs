@@ -106,7 +106,7 @@ fn halving_is_foreseen() {
     scene.mesh.elements = [4, 4];
     scene.load.set_target(0.4);
     let (state, _) = run(scene.clone()).pop().unwrap();
-    let foreseen = Halved::of(&scene, &[], &state).unwrap().halving();
+    let foreseen = Halved::of(&scene, &[], &state, 0).unwrap().halving();
     let finer = std::sync::Arc::new(state.mesh.halved());
     let displacement = foldline::adapt::project_displacements(&state.mesh, &finer, &state.displacement);
     let mut work = Workspace::new(&scene, &finer).unwrap();
