@@ -161,7 +161,7 @@ fn shown(
         [] => rows.push(("odd", "nothing".to_owned())),
         odd => rows.extend(odd.iter().map(|odd| ("odd", odd.clone()))),
     }
-    let mut text = wrapped("", &shell) + "\n";
+    let mut text: String = shell.lines().map(|line| wrapped("", line) + "\n").collect();
     let mut last = "";
     for (head, row) in &rows {
         let shown = if *head == last { "" } else { head };

@@ -169,6 +169,9 @@ fn buckling_in_words(scene: &Scene, report: &BucklingReport) -> String {
             count(modes.counted, "mode")
         );
     }
+    if !modes.settled && !modes.modes.is_empty() {
+        text += "these load factors had not settled to the digits shown when their iterations were over; ask for more modes\n";
+    }
     if let Some(reversed) = modes.reversed {
         let at = significant(state.parameter + reversed, 7);
         text += &format!("under the reversed load the first mode lies near {at}\n");

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use crate::energy::{At, TermSource, Terms};
 use crate::model::{
-    ERROR_OF_OFFSET, Extent, FreeStrains, Member, Mirror, ModelError, ROUNDING, THICK, Unknowns, members, parameters_of,
+    ERROR_OF_OFFSET, Extent, FreeStrains, Member, Mirror, ModelError, ROUNDING, THICK, Unknowns, members,
+    parameters_of, unjoined_edges,
 };
-use crate::scene::{Action, ActionKind, ForceVector, Geometry, History, Scene, SurfaceDirection};
+use crate::scene::{Action, ActionKind, ForceVector, Geometry, History, Scene, ShellEdge, SurfaceDirection};
 use crate::shell::{FreeStrain, cross, dot, norm, scaled};
 use crate::spline::{Mesh, Patch, Spans, mid_surface_point};
 use crate::units::{rounded, significant};
@@ -46,8 +47,14 @@ pub fn remarks(
         images.extend(of_images(&scene, patch)?);
         theory.extend(of_thickness(&scene, patch).into_iter().chain(of_degree_2(&scene, patch)));
     }
+    let unjoined = unjoined_edges(scene, &members(scene, mesh)).into_iter().map(|edges| {
+        let [one, other] = edges.map(|ShellEdge { shell, edge }| {
+            format!("\"{}.{}\"", scene.shell_name(shell).unwrap_or_default(), edge.name())
+        });
+        format!("edges {one} and {other} lie on each other, and nothing connects them: write a [[joint]] if the shells go on there")
+    });
     let of_kinds = of_actions.into_iter().chain(images).chain(of_masses(scene));
-    let all = supports.chain(of_kinds).chain(of_nothing(scene, mesh, unknowns, own)?).chain(theory);
+    let all = supports.chain(unjoined).chain(of_kinds).chain(of_nothing(scene, mesh, unknowns, own)?).chain(theory);
     let mut said: Vec<String> = Vec::new();
     // Shells that are alike would say the same twice.
     all.for_each(|remark| {

@@ -63,6 +63,8 @@ pub struct BucklingModes {
     pub counted: usize,
     /// Change of the parameter of the first mode in the other sense, if one was met.
     pub reversed: Option<f64>,
+    /// Whether the load factors have settled, to a change of 1e-9.
+    pub settled: bool,
 }
 
 /// Why there is no linear buckling of a state.
@@ -123,7 +125,8 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
         tangent.factorize_formed()?;
         let product_with = |values: &[f64], vector: &[f64]| tangent.solver.multiply(values, vector);
         let solve = |vector: &mut Vec<f64>| tangent.solver.solve(vector);
-        let mut found = Subspace::new(free, block).settled(count, &shifted, &stress_matrix, &product_with, &solve);
+        let (mut found, settled) =
+            Subspace::new(free, block).settled(count, &shifted, &stress_matrix, &product_with, &solve);
         found.iter_mut().for_each(|(factor, _)| *factor += shift);
         // Where more modes of the reversed load lie nearer to 0 than the subspace holds, it has none of the load itself.
         if shift == 0.0 && found.iter().all(|(factor, _)| *factor <= 0.0) {
@@ -152,7 +155,7 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
             BucklingMode { factor: *factor, shape, largest_at }
         });
         let reversed = found.iter().map(|(factor, _)| *factor).filter(|factor| *factor < 0.0).reduce(f64::max);
-        return Ok(BucklingModes { modes: modes.collect(), counted, reversed });
+        return Ok(BucklingModes { modes: modes.collect(), counted, reversed, settled });
     }
 }
 
@@ -202,7 +205,8 @@ impl Subspace {
         Self { vectors: (0..block).map(|k| (0..free).map(|i| value(k, i)).collect()).collect() }
     }
 
-    /// Iterates until the first `count` positive factors have settled; returns factors and modes, the smallest magnitudes first.
+    /// Iterates until the first `count` positive factors have settled; returns factors and modes, the smallest magnitudes first, and
+    /// whether they have.
     fn settled(
         mut self,
         count: usize,
@@ -210,9 +214,9 @@ impl Subspace {
         stress: &[f64],
         multiply: &Product,
         solve: &Solution,
-    ) -> Vec<(f64, Vec<f64>)> {
+    ) -> (Vec<(f64, Vec<f64>)>, bool) {
         let mut last: Vec<f64> = Vec::new();
-        let mut factors = Vec::new();
+        let (mut factors, mut is_settled) = (Vec::new(), false);
         for _ in 0..MAX_ITERATIONS {
             for vector in &mut self.vectors {
                 let mut next = multiply(stress, vector);
@@ -222,7 +226,7 @@ impl Subspace {
             }
             factors = self.project(stiffness, stress, multiply);
             let lowest: Vec<f64> = factors.iter().copied().filter(|factor| *factor > 0.0).take(count).collect();
-            let is_settled = lowest.len() == last.len()
+            is_settled = lowest.len() == last.len()
                 && !lowest.is_empty()
                 && lowest.iter().zip(&last).all(|(now, before)| (now - before).abs() <= SETTLED * now.abs());
             if is_settled {
@@ -230,7 +234,7 @@ impl Subspace {
             }
             last = lowest;
         }
-        factors.into_iter().zip(self.vectors).collect()
+        (factors.into_iter().zip(self.vectors).collect(), is_settled)
     }
 
     /// Turns the vectors into the best approximations of modes among their sums (Rayleigh and Ritz), orthonormal in K, and returns

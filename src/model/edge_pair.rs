@@ -14,7 +14,7 @@ use crate::spline::{KnotLists, Mesh, Patch, Spans, SurfacePoint};
 use crate::units::place;
 
 /// Distance of edges that meet, relative to the smaller thickness.
-const MEETING: f64 = 1e-2;
+pub(super) const MEETING: f64 = 1e-2;
 /// Angle between surfaces, in degrees, up to which a joint may be smooth: imperfections and coarse curves make less.
 const SMOOTH_DEG: f64 = 5.0;
 /// Distance of points that are one, and difference of weights, relative to the length of an edge.
@@ -40,7 +40,7 @@ pub struct PairedEdge<'a> {
 }
 
 impl<'a> PairedEdge<'a> {
-    fn new(at: ShellEdge, members: &'a [Member<'a>]) -> Self {
+    pub(super) fn new(at: ShellEdge, members: &'a [Member<'a>]) -> Self {
         let member = &members[at.shell];
         Self { at, patch: member.patch, first: member.points.start }
     }

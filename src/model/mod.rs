@@ -22,6 +22,7 @@
 //! | `member` | the shells of a structure one by one |
 //! | `ties` | joints, seams and planes that tie rows |
 //! | `edge_pair`, `edge_ties` | edges of several shells that a joint joins, and their ties |
+//! | `unjoined` | edges that lie on each other though nothing connects them |
 //! | `body` | a rigid body and its motions |
 //! | `supports` | the constraints of supports on a mesh |
 //! | `hold`, `rigid_support` | the constraints that each kind makes |
@@ -88,6 +89,7 @@ mod symmetry_plane;
 mod tables;
 mod thinness;
 mod ties;
+mod unjoined;
 mod unknowns;
 
 pub use block_pattern::BlockPattern;
@@ -128,4 +130,5 @@ pub use symmetric_shell::symmetric_lines;
 pub(crate) use tables::{BATCH, LANES};
 pub use tables::{PointTable, Tables};
 pub(crate) use thinness::{ERROR_OF_OFFSET, Extent, THICK};
+pub(crate) use unjoined::unjoined_edges;
 pub use unknowns::{Entry, Unknowns};

@@ -12,8 +12,10 @@ use super::problem::Problem;
 use super::value::{as_float, value_type};
 
 /// The edges, as a scene calls them.
-pub(super) const EDGES: [(Edge, &str); 4] =
-    [(Edge::UStart, "u-start"), (Edge::UEnd, "u-end"), (Edge::VStart, "v-start"), (Edge::VEnd, "v-end")];
+pub(super) static EDGES: [(Edge, &str); 4] = {
+    let [a, b, c, d] = Edge::ALL;
+    [(a, a.name()), (b, b.name()), (c, c.name()), (d, d.name())]
+};
 
 /// Reads a part of the surface of one of some forms; where only edges or only points are allowed, that alone.
 pub(super) fn read(key: &'static Key, forms: &[Form], entry: &Entry<'_>) -> Checked<Value> {

@@ -113,6 +113,15 @@ impl Shells {
             word.rsplit_once('.').map_or((word, None), |(shell, edge)| (shell, known(edge)));
         let Some(edge) = edge else {
             let example = self.all.first().map_or("web", |shell| &shell.name);
+            if word.contains('=') {
+                return Err(table.wrong_at(
+                    key,
+                    format!("\"{word}\" is a line inside a shell, and only edges are joined and held as one"),
+                    format!(
+                        "write two shells that meet along that line, and a smooth joint of their edges, such as \"{example}.u-end\""
+                    ),
+                ));
+            }
             return Err(table.wrong_at(
                 key,
                 format!("\"{word}\" is no edge of a shell"),

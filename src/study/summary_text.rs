@@ -86,6 +86,22 @@ impl Summary {
         self.driven_by.shown_short(parameter)
     }
 
+    /// Two values of the parameter, with as many digits as tell them apart.
+    fn from_to(&self, from: f64, to: f64) -> String {
+        if from == to {
+            return format!("at {}, on refining", self.at(to));
+        }
+        let [short, other] = [from, to].map(|at| self.at(at));
+        if short != other {
+            return format!("from {short} to {other}");
+        }
+        let [from, to] = [from, to].map(|at| significant(at, 7));
+        match self.driven_by {
+            Parameter::Rotation => format!("from {from}° to {to}°"),
+            Parameter::LoadFactor => format!("from load factor {from} to load factor {to}"),
+        }
+    }
+
     /// Probes at the last equilibrium, jumps, and the balance of work and energy.
     fn write_readings(&self, f: &mut Formatter<'_>) -> fmt::Result {
         for Reading { name, value, unit, at } in &self.probes {
@@ -95,10 +111,9 @@ impl Summary {
         for snap in &self.snaps {
             writeln!(
                 f,
-                "  {:<17}  from {} to {}, {}{}",
+                "  {:<17}  {}, {}{}",
                 "snap",
-                self.at(snap.before),
-                self.at(snap.after),
+                self.from_to(snap.before, snap.after),
                 released_in_words(snap.energy_released_n_mm, self.loads_follow, 3),
                 if self.loads_follow && snap.energy_released_n_mm.is_some() { " along the descent" } else { "" }
             )?;

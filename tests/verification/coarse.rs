@@ -1,7 +1,7 @@
 //! Meshes that cannot show what the shell does are said to be coarse, and those of the shipped scenes are not.
 
 use foldline::adapt::Halved;
-use foldline::equilibrium::{Configuration, Equilibrium, Workspace};
+use foldline::equilibrium::{Configuration, Equilibrium, Workspace, linear_buckling};
 use foldline::pipeline::{Run, Stages};
 use foldline::record::{MemorySink, Record, Warning};
 use foldline::scene::{LengthLimit, Quadrature, Scene, Stage, parse};
@@ -115,6 +115,37 @@ fn halving_is_foreseen() {
     let model = found.balance.stored / scene.symmetry.copies() as f64;
     let released = foreseen.integrated - model;
     assert!(released > 0.0 && (foreseen.released / released - 1.0).abs() < 0.02, "{} {released}", foreseen.released);
+}
+
+/// A column of quadratic elements that is pushed aside a little, next to the load at which it buckles on the halved mesh: finding
+/// equilibrium there would release about all of its energy, all of it in the mode that buckles, and says nothing of the elements.
+#[test]
+fn a_mode_that_is_critical_tells_nothing_of_elements() {
+    let column = |elements: usize| {
+        parse(
+            &format!(
+                "[geometry]\nkind = \"plate\"\nlength_mm = 100.0\nwidth_mm = 5.0\n\
+                 [material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = 70000.0\npoissons_ratio = 0.0\nthickness_mm = 0.5\n\
+                 [mesh]\ndegree = 2\nelements = [{elements}, 1]\nquadrature = \"full\"\n\
+                 [load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n\
+                 [[support]]\nname = \"root\"\nkind = \"clamped\"\non = \"u-start\"\n\
+                 [[support]]\nname = \"tip\"\nkind = \"rigid\"\non = \"u-end\"\nx_mm = \"free\"\nz_mm = \"free\"\n\
+                 rotation_y_deg = \"free\"\n\
+                 [[action]]\nkind = \"section-force\"\nsection = \"tip\"\nforce_n = [-1.0, 0.0, 1e-7]\n"
+            ),
+            "column.toml",
+        )
+        .unwrap()
+    };
+    let finer = column(8);
+    let start = Stages::new(finer.clone()).start().unwrap();
+    let mut work = Workspace::new(&finer, &start.mesh).unwrap();
+    let critical = linear_buckling(&mut work, Configuration::of(&start), 1).unwrap().modes[0].factor;
+    let mut scene = column(4);
+    scene.load.set_target((1.0 - 1e-5) * critical);
+    let (state, _) = run(scene.clone()).pop().unwrap();
+    let [all, rest] = [0, 1].map(|modes| Halved::of(&scene, &[], &state, modes).unwrap().halving().released);
+    assert!(all > 0.0 && rest.abs() < 0.01 * all, "{all} {rest}");
 }
 
 /// A report tells of its state alone: stages that are run again say the same.

@@ -286,6 +286,7 @@ fn what_cannot_be_connected_is_refused() {
     assert!(matches!(flat, ModelError::SectionWithoutExtent { .. }), "{flat}");
     for (before, after, says) in [
         ("\"arm.u-start\"]", "\"arm.u-strat\"]", "no edge of a shell"),
+        ("\"arm.u-start\"]", "\"arm.u=0.5\"]", "write two shells that meet along that line"),
         ("\"arm.u-start\"]", "\"amr.u-start\"]", "did you mean \"arm\"?"),
         ("name = \"arm\"", "name = \"column\"", "another shell is called \"column\""),
         (
@@ -300,6 +301,24 @@ fn what_cannot_be_connected_is_refused() {
         assert_ne!(text, frame, "{before}");
         let error = parse(&text, "frame.toml").unwrap_err().to_string();
         assert!(error.contains(says), "{error}");
+    }
+}
+
+/// Edges on each other that a joint was forgotten for are remarked, and those of a joint, a bond or a section are not.
+#[test]
+fn edges_that_nothing_connects_are_remarked() {
+    let remarks = |text: &str| {
+        let mut stages = Stages::new(read(text));
+        let start = stages.start().unwrap();
+        stages.remarks(&start).unwrap().join("; ")
+    };
+    let frame = include_str!("../../pipelines/structures/right-angle-frame.toml");
+    let joint = &frame[frame.find("[[joint]]").unwrap()..frame.find("[load]").unwrap()];
+    let said = remarks(&frame.replace(joint, ""));
+    assert!(said.contains("\"column.u-end\" and \"arm.u-start\" lie on each other"), "{said}");
+    for joined in [frame, include_str!("../../pipelines/structures/trac-boom.toml")] {
+        let said = remarks(joined);
+        assert!(!said.contains("lie on each other"), "{said}");
     }
 }
 

@@ -39,6 +39,19 @@ pub enum Edge {
 }
 
 impl Edge {
+    /// All edges.
+    pub const ALL: [Self; 4] = [Self::UStart, Self::UEnd, Self::VStart, Self::VEnd];
+
+    /// What a scene calls it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::UStart => "u-start",
+            Self::UEnd => "u-end",
+            Self::VStart => "v-start",
+            Self::VEnd => "v-end",
+        }
+    }
+
     /// The direction that is constant along the edge, and whether the edge is at its end.
     pub fn side(self) -> (ParametricDirection, bool) {
         match self {

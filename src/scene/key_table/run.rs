@@ -156,7 +156,8 @@ pub(super) static CONTINUATION: &[Key] = &[
     ]), "\"arc-length\"")
         .means("What is prescribed in a load step. Under arc-length the first step is one increment; lengths are multiples of \
               its length, and the run ends where the rotation or the load factor reaches its target, on either side of 0. \
-              Limit points and bifurcations on the way are located to the snap tolerance.")
+              Limit points and bifurcations on the way are located to the snap tolerance; at a bifurcation the path goes on \
+              along the branch it came on, unless pipeline.stages has switch-branch.")
         .or(Default("\"load\""))
         .reaches(Steps)
         .also_called(&["kind", "type", "method", "riks", "crisfield"]),
