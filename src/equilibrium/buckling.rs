@@ -29,6 +29,8 @@ use crate::shell::{Hessian, PointReference, add, dot, norm, scaled};
 const MAX_ITERATIONS: usize = 300;
 /// Relative change of the eigenvalues that are asked for below which they have settled.
 const SETTLED: f64 = 1e-9;
+/// The same, up to which they are not said to be unsettled.
+const SHOWN: f64 = 1e-7;
 /// Vectors beyond twice the number of modes that is asked for.
 const MORE: usize = 6;
 /// Motion by which strains are differentiated, relative to the size of the element: their curvature leaves the square of it.
@@ -63,7 +65,7 @@ pub struct BucklingModes {
     pub counted: usize,
     /// Change of the parameter of the first mode in the other sense, if one was met.
     pub reversed: Option<f64>,
-    /// Whether the load factors have settled, to a change of 1e-9.
+    /// Whether the load factors have settled, to a change of 1e-7.
     pub settled: bool,
 }
 
@@ -226,10 +228,13 @@ impl Subspace {
             }
             factors = self.project(stiffness, stress, multiply);
             let lowest: Vec<f64> = factors.iter().copied().filter(|factor| *factor > 0.0).take(count).collect();
-            is_settled = lowest.len() == last.len()
-                && !lowest.is_empty()
-                && lowest.iter().zip(&last).all(|(now, before)| (now - before).abs() <= SETTLED * now.abs());
-            if is_settled {
+            let changed = |share: f64| {
+                let pairs = lowest.iter().zip(&last);
+                lowest.len() != last.len()
+                    || pairs.into_iter().any(|(now, before)| (now - before).abs() > share * now.abs())
+            };
+            is_settled = !lowest.is_empty() && !changed(SHOWN);
+            if is_settled && !changed(SETTLED) {
                 break;
             }
             last = lowest;
