@@ -87,7 +87,7 @@ impl Summary {
     }
 
     /// Two values of the parameter, with as many digits as tell them apart.
-    fn from_to(&self, from: f64, to: f64) -> String {
+    fn between(&self, from: f64, to: f64) -> String {
         if from == to {
             return format!("at {}, on refining", self.at(to));
         }
@@ -113,7 +113,7 @@ impl Summary {
                 f,
                 "  {:<17}  {}, {}{}",
                 "snap",
-                self.from_to(snap.before, snap.after),
+                self.between(snap.before, snap.after),
                 released_in_words(snap.energy_released_n_mm, self.loads_follow, 3),
                 if self.loads_follow && snap.energy_released_n_mm.is_some() { " along the descent" } else { "" }
             )?;

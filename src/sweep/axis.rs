@@ -98,6 +98,10 @@ impl Axis {
         match self.spacing {
             _ if index == 0 => from,
             _ if index == last => to,
+            // Steps of whole numbers reach them exactly.
+            Spacing::Linear if ((to - from) / last as f64).fract() == 0.0 => {
+                from + (to - from) / last as f64 * index as f64
+            }
             Spacing::Linear => from + share * (to - from),
             Spacing::Log => from * (to / from).powf(share),
         }
@@ -204,6 +208,10 @@ mod tests {
         let linear = axis("key = \"a.b\"\nfrom = 1\nto = 2\ncount = 5");
         let values: Vec<_> = (0..5).flat_map(|index| linear.at(index)).filter_map(|value| value.as_float()).collect();
         assert_eq!(values, [1.0, 1.25, 1.5, 1.75, 2.0]);
+        let seeds = axis("key = \"a.b\"\nfrom = 1\nto = 100\ncount = 100");
+        let values: Vec<_> =
+            (0..100).flat_map(|index| seeds.at(index)).filter_map(|value| value.as_integer()).collect();
+        assert_eq!(values, (1..=100).collect::<Vec<i64>>());
         let log = axis("key = \"a.b\"\nfrom = 1\nto = 100\ncount = 3\nspacing = \"log\"");
         let values: Vec<_> = (0..3).flat_map(|index| log.at(index)).filter_map(|value| value.as_integer()).collect();
         assert_eq!(values, [1, 10, 100], "whole numbers, as keys that count want them");
