@@ -68,10 +68,12 @@ impl Halved {
         if finer.point_count() > MOST_LOOKED_AT {
             return None;
         }
-        let displacement = project_displacements(mesh, &finer, &state.displacement);
+        let projected = project_displacements(mesh, &finer, &state.displacement);
         let mut work = Workspace::with_terms(scene, &finer, own).ok()?;
+        let (displacement, turns) =
+            work.allowed(Configuration { displacement: &projected, ..Configuration::of(state) });
         let integrated = work.energy(&displacement, state.parameter);
-        let at = Configuration { displacement: &displacement, ..Configuration::of(state) };
+        let at = Configuration { displacement: &displacement, turns: &turns, ..Configuration::of(state) };
         let held = work.energy(&vec![[0.0; 3]; displacement.len()], state.parameter);
         let release = work.linear_release(at).ok()?;
         let energy = state.strain_energy_n_mm / scene.symmetry.copies() as f64;

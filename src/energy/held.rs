@@ -6,9 +6,10 @@ use nalgebra::DMatrix;
 
 use crate::energy::{At, Connections, TermSource, Terms};
 use crate::model::{
-    BlockPattern, Blocks, Body, Connectivity, FreeMotions, HELD, ModelError, Tables, Unknowns, free_motions,
+    BlockPattern, Blocks, Body, Connectivity, FreeMotions, HELD, Member, ModelError, Tables, Unknowns, free_motions,
+    members,
 };
-use crate::scene::Scene;
+use crate::scene::{Hold, Scene};
 use crate::spline::Mesh;
 
 /// Supports at most of which it is tried whether u and v are exchanged.
@@ -30,9 +31,41 @@ pub fn check_held(
         [free, _] = free.parted_by_terms(scene, mesh, own)?;
     }
     match free.basis.ncols() {
+        0 if own.is_empty() => check_apart(scene, mesh),
         0 => Ok(()),
         _ => Err(ModelError::FreeMotion { motion: free.body.words(&free.basis), instead: held_instead(scene, mesh) }),
     }
+}
+
+/// Refuses a shell that nothing connects to the others, and supports of its own do not hold.
+fn check_apart(scene: &Scene, mesh: &Mesh) -> Result<(), ModelError> {
+    for Member { index, scene: alone, patch, .. } in members(scene, mesh) {
+        if scene.shell_count() == 1 || !is_apart(scene, index) {
+            continue;
+        }
+        let unknowns = Unknowns::new(&alone, &Mesh { patches: vec![patch.clone()] })?;
+        let free = free_motions(Body::around(&unknowns.points), unknowns.supports(), &unknowns.points);
+        if free.basis.ncols() > 0 {
+            let (motion, name) = (free.body.words(&free.basis), scene.shell_name(index).unwrap_or_default());
+            let motion =
+                format!("{motion}, of shell \"{name}\", which no joint, bond or section connects to another one");
+            return Err(ModelError::FreeMotion { motion, instead: Vec::new() });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a shell stands for itself: nothing connects it to another one, and neither a spring nor a support of rigid motions holds it.
+fn is_apart(scene: &Scene, shell: usize) -> bool {
+    let joined = scene.joints.iter().any(|joint| joint.edges.iter().any(|edge| edge.shell == shell));
+    let glued = scene.bonds.iter().any(|bond| bond.shells.contains(&shell));
+    let held = scene.supports.iter().any(|support| {
+        let has = support.edges().any(|edge| edge.shell == shell);
+        let shared = support.edges().any(|edge| edge.shell != shell);
+        let springs = scene.springs.iter().any(|spring| spring.section == support.name);
+        matches!(support.hold, Hold::RigidMotions) || (has && (shared || springs))
+    });
+    !(joined || glued || held)
 }
 
 /// Supports each of which would hold the shell, with the others, at the place with u and v exchanged, and that place.

@@ -88,7 +88,7 @@ impl Terms {
     }
 
     /// Forces on the control points, N, of the term of this name; `None` where there is none.
-    pub fn forces_of(&self, name: &str, at: At) -> Option<Vec<[f64; 3]>> {
+    pub(super) fn forces_of(&self, name: &str, at: At) -> Option<Vec<[f64; 3]>> {
         let Named { term, .. } = self.list.iter().find(|named| named.name == name)?;
         let mut forces = vec![[0.0; 3]; at.displacement.len()];
         term.add_forces(at, &mut forces);

@@ -127,18 +127,20 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
         tangent.factorize_formed()?;
         let product_with = |values: &[f64], vector: &[f64]| tangent.solver.multiply(values, vector);
         let solve = |vector: &mut Vec<f64>| tangent.solver.solve(vector);
-        let (mut found, settled) =
-            Subspace::new(free, block).settled(count, &shifted, &stress_matrix, &product_with, &solve);
-        found.iter_mut().for_each(|(factor, _)| *factor += shift);
-        // Where more modes of the reversed load lie nearer to 0 than the subspace holds, it has none of the load itself.
-        if shift == 0.0 && found.iter().all(|(factor, _)| *factor <= 0.0) {
-            let near = found.iter().map(|(factor, _)| -factor).fold(f64::INFINITY, f64::min);
-            if let Some(below) = below_first(tangent, (&stiffness, &stress_matrix), near)? {
-                shift = below;
+        let matrices = [&stiffness[..], &stress_matrix[..]];
+        let (found, settled) = Subspace::new(free, block).settled((count, shift), matrices, &product_with, &solve);
+        let mut positive: Vec<&(f64, Vec<f64>)> = found.iter().filter(|(factor, _)| *factor > 0.0).collect();
+        positive.sort_by(|one, other| one.0.total_cmp(&other.0));
+        positive.truncate(count);
+        // Where more modes of the reversed load lie nearer to 0 than the subspace holds, it has too few of the load itself.
+        if shift == 0.0 && positive.len() < count && found.len() > positive.len() {
+            let near = found.iter().map(|(factor, _)| factor.abs()).fold(f64::INFINITY, f64::min);
+            let known = (positive.len(), count);
+            if let Some(amid) = amid_first(tangent, (&stiffness, &stress_matrix), near, known)? {
+                shift = amid;
                 continue;
             }
         }
-        let positive: Vec<&(f64, Vec<f64>)> = found.iter().filter(|(factor, _)| *factor > 0.0).take(count).collect();
         let last = positive.last().map(|(factor, _)| *factor);
         let counted = match last {
             None => 0,
@@ -161,37 +163,46 @@ pub fn linear_buckling(work: &mut Workspace, at: Configuration, count: usize) ->
     }
 }
 
-/// Finds a load factor below the first one at which K + λ K_σ loses a positive pivot, and not far from it, by counting pivots from `near`
-/// on; `None` where it loses none up to [`FARTHEST`] times that.
-fn below_first(
+/// Finds a load factor with `count` modes below twice it, or with more than `known` where there are not so many up to [`FARTHEST`] times
+/// `near`, by counting pivots from `near` on; `None` where there are no more at all. Modes of the reversed load lie farther from it than
+/// these.
+fn amid_first(
     tangent: &mut TangentStiffness,
     (stiffness, stress): (&[f64], &[f64]),
     near: f64,
+    (known, count): (usize, usize),
 ) -> Result<Option<f64>, SolveError> {
-    let mut count = |factor: f64| tangent.factorize_sum(stiffness, factor, stress).map(|negative| negative.count);
+    let mut below = |factor: f64| tangent.factorize_sum(stiffness, factor, stress).map(|negative| negative.count);
     if !(near.is_finite() && near > 0.0) {
         return Ok(None);
     }
-    let (mut below, mut above) = (0.0, near);
-    while count(above)? == 0 {
-        (below, above) = (above, 2.0 * above);
-        if above > FARTHEST * near {
-            return Ok(None);
+    // The farthest factor that has no more below it, and the nearest one that has enough.
+    let (mut few, mut enough, mut most) = (0.0, None, known);
+    let mut factor = near;
+    while enough.is_none() && factor <= FARTHEST * near {
+        let now = below(factor)?;
+        match now {
+            now if now >= count => enough = Some(factor),
+            now if now > most => (few, most) = (factor, now),
+            _ if most == known => few = factor,
+            _ => {}
         }
+        factor *= 2.0;
     }
+    let Some(mut enough) = enough else { return Ok((most > known).then_some(0.5 * few)) };
     for _ in 0..HALVINGS {
-        let middle = 0.5 * (below + above);
-        match count(middle)? {
-            0 => below = middle,
-            _ => above = middle,
+        let middle = 0.5 * (few + enough);
+        match below(middle)? {
+            now if now >= count => enough = middle,
+            _ => few = middle,
         }
     }
-    Ok(Some(below))
+    Ok(Some(0.5 * enough))
 }
 
 /// Largest load factor that is searched, relative to that of the reversed load.
 const FARTHEST: f64 = 1e6;
-/// Halvings of the stretch in which the first load factor lies: the subspace then turns towards it from near by.
+/// Halvings of the stretch in which the last load factor that is asked for lies.
 const HALVINGS: usize = 5;
 
 /// Vectors that turn towards the modes with the smallest load factors.
@@ -207,13 +218,12 @@ impl Subspace {
         Self { vectors: (0..block).map(|k| (0..free).map(|i| value(k, i)).collect()).collect() }
     }
 
-    /// Iterates until the first `count` positive factors have settled; returns factors and modes, the smallest magnitudes first, and
-    /// whether they have.
+    /// Iterates with the matrix at a shift until the first `count` positive factors have settled; returns factors and modes, the ones
+    /// nearest to the shift first, and whether they have.
     fn settled(
         mut self,
-        count: usize,
-        stiffness: &[f64],
-        stress: &[f64],
+        (count, shift): (usize, f64),
+        [stiffness, stress]: [&[f64]; 2],
         multiply: &Product,
         solve: &Solution,
     ) -> (Vec<(f64, Vec<f64>)>, bool) {
@@ -226,8 +236,10 @@ impl Subspace {
                 solve(&mut next);
                 *vector = next;
             }
-            factors = self.project(stiffness, stress, multiply);
-            let lowest: Vec<f64> = factors.iter().copied().filter(|factor| *factor > 0.0).take(count).collect();
+            factors = self.project([stiffness, stress], shift, multiply);
+            let mut lowest: Vec<f64> = factors.iter().copied().filter(|factor| *factor > 0.0).collect();
+            lowest.sort_by(f64::total_cmp);
+            lowest.truncate(count);
             let changed = |share: f64| {
                 let pairs = lowest.iter().zip(&last);
                 lowest.len() != last.len()
@@ -243,10 +255,10 @@ impl Subspace {
     }
 
     /// Turns the vectors into the best approximations of modes among their sums (Rayleigh and Ritz), orthonormal in K, and returns
-    /// their load factors.
-    fn project(&mut self, stiffness: &[f64], stress: &[f64], multiply: &Product) -> Vec<f64> {
+    /// their load factors, the ones nearest to the shift first.
+    fn project(&mut self, matrices: [&[f64]; 2], shift: f64, multiply: &Product) -> Vec<f64> {
         let size = self.vectors.len();
-        let [k, s] = [stiffness, stress].map(|matrix| {
+        let [k, s] = matrices.map(|matrix| {
             let images: Vec<Vec<f64>> = self.vectors.iter().map(|vector| multiply(matrix, vector)).collect();
             let form = |i: usize, j: usize| {
                 0.5 * (product(&self.vectors[i], &images[j]) + product(&self.vectors[j], &images[i]))
@@ -264,9 +276,9 @@ impl Subspace {
         });
         let reduced = basis.transpose() * &s * &basis;
         let inner = (0.5 * (&reduced + reduced.transpose())).symmetric_eigen();
-        // −μ = 1/λ: the largest magnitudes come first.
+        let factor = |column: usize| -1.0 / inner.eigenvalues[column];
         let mut order: Vec<usize> = (0..kept.len()).collect();
-        order.sort_by(|a, b| inner.eigenvalues[*b].abs().total_cmp(&inner.eigenvalues[*a].abs()));
+        order.sort_by(|a, b| (factor(*a) - shift).abs().total_cmp(&(factor(*b) - shift).abs()));
         let turned = &basis * &inner.eigenvectors;
         let free = self.vectors.first().map_or(0, Vec::len);
         let combined = |column: usize| {
@@ -279,7 +291,7 @@ impl Subspace {
         };
         let vectors: Vec<Vec<f64>> = order.iter().map(|column| combined(*column)).collect();
         self.vectors = vectors;
-        order.into_iter().map(|column| -1.0 / inner.eigenvalues[column]).collect()
+        order.into_iter().map(factor).collect()
     }
 }
 

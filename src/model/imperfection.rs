@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 use crate::model::edge_pair::edge_pairs;
 use crate::model::imperfection_error::ImperfectionError;
-use crate::model::largest_offset::{Offset, largest_offset};
+use crate::model::largest_offset::{Offset, largest_of_patch, largest_offset};
 use crate::model::member::members;
 use crate::model::overhang::check_overhangs;
 use crate::model::scene_supports::supports_of;
@@ -117,20 +117,20 @@ pub fn moved(scene: &Scene, perfect: &Mesh, moves: &[[f64; 3]]) -> Result<Mesh, 
     for (point, shift) in points.zip(moves) {
         (0..3).for_each(|c| point[c] += point[3] * shift[c]);
     }
-    let Offset { mm: offset_mm, at } = largest_offset(scene, perfect, moves);
-    let at = place(at);
     for member in members(scene, perfect) {
+        let Offset { mm: offset_mm, at } = largest_of_patch(member.patch, &moves[member.points.clone()]);
         let Extent { radius_mm, side_mm, .. } = Extent::of(member.patch, &member.scene.material);
         let lengths =
             [("the smallest radius of curvature of the perfect one", radius_mm), ("its shorter side", side_mm)];
         if let Some((what, limit_mm)) = lengths.into_iter().find(|(_, length)| offset_mm >= *length) {
-            return Err(ImperfectionError::TooLarge { offset_mm, at, what, limit_mm }.into());
+            return Err(ImperfectionError::TooLarge { offset_mm, at: place(at), what, limit_mm }.into());
         }
     }
-    match sound(scene, &mesh) {
-        Ok(()) => Ok(mesh),
-        Err(fault) => Err(ImperfectionError::NoShell { offset_mm, at, fault: fault.to_string() }.into()),
-    }
+    sound(scene, &mesh).map_err(|fault| {
+        let Offset { mm: offset_mm, at } = largest_offset(scene, perfect, moves);
+        ImperfectionError::NoShell { offset_mm, at: place(at), fault: fault.to_string() }
+    })?;
+    Ok(mesh)
 }
 
 /// Refuses surfaces that no shells can have.

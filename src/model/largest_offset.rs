@@ -23,16 +23,20 @@ pub struct Offset {
 /// offset of 0 at the first corner.
 pub fn largest_offset(scene: &Scene, perfect: &Mesh, moves: &[[f64; 3]]) -> Offset {
     debug_assert_eq!(scene.shell_count(), perfect.patches.len());
-    let mut largest = Offset { mm: 0.0, at: perfect.point(0) };
-    for (patch, range) in perfect.patches.iter().zip(perfect.ranges()) {
-        let own = &moves[range];
-        let [us, vs] = [0, 1].map(|k| Spans::of(&patch.knots[k], patch.degree[k]).samples(SAMPLES));
-        for at in us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])) {
-            let [before, after] = mid_surface_points(patch, [&[], own], at);
-            let mm = norm(sub(after.position, before.position));
-            if mm > largest.mm {
-                largest = Offset { mm, at: before.position };
-            }
+    let nothing = Offset { mm: 0.0, at: perfect.point(0) };
+    let all = perfect.patches.iter().zip(perfect.ranges()).map(|(patch, range)| largest_of_patch(patch, &moves[range]));
+    all.fold(nothing, |largest, one| if one.mm > largest.mm { one } else { largest })
+}
+
+/// The same of one surface.
+pub fn largest_of_patch(patch: &Patch, moves: &[[f64; 3]]) -> Offset {
+    let mut largest = Offset { mm: 0.0, at: patch.point(0) };
+    let [us, vs] = [0, 1].map(|k| Spans::of(&patch.knots[k], patch.degree[k]).samples(SAMPLES));
+    for at in us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])) {
+        let [before, after] = mid_surface_points(patch, [&[], moves], at);
+        let mm = norm(sub(after.position, before.position));
+        if mm > largest.mm {
+            largest = Offset { mm, at: before.position };
         }
     }
     largest

@@ -29,10 +29,17 @@ pub fn unjoined_edges(scene: &Scene, members: &[Member]) -> Vec<[ShellEdge; 2]> 
 }
 
 fn are_connected(scene: &Scene, one: ShellEdge, other: ShellEdge) -> bool {
-    let joined = scene.joints.iter().any(|joint| joint.edges.contains(&one) && joint.edges.contains(&other));
+    // Through other edges on the same line as well.
+    let mut joined = vec![one];
+    while let Some(next) = scene.joints.iter().find_map(|joint| {
+        let [a, b] = joint.edges.map(|edge| joined.contains(&edge));
+        (a != b).then(|| joint.edges[usize::from(a)])
+    }) {
+        joined.push(next);
+    }
     let glued = scene.bonds.iter().any(|bond| bond.shells.contains(&one.shell) && bond.shells.contains(&other.shell));
     let held = |edge: ShellEdge| move |support: &Support| support.edges().any(|of| of == edge);
-    joined || glued || scene.supports.iter().any(|support| held(one)(support) && held(other)(support))
+    joined.contains(&other) || glued || scene.supports.iter().any(|support| held(one)(support) && held(other)(support))
 }
 
 fn lies_on(one: &PairedEdge, other: &PairedEdge, tolerance: f64) -> bool {

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use crate::energy::{TermSource, check_held};
-use crate::equilibrium::{BucklingMode, Configuration, Workspace, WorkspaceError, linear_buckling};
+use crate::equilibrium::{BucklingMode, BucklingModes, Configuration, Workspace, WorkspaceError, linear_buckling};
 use crate::model::{Gaussians, ImperfectionError, ModelError, SurfaceSample, largest_offset};
 use crate::scene::Scene;
 use crate::shell::{add, dot, scaled, sub};
@@ -72,17 +72,23 @@ impl Found {
         let last = modes.iter().copied().max().unwrap_or(1);
         let mut count = last + MORE;
         loop {
-            let found = Self { modes: lowest_modes(scene, perfect, own, name, count)? };
+            let BucklingModes { modes, counted, settled, .. } = lowest_modes(scene, perfect, own, name, count)?;
+            if !settled && !modes.is_empty() {
+                let reason = "their load factors did not settle; name fewer or lower modes".to_owned();
+                return Err(ImperfectionError::NoModes { imperfection: name.to_owned(), reason }.into());
+            }
+            let missed = counted > modes.len();
+            let found = Self { modes };
             if found.modes.len() < last {
                 let (imperfection, found) = (name.to_owned(), found.modes.len());
                 return Err(ImperfectionError::NoSuchMode { imperfection, mode: last, found }.into());
             }
             let (from, to) = found.span_of(last - 1);
             // There are no more of them, or the next one has another load factor.
-            if found.modes.len() < count || to < count {
+            if !missed && (found.modes.len() < count || to < count) {
                 return Ok(found);
             }
-            if count > MOST_TIMES * (last + MORE) {
+            if 2 * count > MOST_TIMES * (last + MORE) {
                 return Err(ImperfectionError::Cluster {
                     imperfection: name.to_owned(),
                     mode: last,
@@ -218,8 +224,15 @@ fn lowest_modes(
     own: &[Arc<dyn TermSource>],
     name: &str,
     count: usize,
-) -> Result<Vec<BucklingMode>, ModelError> {
+) -> Result<BucklingModes, ModelError> {
     let none = |reason: String| ModelError::from(ImperfectionError::NoModes { imperfection: name.to_owned(), reason });
+    // The modes are those of the loads at factor 1, in the ratio that they have there, however they get there.
+    let mut straight = scene.clone();
+    let histories = straight.actions.iter_mut().map(|action| &mut action.history);
+    histories.chain(straight.supports.iter_mut().map(|support| &mut support.history)).for_each(|history| {
+        *history = history.straight();
+    });
+    let scene = &straight;
     let work = Workspace::with_terms(scene, perfect, own);
     let mut work = work.map_err(|error| match error {
         WorkspaceError::Model(cause) => cause,
@@ -230,6 +243,5 @@ fn lowest_modes(
     let turns = if unknowns.turns_are_unknown() { vec![[0.0; 3]; unknowns.sections().len()] } else { Vec::new() };
     let displacement = vec![[0.0; 3]; perfect.point_count()];
     let at = Configuration { displacement: &displacement, turns: &turns, parameter: 0.0, largest_force: 0.0 };
-    let found = linear_buckling(&mut work, at, count).map_err(|error| none(error.to_string()))?;
-    Ok(found.modes)
+    linear_buckling(&mut work, at, count).map_err(|error| none(error.to_string()))
 }

@@ -148,7 +148,7 @@ impl Reader<'_> {
             Some(spring) => {
                 let Configuration { displacement, parameter, .. } = self.at;
                 let at = At { mesh: &self.discretization.mesh, displacement, parameter };
-                let forces = self.discretization.terms.forces_of(&spring.name, at).unwrap_or_default();
+                let forces = self.discretization.terms.forces_of_spring(&spring.name, at);
                 self.resultant(forces.into_iter().enumerate(), pole)
             }
         };

@@ -13,6 +13,8 @@ const APART: f64 = 1e-4;
 /// A place of a scene and where it is written.
 struct Site<'a> {
     name: String,
+    /// The shell, by its place in the list.
+    shell: usize,
     on: Region,
     table: &'a Table,
 }
@@ -22,17 +24,19 @@ pub(super) fn check(tables: &Tables, supports: &[Support], actions: &[Action]) -
     let (held, loaded) = (tables.all("support"), tables.all("action"));
     let supports = supports.iter().zip(held).map(|(support, table)| Site {
         name: format!("support \"{}\"", support.name),
+        shell: support.shell,
         on: support.on,
         table,
     });
     let actions = actions.iter().zip(loaded).filter_map(|(action, table)| {
-        Some(Site { name: format!("action \"{}\"", action.name), on: place_of(&action.kind)?, table })
+        let (name, on) = (format!("action \"{}\"", action.name), place_of(&action.kind)?);
+        Some(Site { name, shell: action.shell.unwrap_or(0), on, table })
     });
     let edges = EDGES.map(|(edge, name)| (Region::Edge(edge), format!("the edge \"{name}\"")));
     let mut before: Vec<Site> = Vec::new();
     for site in supports.chain(actions) {
         let edges = edges.iter().map(|(on, name)| (*on, name));
-        let others = before.iter().map(|other| (other.on, &other.name));
+        let others = before.iter().filter(|other| other.shell == site.shell).map(|other| (other.on, &other.name));
         let mut gaps = edges.chain(others).filter_map(|(on, name)| Some((gap(site.on, on)?, name)));
         if let Some((gap, other)) = gaps.next() {
             return Err(site.table.wrong_at(

@@ -122,23 +122,25 @@ fn there_is_no_traction_where_nothing_is_glued() {
 }
 
 /// A column of two strips glued on each other, clamped below, with a rigid section pushed at the top: 100 × 5 mm, 0.25 mm each.
-fn glued_column(degree: usize, elements: [usize; 2], stiffness: f64) -> Scene {
-    let strip = |name: &str, height: f64, elements: usize| {
+/// `strips` are the heights of their surfaces, and where those lie off the middle.
+fn glued_column(degree: usize, elements: [usize; 2], stiffness: f64, strips: [[f64; 2]; 2]) -> Scene {
+    let strip = |name: &str, [height, offset]: [f64; 2], elements: usize| {
         format!(
             "[[shell]]\nname = \"{name}\"\nposition_mm = [0.0, 0.0, {height:?}]\n[shell.geometry]\nkind = \"plate\"\n\
-             length_mm = 100.0\nwidth_mm = 5.0\n[shell.mesh]\ndegree = {degree}\nelements = [{elements}, 1]\n"
+             length_mm = 100.0\nwidth_mm = 5.0\n[shell.mesh]\ndegree = {degree}\nelements = [{elements}, 1]\n\
+             [shell.material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = {E:?}\npoissons_ratio = 0.0\nthickness_mm = 0.25\n\
+             offset_mm = {offset:?}\n"
         )
     };
     let text = format!(
-        "{}{}[material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = {E:?}\npoissons_ratio = 0.0\nthickness_mm = 0.25\n\
-         [[bond]]\nname = \"glue\"\nshells = [\"lower\", \"upper\"]\nstiffness = {stiffness:?}\n\
+        "{}{}[[bond]]\nname = \"glue\"\nshells = [\"lower\", \"upper\"]\nstiffness = {stiffness:?}\n\
          [load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n\
          [[support]]\nname = \"root\"\nkind = \"clamped\"\nedges = [\"lower.u-start\", \"upper.u-start\"]\n\
          [[support]]\nname = \"tip\"\nkind = \"rigid\"\nedges = [\"lower.u-end\", \"upper.u-end\"]\nx_mm = \"free\"\nz_mm = \"free\"\n\
          rotation_y_deg = \"free\"\n\
          [[action]]\nkind = \"section-force\"\nsection = \"tip\"\nforce_n = [-1.0, 0.0, 0.0]\n",
-        strip("lower", 0.0, elements[0]),
-        strip("upper", 0.25, elements[1]),
+        strip("lower", strips[0], elements[0]),
+        strip("upper", strips[1], elements[1]),
     );
     parse(&text, "column.toml").unwrap_or_else(|error| panic!("{error}"))
 }
@@ -152,7 +154,7 @@ fn glued_column(degree: usize, elements: [usize; 2], stiffness: f64) -> Scene {
 fn glued_strips_buckle_as_one_on_few_elements() {
     for (degree, elements, close) in [(3, [8, 8], 1e-2), (4, [8, 8], 3e-3), (3, [16, 16], 1e-3), (4, [16, 11], 2e-3)] {
         for stiffness in [0.5, 50.0] {
-            let column = glued_column(degree, elements, stiffness);
+            let column = glued_column(degree, elements, stiffness, [[0.0, 0.0], [0.25, 0.0]]);
             let start = Stages::new(column.clone()).start().unwrap();
             let mut work = Workspace::new(&column, &start.mesh).unwrap();
             let found = linear_buckling(&mut work, Configuration::of(&start), 3).unwrap();
@@ -163,5 +165,22 @@ fn glued_strips_buckle_as_one_on_few_elements() {
                 assert!((ratio - 1.0).abs() < close, "{degree} {elements:?} {stiffness}: load {times}: {ratio}");
             }
         }
+    }
+}
+
+/// Surfaces off the middle of the thickness: strips that are drawn on their common face, and on their outer ones, are the same pair to
+/// 1e-4: the layer is summed up at the same points, of other surfaces. As the middle ones they would cross, or lie apart.
+#[test]
+fn faces_are_those_of_the_material_whatever_the_offset() {
+    let load = |lower: [f64; 2], upper: [f64; 2]| {
+        let column = glued_column(3, [8, 8], 5.0, [lower, upper]);
+        let start = Stages::new(column.clone()).start().unwrap();
+        let mut work = Workspace::new(&column, &start.mesh).unwrap();
+        linear_buckling(&mut work, Configuration::of(&start), 1).unwrap().modes[0].factor
+    };
+    let middle = load([0.0, 0.0], [0.25, 0.0]);
+    for (lower, upper) in [([0.125, 0.125], [0.125, -0.125]), ([-0.125, -0.125], [0.375, 0.125])] {
+        let found = load(lower, upper);
+        assert!((found / middle - 1.0).abs() < 1e-4, "{lower:?} {upper:?}: {found} {middle}");
     }
 }

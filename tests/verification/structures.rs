@@ -224,20 +224,27 @@ fn a_mode_behind_many_of_the_reversed_load_is_found() {
              [[action]]\nkind = \"section-force\"\nsection = \"tip {name}\"\nforce_n = [{force:?}, 0.0, 0.0]\n"
         )
     };
-    let scene = read(&format!(
-        "{}{}[material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = 70000.0\npoissons_ratio = 0.0\nthickness_mm = 0.5\n\
-         [load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n{}{}",
-        shell("pushed", 0.0),
-        shell("pulled", 20.0),
-        held("pushed", -1.0),
-        held("pulled", 1000.0)
-    ));
-    let start = Stages::new(scene.clone()).start().unwrap();
-    let mut work = Workspace::new(&scene, &start.mesh).unwrap();
-    let found = linear_buckling(&mut work, Configuration::of(&start), 1).unwrap();
     let euler = std::f64::consts::PI.powi(2) * 70_000.0 * 5.0 * 0.5_f64.powi(3) / 12.0 / (4.0 * 100.0 * 100.0);
-    assert_eq!(found.counted, 1);
-    assert!((found.modes[0].factor / euler - 1.0).abs() < 2e-3, "{} {euler}", found.modes[0].factor);
+    // Pulled so much, or so little, that modes of the reversed load stand before all of those that are asked for, or before some.
+    for pulled in [1000.0, 100.0, 3.0] {
+        let scene = read(&format!(
+            "{}{}[material]\nkind = \"isotropic\"\nyoungs_modulus_mpa = 70000.0\npoissons_ratio = 0.0\nthickness_mm = 0.5\n\
+             [load]\nkind = \"steps\"\nfactor = 1.0\nincrement = 1.0\n{}{}",
+            shell("pushed", 0.0),
+            shell("pulled", 20.0),
+            held("pushed", -1.0),
+            held("pulled", pulled)
+        ));
+        let start = Stages::new(scene.clone()).start().unwrap();
+        let mut work = Workspace::new(&scene, &start.mesh).unwrap();
+        for count in [1, 3] {
+            let found = linear_buckling(&mut work, Configuration::of(&start), count).unwrap();
+            assert_eq!((found.counted, found.modes.len()), (count, count), "{pulled}");
+            for (mode, times) in found.modes.iter().zip([1.0, 9.0, 25.0]) {
+                assert!((mode.factor / (times * euler) - 1.0).abs() < 2e-3, "{pulled}: {} {times}", mode.factor);
+            }
+        }
+    }
 }
 
 /// The chain of a structure that refines one shell beside a joint is the same on one thread and on two, and from any stage on.
@@ -304,7 +311,7 @@ fn what_cannot_be_connected_is_refused() {
     }
 }
 
-/// Edges on each other that a joint was forgotten for are remarked, and those of a joint, a bond or a section are not.
+/// A shell that a joint was forgotten for is refused where nothing holds it, and else its edges are remarked; those of a joint, a bond or a section are not.
 #[test]
 fn edges_that_nothing_connects_are_remarked() {
     let remarks = |text: &str| {
@@ -314,9 +321,14 @@ fn edges_that_nothing_connects_are_remarked() {
     };
     let frame = include_str!("../../pipelines/structures/right-angle-frame.toml");
     let joint = &frame[frame.find("[[joint]]").unwrap()..frame.find("[load]").unwrap()];
-    let said = remarks(&frame.replace(joint, ""));
+    let apart = frame.replace(joint, "");
+    let refused = Stages::new(read(&apart)).start().unwrap_err().to_string();
+    assert!(refused.contains("of shell \"arm\", which no joint, bond or section connects"), "{refused}");
+    let said =
+        remarks(&(apart + "[[support]]\nname = \"own\"\nkind = \"clamped\"\nshell = \"arm\"\non = \"v-start\"\n"));
     assert!(said.contains("\"column.u-end\" and \"arm.u-start\" lie on each other"), "{said}");
-    for joined in [frame, include_str!("../../pipelines/structures/trac-boom.toml")] {
+    let boom = include_str!("../../pipelines/structures/trac-boom.toml");
+    for joined in [frame, boom, include_str!("../../pipelines/verification/t-beam.toml")] {
         let said = remarks(joined);
         assert!(!said.contains("lie on each other"), "{said}");
     }

@@ -6,7 +6,9 @@
 //! 1/A = 1/A₁ + 1/A₂ of the stiffnesses against stretching and h the length of an element, with which waves of two elements are as
 //! stiff as those of shells that are truly one: ½ k t² w′² is then the energy ½ A t² w″² at the wave number π/h. Against opening
 //! (π/h)⁴ D: with as much as against slip, shells whose meshes do not match would lock. Waves that are resolved fulfil the conditions
-//! at these points nearly, and pay nothing for it. What of a layer is no stiffer than that is summed up at Gauss points as a whole.
+//! at these points nearly, and pay nothing for it. What of a layer is no stiffer than that is summed up at Gauss points as a whole. The
+//! element's longer side counts: waves of two elements across the shorter one stay softer than they are, and still buckle later than any
+//! wave that the mesh can show.
 //!
 //! The third load of a column of two bonded strips 2000 times as long as thick, relative to Euler's (25 times the first), stiffness
 //! 0.5 and 50 E/t, with p Gauss points an element as they were, and so:

@@ -312,7 +312,7 @@ fn half(hessian: &[[f64; 2 * LOCAL]; 2 * LOCAL], side: usize, functions: [f64; 3
 pub(super) mod tests {
     use super::*;
 
-    /// Checks gradient and Hessian of a law by finite differences, and that a rigid motion of both surfaces costs nothing.
+    /// Checks gradient and Hessian of a law by finite differences.
     pub fn check(law: &impl PointLaw, sides: &[Local; 2], size: f64) {
         let step = 1e-6;
         let moved = |p: usize, by: f64| {

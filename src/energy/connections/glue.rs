@@ -16,6 +16,8 @@ pub(super) struct Glue {
     pub per_area: f64,
     /// c and c′, mm.
     pub to_faces: [f64; 2],
+    /// The side on which the other shell lies, as seen along the normal of the first: 1 or −1.
+    pub outward: f64,
     /// Components of g on a₁, a₂ and a₃.
     pub gap: [f64; 3],
     /// The part of r that is not displacement, of the undeformed shells, mm.
@@ -62,10 +64,8 @@ impl Glue {
         let [_, a1, a2] = sides[0];
         let normal = FrameVector::normal([a1, a2]).value;
         let along = scaled(1.0 / norm(a1), a1);
-        // The second shell lies on the side of the glued face.
-        let outward = self.to_faces[0].signum();
         Traction {
-            peel_mpa: outward * dot(on_first, normal),
+            peel_mpa: self.outward * dot(on_first, normal),
             shear_mpa: [dot(on_first, along), dot(on_first, cross(normal, along))],
         }
     }
@@ -169,7 +169,14 @@ mod tests {
     ];
 
     fn law(stiffness: [f64; 2]) -> Glue {
-        let flat = Glue { stiffness, per_area: 4.0, to_faces: [0.3, 0.2], gap: [0.02, -0.03, 0.05], at_rest: [0.0; 3] };
+        let flat = Glue {
+            stiffness,
+            per_area: 4.0,
+            to_faces: [0.3, 0.2],
+            outward: 1.0,
+            gap: [0.02, -0.03, 0.05],
+            at_rest: [0.0; 3],
+        };
         let at_rest = [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0; 3], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]];
         Glue { at_rest: flat.across(&at_rest), ..flat }
     }
@@ -190,8 +197,14 @@ mod tests {
             [[7.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             [[7.02, 0.97, 0.55], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]],
         ];
-        let flat =
-            Glue { stiffness: [1.0, 0.3], per_area: 1.0, to_faces: [0.3, 0.2], gap: [0.0; 3], at_rest: [0.0; 3] };
+        let flat = Glue {
+            stiffness: [1.0, 0.3],
+            per_area: 1.0,
+            to_faces: [0.3, 0.2],
+            outward: 1.0,
+            gap: [0.0; 3],
+            at_rest: [0.0; 3],
+        };
         let undeformed = rest.map(|[_, a1, a2]: Local| [[0.0; 3], a1, a2]);
         let [x, y] = [rest[0][0], rest[1][0]];
         let gap = add(sub(x, y), flat.across(&undeformed));

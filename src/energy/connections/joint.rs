@@ -120,12 +120,17 @@ fn few_points(pair: &EdgePair) -> Vec<[f64; 2]> {
     points.into_iter().zip(bounds.windows(2)).map(|(at, bounds)| [at, bounds[1] - bounds[0]]).collect()
 }
 
-/// The edge (0 or 1) that has fewer functions along the joint: the one with fewer knot spans there.
+/// The edge (0 or 1) that has fewer functions along the joint: as many as knots inside, each as often as it stands there, and one more
+/// than the degree.
 fn fewer_functions(pair: &EdgePair) -> usize {
     let [one, other] = &pair.edges;
     let ends = part_of_second(pair);
-    let within = |[from, to]: &[f64; 2]| from.max(ends[0]) + SAME_KNOT < to.min(ends[1]);
-    usize::from(other.spans().iter().filter(|span| within(span)).count() < one.spans().len())
+    let functions = |edge: &PairedEdge, [from, to]: [f64; 2]| {
+        let knots = &edge.patch.knots[edge.running()];
+        let inside = knots.iter().filter(|knot| **knot > from + SAME_KNOT && **knot < to - SAME_KNOT).count();
+        inside + edge.patch.degree[edge.running()] + 1
+    };
+    usize::from(functions(other, [ends[0], ends[1]]) < functions(one, [0.0, 1.0]))
 }
 
 /// Parameters of the second edge between which the first one lies on it.

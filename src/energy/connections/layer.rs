@@ -36,6 +36,8 @@ pub(super) struct Side<'a> {
 pub(super) struct Layer<'a> {
     sides: [Side<'a>; 2],
     thickness: [f64; 2],
+    /// Where the middle of each thickness lies along the normal, off the surface, mm.
+    middle: [f64; 2],
     /// Largest distance of faces that are glued, mm.
     pub tolerance: f64,
     /// k, N/mm³.
@@ -59,6 +61,7 @@ pub(super) struct Faces {
 impl<'a> Layer<'a> {
     pub fn new(bond: &Bond, sides: [Side<'a>; 2]) -> Self {
         let thickness = sides.each_ref().map(|side| side.material.thickness_mm());
+        let middle = sides.each_ref().map(|side| -side.material.offset_mm());
         let mean = 0.5 * (thickness[0] + thickness[1]);
         let [one, other] = sides.each_ref().map(|side| moduli_mpa(side.material)[1]);
         let of_shells = sides.each_ref().map(|side| {
@@ -70,6 +73,7 @@ impl<'a> Layer<'a> {
         Self {
             sides,
             thickness,
+            middle,
             tolerance: bond.gap_mm.unwrap_or(TOGETHER * mean),
             stiffness: bond.stiffness * one.max(other) / mean,
             both,
@@ -108,8 +112,10 @@ impl<'a> Layer<'a> {
         if beside > BESIDE * mean || aligned.abs() < PARALLEL {
             return None;
         }
-        let sign = along.signum();
-        Some(Faces { at, signs: [sign, -sign * aligned.signum()], gap: along.abs() - mean })
+        // From the middle of the one thickness to that of the other.
+        let apart = along + aligned.signum() * self.middle[1] - self.middle[0];
+        let sign = apart.signum();
+        Some(Faces { at, signs: [sign, -sign * aligned.signum()], gap: apart.abs() - mean })
     }
 
     /// Area of one side to that in its parameters, mm².
@@ -130,9 +136,9 @@ impl<'a> Layer<'a> {
     pub fn glued(&self, Faces { at, signs, .. }: &Faces, area: f64, stiffness: [f64; 2]) -> CoupledPoint<Glue> {
         let surfaces = [0, 1].map(|k| SurfaceSide::new(self.sides[k].patch, self.sides[k].first, at[k]));
         let undeformed = surfaces.each_ref().map(|side| side.undeformed);
-        let to_faces = [0, 1].map(|k| 0.5 * signs[k] * self.thickness[k]);
+        let to_faces = [0, 1].map(|k| self.middle[k] + 0.5 * signs[k] * self.thickness[k]);
         let (stiffness, per_area) = (stiffness.map(|k| k * area), self.stiffness);
-        let flat = Glue { stiffness, per_area, to_faces, gap: [0.0; 3], at_rest: [0.0; 3] };
+        let flat = Glue { stiffness, per_area, to_faces, outward: signs[0], gap: [0.0; 3], at_rest: [0.0; 3] };
         let gap = add(sub(surfaces[0].position, surfaces[1].position), flat.across(&undeformed));
         // Components of the gap on a₁, a₂ and a₃.
         let [_, a1, a2] = undeformed[0];

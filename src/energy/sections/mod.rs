@@ -15,13 +15,23 @@ mod weight;
 use self::hung::Hung;
 use self::spring::SpringLaw;
 use self::weight::Weight;
-use crate::energy::Terms;
 use crate::energy::loads::is_below;
+use crate::energy::{At, Terms};
 use crate::model::{ModelError, members};
 use crate::scene::{ActionKind, Scene};
 use crate::spline::Mesh;
 
+/// What the term of a spring is called: an action may have the spring's own name.
+fn spring_term(spring: &str) -> String {
+    format!("spring \"{spring}\"")
+}
+
 impl Terms {
+    /// Forces of a spring on the control points, N.
+    pub fn forces_of_spring(&self, spring: &str, at: At) -> Vec<[f64; 3]> {
+        self.forces_of(&spring_term(spring), at).unwrap_or_default()
+    }
+
     /// Adds the springs of a scene, and the weights of its point masses where there is gravity, on sections where both parameters
     /// are below `limits`.
     ///
@@ -36,7 +46,7 @@ impl Terms {
             if !is_below(scene, &spring.section, limits)? {
                 continue;
             }
-            self.push(&spring.name, Box::new(Hung::<SpringLaw>::of(scene, mesh, &members, spring)?));
+            self.push(&spring_term(&spring.name), Box::new(Hung::<SpringLaw>::of(scene, mesh, &members, spring)?));
         }
         for mass in &scene.masses {
             if !is_below(scene, &mass.section, limits)? {
@@ -45,7 +55,7 @@ impl Terms {
             for action in &scene.actions {
                 if let ActionKind::Gravity { acceleration_m_s2 } = action.kind {
                     let weight = Hung::<Weight>::of(scene, mesh, &members, (mass, acceleration_m_s2, &action.history))?;
-                    self.push(&mass.name, Box::new(weight));
+                    self.push(&format!("mass \"{}\"", mass.name), Box::new(weight));
                 }
             }
         }

@@ -287,6 +287,14 @@ impl History {
         }
     }
 
+    /// A straight line from 0 to the factor at load factor 1.
+    pub(crate) fn straight(&self) -> Self {
+        match self.is_proportional() {
+            true => self.clone(),
+            false => Self(vec![[0.0, 0.0], [1.0, self.at(1.0)]]),
+        }
+    }
+
     /// Returns the derivative of the factor at a load factor; at a kink, the derivative beyond it.
     pub fn rate(&self, load_factor: f64) -> f64 {
         let points = &self.0;
